@@ -1,1 +1,1 @@
-"""From what is seen to a scene: boxes in a stated frame, seen from a stated viewpoint."""
+"""Turn sensor data and files into scenes: boxes in a known frame, seen from a known viewpoint."""

@@ -1,4 +1,4 @@
-"""Checks of parsed JSON that the readers of scene and annotation files share; each error names the place."""
+"""Check parsed JSON for the readers of scene and annotation files; each error names the place."""
 
 from __future__ import annotations
 
@@ -10,75 +10,75 @@ from typing import Any
 from deixis.perception.errors import SceneError
 
 MAX_TEXT = 4_096
-"""How many characters a name, a label or a file's name in a scene may have."""
+"""Maximum number of characters of an id, a label or a file name in a scene."""
 
 MAX_SHOWN = 60
-"""How many characters of a value an error message repeats."""
+"""Maximum number of characters of a value that an error message repeats."""
 
 
 def mapping(data: Any, where: str) -> Mapping[str, Any]:
-    """Return a JSON object."""
+    """Return ``data`` if it is a JSON object; else raise SceneError."""
     if not isinstance(data, Mapping):
-        raise SceneError(f"{where}: an object {{…}} is expected here, not {kind(data)}")
+        raise SceneError(f"{where}: expected an object {{…}}, got {kind(data)}")
     return data
 
 
 def number(data: Any, where: str) -> float:
-    """Return a number, not a truth value, and finite."""
+    """Return ``data`` as a float if it is a finite number; else raise SceneError."""
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise SceneError(f"{where}: a number is expected, not {kind(data)}")
+        raise SceneError(f"{where}: expected a number, got {kind(data)}")
     try:
         value = float(data)
     except OverflowError:
         raise SceneError(f"{where}: the number is too large") from None
     if not math.isfinite(value):
-        raise SceneError(f"{where}: {json.dumps(value)} is no number to work with; leave the object out")
+        raise SceneError(f"{where}: expected a finite number, got {json.dumps(value)}; leave the object out")
     return value
 
 
 def text(data: Any, where: str) -> str:
-    """Return a text that is neither blank nor too long, and can be written as UTF-8."""
+    """Return ``data`` if it is a text that is not blank, not too long, and can be encoded as UTF-8."""
     if not isinstance(data, str):
-        raise SceneError(f"{where}: a text is expected, not {kind(data)}")
+        raise SceneError(f"{where}: expected a text, got {kind(data)}")
     if not data.strip():
-        raise SceneError(f"{where}: a text is expected, and this one is blank")
+        raise SceneError(f"{where}: expected a text, got a blank one")
     if len(data) > MAX_TEXT:
-        raise SceneError(f"{where}: a text has at most {MAX_TEXT:,} characters, and this one has {len(data):,}")
+        raise SceneError(f"{where}: a text must have at most {MAX_TEXT:,} characters, got {len(data):,}; shorten it")
     if any("\ud800" <= character <= "\udfff" for character in data):
-        raise SceneError(f"{where}: the text has half a character in it, and cannot be written")
+        raise SceneError(f"{where}: the text contains half of a surrogate pair; correct it")
     return data
 
 
 def score(entry: Mapping[str, Any], where: str) -> float:
-    """Return the ``score`` that a detector gave, a probability; 1 where there is none."""
+    """Return the ``score`` of a detector, a probability; 1 if the entry has no score."""
     found = entry.get("score")
     value = 1.0 if found is None else number(found, f"{where}: 'score'")
     if not 0 <= value <= 1:
-        raise SceneError(f"{where}: 'score' is a confidence and lies between 0 and 1, not at {value:g}")
+        raise SceneError(f"{where}: 'score' must be from 0 to 1, got {value:g}")
     return value
 
 
 def pixels(data: Any, where: str) -> float | None:
-    """Return an image's height or width, or None where it is not given."""
+    """Return the height or width of an image in pixels, or None if it is not given."""
     if data is None:
         return None
     value = number(data, where)
     if not 0 < value < float("inf"):
-        raise SceneError(f"{where}: an image measures some pixels, not {value:g}")
+        raise SceneError(f"{where}: expected a number of pixels above 0, got {value:g}")
     return value
 
 
 def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
-    """Return the list under ``key``."""
+    """Return the list under ``key``; raise SceneError if it is missing or not a list."""
     if key not in entry:
         raise SceneError(f"{where}: '{key}' is missing")
     if not isinstance(entry[key], list):
-        raise SceneError(f"{where}: '{key}' must be a list, not {kind(entry[key])}")
+        raise SceneError(f"{where}: '{key}' must be a list, got {kind(entry[key])}")
     return list(entry[key])
 
 
 def kind(data: Any) -> str:
-    """Return what a JSON value is, in words.
+    """Return the type of a JSON value in words.
 
     >>> kind(None), kind(1.5), kind([])
     ('null', 'a number', 'a list')
@@ -91,12 +91,12 @@ def kind(data: Any) -> str:
 
 
 def shown(value: object) -> str:
-    """Return a value as a message repeats it: on one line, never longer than :data:`MAX_SHOWN`, whatever a file holds.
+    r"""Return a value for an error message: on one line, with at most :data:`MAX_SHOWN` characters.
 
     >>> shown("a.jpg"), len(shown("a" * 1000))
     ('a.jpg', 60)
-    >>> print(shown("two\\nlines"))
-    two\\nlines
+    >>> print(shown("two\nlines"))
+    two\nlines
     """
     text = str(value)[: MAX_SHOWN + 1]
     plain = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)

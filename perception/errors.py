@@ -1,4 +1,4 @@
-"""The errors of perception; each also derives from ValueError."""
+"""Errors of perception; each also derives from ValueError."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from deixis.errors import DeixisError
 
 
 class SceneError(DeixisError, ValueError):
-    """A scene that cannot be read, or that contradicts itself; the message names the file and the place in it."""
+    """Scene that cannot be read or is inconsistent; the message names the file and the place in it."""
 
 
 class CloudError(DeixisError, ValueError):
-    """A point cloud that cannot be read, or arrays that make none."""
+    """Point cloud that cannot be read, or arrays that do not form one."""
 
 
 class RecognitionError(DeixisError, ValueError):
-    """Descriptors, categories or settings that do not fit together; the message names which, and what would fit."""
+    """Descriptors, categories or settings that do not fit together; the message names them and the remedy."""
 
 
 class SimulationError(DeixisError, ValueError):
-    """A thing, a table or a camera that cannot be simulated; the message says which and why."""
+    """Object, table or camera that cannot be simulated; the message names it and the reason."""

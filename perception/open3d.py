@@ -1,4 +1,4 @@
-"""The compiled part of Open3D alone: the whole of it also imports plotting and learning, which takes seconds."""
+"""Import only the compiled part of Open3D; the whole package takes seconds, for plotting and learning."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ _NAME = "open3d.cpu.pybind"
 
 @cache
 def open3d() -> ModuleType:
-    """Return ``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``; whole where it is imported
-    already.
+    """Return ``open3d`` with ``core``, ``geometry``, ``pipelines``, ``t`` and ``utility``.
 
-    ``import open3d`` after this finds the same module, and brings the rest: what is made with this one is what the
-    drawing functions of the whole take. A build for CUDA chooses its compiled part itself, and is imported whole.
+    A later ``import open3d`` finds the same compiled module and adds the rest, so the drawing functions accept objects
+    that were made with this one. A CUDA build selects its compiled part itself and is imported as a whole.
 
-    Raises MissingExtraError where Open3D is not installed.
+    Raises
+    ------
+    MissingExtraError
+        If Open3D is not installed.
     """
     if _NAME in sys.modules:
         return sys.modules[_NAME]
@@ -36,7 +38,7 @@ def open3d() -> ModuleType:
     try:
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-    except ImportError:  # it needs a library that the whole of Open3D would load first
+    except ImportError:  # it needs a library that the whole package loads first
         return importlib.import_module("open3d")
     sys.modules[_NAME] = module
     return module

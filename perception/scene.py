@@ -1,4 +1,4 @@
-"""A scene: what was seen at one time from one place, as boxes in a stated frame."""
+"""Scenes: objects that were seen at one time from one place, as boxes in a known frame."""
 
 from __future__ import annotations
 
@@ -27,9 +27,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OrientedBox:
-    """A box in the frame of its scene, metres. ``yaw`` is the angle from the x axis to the first of its level sides, in
-    radians, counter-clockwise as seen from above; ``extents`` are that side, the other level one, and the height.
+    """Box in the frame of its scene that is turned about the vertical.
 
+    Parameters
+    ----------
+    centre
+        x, y and z of its centre, in metres.
+    yaw
+        Angle from the x axis to its first horizontal side, in radians, counter-clockwise as seen from above.
+    extents
+        Lengths of the first and second horizontal side, and the height, in metres.
+
+    Examples
+    --------
     >>> knife = OrientedBox((0.3, 0.2, 0.005), np.pi / 2, (0.22, 0.02, 0.01))
     >>> knife.axes.round(3).tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
@@ -40,13 +50,13 @@ class OrientedBox:
     extents: tuple[float, float, float]
 
     def rounded(self, digits: int) -> OrientedBox:
-        """Return the same to so many digits after the point."""
+        """Return the box with coordinates and extents rounded to ``digits`` decimals."""
         x, y, z, length, width, height = (round(value, digits) for value in (*self.centre, *self.extents))
         return OrientedBox((x, y, z), round(self.yaw, digits), (length, width, height))
 
     @property
     def axes(self) -> NDArray[np.float64]:
-        """Unit vectors (3, 3) along the extents, in rows, right-handed, the last one up."""
+        """Unit vectors along the extents as rows, shape (3, 3), right-handed; the last one points up."""
         return turned_axes(self.yaw)
 
     def to_open3d(self) -> Any:
@@ -57,28 +67,42 @@ class OrientedBox:
 
 
 def turned_axes(yaw: float) -> NDArray[np.float64]:
-    """Return the axes (3, 3), in rows, turned about the vertical."""
+    """Return the axes turned by ``yaw`` radians about the vertical, as rows of shape (3, 3)."""
     cosine, sine = np.cos(yaw), np.sin(yaw)
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
 CANDIDATE_ROUNDING = 1e-3
-"""By how much probabilities that were rounded may add up to more than 1."""
+"""Tolerance by which the sum of rounded probabilities may exceed 1."""
 
 MAX_COORDINATE = 1e9
-"""Coordinates reach so far at the most, in metres or pixels."""
+"""Maximum absolute value of a coordinate, in metres or pixels."""
 
 
 @dataclass(frozen=True, slots=True)
 class PerceivedObject:
-    """One thing that perception has singled out: an axis-aligned box, and what else is known of it.
+    """Object of a scene: an axis-aligned box with an optional label, colour and point cloud.
 
-    ``minimum`` and ``maximum`` are its least and greatest corner in the scene's frame, 2 or 3 coordinates: x to the
-    viewer's right, y away from the viewer, z up; metres, unless the scene is in pixels. ``label`` is a name for it,
-    right with probability ``confidence``. ``cloud`` holds its points in the scene's frame, or names their file, as seen
-    from the scene's file; :meth:`Scene.cloud_of` gives the points either way. ``colour`` is the one that it is seen in,
-    in sRGB. ``oriented`` is the narrowest box about it that is turned about the vertical, where there are heights.
-    ``candidates`` are names with the probability of each; what is missing to 1 is the probability of any other name.
+    Parameters
+    ----------
+    id
+        Name of the object, unique in its scene.
+    minimum, maximum
+        Lower and upper corner in the frame of the scene, 2 or 3 coordinates: x to the viewer's right, y away from the
+        viewer, z up; in metres, unless the scene is in pixels.
+    label
+        Category of the object, or None.
+    confidence
+        Probability that the label is right.
+    cloud
+        Points of the object in the frame of the scene, or the path of their file relative to the file of the scene;
+        :meth:`Scene.cloud_of` returns the points either way.
+    colour
+        Perceived colour in sRGB, or None.
+    oriented
+        Smallest box around the object that is turned about the vertical, if the scene has heights.
+    candidates
+        Categories with their probabilities; the rest to 1 is the probability of any other category.
     """
 
     id: str
@@ -92,7 +116,7 @@ class PerceivedObject:
     candidates: tuple[tuple[str, float], ...] = ()
 
     def to_open3d(self) -> Any:
-        """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; one without heights lies at z = 0."""
+        """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; a box without heights lies at z = 0."""
         from deixis.perception.open3d import open3d
 
         low, high = (np.array([*corner, 0.0][:3]) for corner in (self.minimum, self.maximum))
@@ -100,30 +124,63 @@ class PerceivedObject:
 
 
 class Detected(Protocol):
-    """How the objects of a scene were found in a cloud: what perception's ``Detection`` says of it."""
+    """Result of detecting the objects of a scene in a cloud; the ``Detection`` of perception implements it."""
 
     @property
-    def cloud(self) -> PointCloud: ...
+    def cloud(self) -> PointCloud:
+        """Cloud in which the objects were detected."""
+        ...
+
     @property
-    def table(self) -> object | None: ...
+    def table(self) -> object | None:
+        """Plane of the table, or None."""
+        ...
+
     @property
-    def frame(self) -> NDArray[np.float64]: ...
+    def frame(self) -> NDArray[np.float64]:
+        """Transform from the frame of the cloud to that of the table, shape (4, 4)."""
+        ...
+
     @property
-    def labels(self) -> NDArray[np.int32]: ...
+    def labels(self) -> NDArray[np.int32]:
+        """Index of the object of each point, shape (n,); -1 for none."""
+        ...
+
     @property
-    def notes(self) -> tuple[str, ...]: ...
+    def notes(self) -> tuple[str, ...]:
+        """Warnings about the detection."""
+        ...
+
     @property
-    def shows(self) -> str: ...
+    def shows(self) -> str:
+        """Kind of the cloud, such as ``table`` or ``object``."""
+        ...
 
 
 @dataclass(frozen=True, repr=False)
 class Scene(Answer):
     """Perceived objects in one frame, seen from one viewpoint.
 
-    ``unit`` is ``m``, or ``px`` for what was measured in an image; relations do not depend on it. ``detection`` says
-    how the objects were found, where they were found in a cloud; neither it nor ``file`` counts in comparisons. Raises
-    SceneError where two objects share an id, a corner is not finite, a box is inside out, a colour is none, or some
-    boxes are flat (2-D) and others are not.
+    Parameters
+    ----------
+    objects
+        Objects with unique ids, all with 2-D boxes or all with 3-D boxes.
+    frame
+        Name of the frame of the coordinates.
+    viewpoint
+        Name of the side from which left and right are seen.
+    unit
+        ``m``, or ``px`` for boxes in an image; relations do not depend on it.
+    file
+        Name of the file for error messages; it does not count in comparisons.
+    detection
+        Result of the detection, if the objects were detected in a cloud; it does not count in comparisons.
+
+    Raises
+    ------
+    SceneError
+        If two objects share an id, a corner is not finite, a lower corner is above the upper one, a colour or a
+        confidence is out of range, or 2-D and 3-D boxes are mixed.
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -140,11 +197,11 @@ class Scene(Answer):
         seen: set[str] = set()
         for thing in self.objects:
             if thing.id in seen:
-                raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give every object an id of its own")
+                raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give each object its own id")
             seen.add(thing.id)
             _require_box(thing, self.file)
         if len({len(thing.minimum) for thing in self.objects}) > 1:
-            raise SceneError(f"{self.file}: some boxes have heights and some have none; give all of them 2 or 3 axes")
+            raise SceneError(f"{self.file}: some boxes have heights and others do not; give all of them 2 or 3 axes")
 
     @classmethod
     def from_boxes(
@@ -167,7 +224,7 @@ class Scene(Answer):
         Parameters
         ----------
         min, max
-            Least and greatest corners, arrays of shape (n, 2) or (n, 3): x to the viewer's right, y away, z up.
+            Lower and upper corners, arrays of shape (n, 2) or (n, 3): x to the viewer's right, y away, z up.
         centre, size, yaw
             Instead of corners: centres and side lengths, arrays of shape (n, 2) or (n, 3), and optionally an angle for
             each box (or one for all), in radians, counter-clockwise from the x axis to its first side. With ``yaw`` the
@@ -175,7 +232,7 @@ class Scene(Answer):
         ids
             Names of the objects, strings or integers; ``o1``, ``o2``, … without them.
         labels, confidences
-            A name for each object or None, and the probability that it is right.
+            Label of each object or None, and the probability that the label is right.
         unit
             ``m``, or ``px`` for boxes in an image.
 
@@ -223,10 +280,10 @@ class Scene(Answer):
         labels: Sequence[str | None] | None = None,
         viewpoint: str = "chair",
     ) -> Scene:
-        """Return a scene of Open3D's axis-aligned or oriented bounding boxes, or of what has one (clouds, meshes).
+        """Return a scene of Open3D bounding boxes, point clouds or meshes.
 
-        The axis-aligned box around each is taken, and its cloud if it is a point cloud. ``ids`` and ``labels`` are as
-        in :meth:`from_boxes`.
+        Each object has the axis-aligned box around its shape, and the points if the shape is a point cloud. ``ids`` and
+        ``labels`` have the same meaning as in :meth:`from_boxes`.
         """
         from deixis.perception.open3d import open3d
 
@@ -244,16 +301,16 @@ class Scene(Answer):
     def from_coco(cls, source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
         """Return the scene of one image in a file (or parsed JSON) of COCO instance annotations.
 
-        ``image`` chooses it by file name or id where there are several. Raises SceneError for bad input.
+        ``image`` selects the image by file name or id if there are several. Raises SceneError for bad input.
         """
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
 
     @classmethod
     def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
-        """Return the scene that a ``vision_msgs/Detection3DArray`` describes, as a message or as dictionaries.
+        """Return the scene of a ``vision_msgs/Detection3DArray``, given as a message or as dictionaries.
 
-        :func:`deixis.perception.formats.detections3d.scene_from_detections3d` names the fields.
+        :func:`deixis.perception.formats.detections3d.scene_from_detections3d` lists the fields.
         """
         read: Callable[..., Scene] = _format("detections3d").scene_from_detections3d
         return read(message, viewpoint=viewpoint)
@@ -264,7 +321,7 @@ class Scene(Answer):
         return write(self)
 
     def summary(self) -> str:
-        """Return the file, and how many objects there are and from where they are seen."""
+        """Return one line with the file, the number of objects and the viewpoint."""
         labelled = sum(thing.label is not None for thing in self.objects)
         axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
         labels = f", {labelled} labelled" if labelled else ""
@@ -272,18 +329,19 @@ class Scene(Answer):
 
     @property
     def ids(self) -> tuple[str, ...]:
+        """Ids of the objects, in the order of the scene."""
         return tuple(thing.id for thing in self.objects)
 
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
-        """Shape (n, 2, d): least and greatest corner; d is 2 for an empty scene."""
+        """Lower and upper corners of the objects, shape (n, 2, d); d is 2 for an empty scene."""
         if not self.objects:
             return np.zeros((0, 2, 2))
         return np.array([(thing.minimum, thing.maximum) for thing in self.objects], dtype=np.float64)
 
     @cached_property
     def colours(self) -> NDArray[np.float64]:
-        """Shape (n, 3): red, green and blue in sRGB, 0 to 255; NaN where an object's colour is not known."""
+        """Red, green and blue of the objects in sRGB, 0 to 255, shape (n, 3); NaN if the colour is unknown."""
         unknown = (np.nan, np.nan, np.nan)
         seen = [unknown if thing.colour is None else thing.colour for thing in self.objects]
         return np.array(seen, dtype=np.float64).reshape(-1, 3)
@@ -292,9 +350,9 @@ class Scene(Answer):
         return next(thing for thing in self.objects if thing.id == name)
 
     def cloud_of(self, id: str) -> PointCloud:
-        """Return the points of an object, in the scene's frame; those in a file are read anew each time.
+        """Return the points of an object in the frame of the scene; a file is read again on each call.
 
-        Raises SceneError where the scene has no such object, knows no points of it, or names a file that is no cloud.
+        Raises SceneError if the scene has no such object, the object has no points, or its file cannot be read.
         """
         if id not in self.ids:
             raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
@@ -303,7 +361,7 @@ class Scene(Answer):
             return cloud
         if cloud is None:
             raise SceneError(
-                f"{self.file}: the object '{id}' has no cloud, so that what it looks like is not known; "
+                f"{self.file}: the object '{id}' has no cloud, so its shape is unknown; "
                 "deixis perceive -o writes scenes with clouds"
             )
         from deixis.perception.clouds.cloud_file import read_cloud
@@ -314,10 +372,10 @@ class Scene(Answer):
             raise SceneError(f"{self.file}: the cloud of '{id}': {error}") from error
 
     def to_open3d(self) -> list[Any]:
-        """Return what ``open3d.visualization.draw_geometries`` draws: the points of each object, and a box about it.
+        """Return the geometries for ``open3d.visualization.draw_geometries``: each object's points and box.
 
-        The box is the oriented one where the object has one, else the axis-aligned one, and bears the object's colour,
-        where that is known. Raises SceneError as :meth:`cloud_of` does for a named file that cannot be read.
+        The box is the oriented one if the object has one, else the axis-aligned one, in the colour of the object (black
+        if it is unknown). Raises SceneError if a cloud file cannot be read.
         """
         shapes: list[Any] = []
         for thing in self.objects:
@@ -331,11 +389,18 @@ class Scene(Answer):
     def relations(
         self, vocabulary: Relations, tolerance: float = 0.0, deadline: Deadline = Deadline.never()
     ) -> SceneRelations:
-        """Return the exact relation of every ordered pair
-        (:class:`deixis.reasoning.geometry.rectangle.SceneRelations`).
+        """Return the exact relation of each ordered pair of objects.
 
-        It is computed by the first call for each vocabulary and tolerance (in the scene's unit), and kept. Raises
-        OutOfTimeError at the ``deadline``.
+        The first call for each vocabulary and tolerance computes it; later calls return the stored result.
+
+        Parameters
+        ----------
+        vocabulary
+            Relations of the ontology.
+        tolerance
+            Overlap up to which two intervals count as touching, in the unit of the scene.
+        deadline
+            Time limit; OutOfTimeError is raised when it passes.
         """
         key = (id(vocabulary), tolerance)
         if key not in self._relations:
@@ -347,42 +412,42 @@ class Scene(Answer):
         return self._relations[key]
 
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
-        """Return :meth:`relations` as a complete relation graph, for export."""
+        """Return the relations of all pairs as a complete relation graph, for export."""
         return self.relations(vocabulary, tolerance).graph()
 
     def without_labels(self) -> Scene:
-        """Return the same scene with nothing named."""
+        """Return the scene without labels and candidates."""
         bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
         return replace(self, objects=tuple(bare))
 
     def reordered(self, order: Sequence[int]) -> Scene:
-        """Return the same scene with its objects listed in another order."""
+        """Return the scene with its objects in another order, and without the detection."""
         return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
 
 
 def _format(name: str) -> Any:
-    """Return a module of ``perception.formats``, by name: each of them imports this one."""
+    """Import a module of ``perception.formats`` by name, late, because each of them imports this module."""
     return import_module(f"deixis.perception.formats.{name}")
 
 
 def _corners(
-    min: ArrayLike | None,
-    max: ArrayLike | None,
+    lower: ArrayLike | None,
+    upper: ArrayLike | None,
     centre: ArrayLike | None,
     size: ArrayLike | None,
     yaw: ArrayLike | float | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], list[OrientedBox]]:
-    """Return least and greatest corners (n, 2 or 3), and the oriented boxes where an angle was given for 3-D boxes."""
-    if min is not None and max is not None and centre is None and size is None and yaw is None:
-        low, high = _rows(min, "min"), _rows(max, "max")
+    """Return lower and upper corners, shape (n, 2) or (n, 3), and the oriented boxes if 3-D boxes have angles."""
+    if lower is not None and upper is not None and centre is None and size is None and yaw is None:
+        low, high = _rows(lower, "min"), _rows(upper, "max")
         if low.shape != high.shape:
-            raise SceneError(f"`min` and `max` must have one shape, got {low.shape} and {high.shape}")
+            raise SceneError(f"`min` and `max` must have the same shape, got {low.shape} and {high.shape}")
         return low, high, []
-    if centre is None or size is None or min is not None or max is not None:
+    if centre is None or size is None or lower is not None or upper is not None:
         raise SceneError("give boxes by `min` and `max`, or by `centre` and `size`, and `yaw` with these only")
     middle, sides = _rows(centre, "centre"), _rows(size, "size")
     if middle.shape != sides.shape:
-        raise SceneError(f"`centre` and `size` must have one shape, got {middle.shape} and {sides.shape}")
+        raise SceneError(f"`centre` and `size` must have the same shape, got {middle.shape} and {sides.shape}")
     if (sides < 0).any():
         raise SceneError("`size` must be 0 or more on each axis")
     if yaw is None:
@@ -415,37 +480,35 @@ def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
 
 def _require_box(thing: PerceivedObject, file: str) -> None:
     if any(unicodedata.category(character) == "Cc" for character in thing.id + (thing.label or "")):
-        raise SceneError(f"{file}: object {thing.id!a}: its id or its label has a control character in it")
+        raise SceneError(f"{file}: object {thing.id!a}: the id or the label contains a control character; remove it")
     where = f"{file}: object '{thing.id}'"
     if len(thing.minimum) != len(thing.maximum) or len(thing.minimum) not in (2, 3):
         raise SceneError(f"{where}: 'min' and 'max' must both have 2 coordinates, or both 3")
     if not np.isfinite([*thing.minimum, *thing.maximum]).all():
         raise SceneError(f"{where}: a coordinate is not finite")
     if max(map(abs, (*thing.minimum, *thing.maximum))) > MAX_COORDINATE:
-        raise SceneError(f"{where}: a coordinate is beyond {MAX_COORDINATE:g}; is the unit right?")
+        raise SceneError(f"{where}: a coordinate is beyond {MAX_COORDINATE:g}; check the unit")
     for axis, low, high in zip("xyz", thing.minimum, thing.maximum, strict=False):
         if low > high:
             raise SceneError(f"{where}: on {axis} its min {low:g} is above its max {high:g}; swap them")
     if thing.oriented is not None:
         numbers = (*thing.oriented.centre, thing.oriented.yaw, *thing.oriented.extents)
         if len(thing.minimum) != 3:
-            raise SceneError(
-                f"{where}: an oriented box has heights, and 'min' and 'max' have none; give them 3 coordinates"
-            )
+            raise SceneError(f"{where}: an oriented box needs heights; give 'min' and 'max' 3 coordinates")
         if len(thing.oriented.centre) != 3 or len(thing.oriented.extents) != 3 or not np.isfinite(numbers).all():
             raise SceneError(
-                f"{where}: an oriented box has a centre and extents of 3 finite numbers each, and a finite yaw"
+                f"{where}: an oriented box must have a centre and extents of 3 finite numbers each, and a finite yaw"
             )
         if max(map(abs, numbers)) > MAX_COORDINATE or min(thing.oriented.extents) < 0:
             raise SceneError(
-                f"{where}: an oriented box's extents are 0 or more, and nothing of it beyond {MAX_COORDINATE:g}"
+                f"{where}: an oriented box's extents must be at least 0, and no number beyond {MAX_COORDINATE:g}"
             )
     if not 0 <= thing.confidence <= 1:
-        raise SceneError(f"{where}: a confidence lies between 0 and 1, not at {thing.confidence:g}")
+        raise SceneError(f"{where}: the confidence must be from 0 to 1, got {thing.confidence:g}")
     shares = [share for _, share in thing.candidates]
     if not all(share >= 0 for share in shares) or not sum(shares) <= 1 + CANDIDATE_ROUNDING:
-        raise SceneError(f"{where}: the probabilities of 'candidates' are 0 or more, and 1 together at most")
+        raise SceneError(f"{where}: the probabilities of 'candidates' must be at least 0, and their sum at most 1")
     if len({name for name, _ in thing.candidates}) < len(thing.candidates):
-        raise SceneError(f"{where}: 'candidates' has a name twice")
+        raise SceneError(f"{where}: 'candidates' must name each category once")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
-        raise SceneError(f"{where}: a colour is red, green and blue, each from 0 to 255, not {thing.colour}")
+        raise SceneError(f"{where}: a colour must be red, green and blue, each from 0 to 255, got {thing.colour}")

@@ -1,1 +1,1 @@
-"""Point clouds: the type that perception works on, and every format that it is read from."""
+"""Point clouds and meshes: the types that perception works on, and readers and writers of their formats."""

@@ -1,4 +1,4 @@
-"""A point cloud: what a depth camera or a simulator gives, before anything is recognised in it."""
+"""Point clouds, as a depth camera or a simulator produces them, before any object is recognised."""
 
 from __future__ import annotations
 
@@ -13,11 +13,32 @@ from deixis.perception.errors import CloudError
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """n points in metres, in one frame; a point with a coordinate that is not finite has no depth and stays in place.
+    """Points in metres, in one frame, with their colours, labels and normals.
 
-    ``organised`` gives rows and columns where the points are the pixels of an image, row by row (n = rows * columns).
-    ``origin`` is where the sensor stood, in the same frame. Raises CloudError where an array does not fit.
+    A point without depth keeps its row; at least one of its coordinates is not finite.
 
+    Parameters
+    ----------
+    points
+        Coordinates, shape (n, 3), in metres.
+    colours
+        Red, green and blue from 0 to 255, shape (n, 3), or None.
+    labels
+        Number of the segment of each point, shape (n,), or None.
+    normals
+        Unit vectors, shape (n, 3), or None.
+    organised
+        Rows and columns, if the points are the pixels of an image, row by row (n = rows * columns); else None.
+    origin
+        Position of the sensor in the frame of the points, in metres.
+
+    Raises
+    ------
+    CloudError
+        If the shape of an array does not fit the points.
+
+    Examples
+    --------
     >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32), organised=(1, 2))
     >>> len(cloud), cloud.finite.tolist()
     (2, [True, False])
@@ -25,7 +46,7 @@ class PointCloud:
 
     points: NDArray[np.float32]  # (n, 3)
     colours: NDArray[np.uint8] | None = None  # (n, 3): red, green, blue
-    labels: NDArray[np.int32] | None = None  # (n,): a segment's number
+    labels: NDArray[np.int32] | None = None  # (n,): the number of a segment
     normals: NDArray[np.float32] | None = None  # (n, 3): unit vectors
     organised: tuple[int, int] | None = None
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -36,24 +57,25 @@ class PointCloud:
         for name, shape in wanted.items():
             array = getattr(self, name)
             if array is not None and array.shape != shape:
-                raise CloudError(f"a cloud's {name} have shape {shape}, not {array.shape}")
+                raise CloudError(f"`{name}` must have shape {shape}, got {array.shape}")
         if self.organised is not None and self.organised[0] * self.organised[1] != n:
             rows, columns = self.organised
-            raise CloudError(f"an image of {rows} rows and {columns} columns has {rows * columns} points, not {n}")
+            raise CloudError(
+                f"an image of {rows} rows and {columns} columns must have {rows * columns} points, got {n}"
+            )
 
     def __len__(self) -> int:
         return len(self.points)
 
     @property
     def finite(self) -> NDArray[np.bool_]:
-        """Which points have a depth, shape (n,)."""
+        """Mask of the points that have a depth, shape (n,)."""
         x, y, z = (np.isfinite(self.points[:, axis]) for axis in range(3))
         result: NDArray[np.bool_] = x & y & z
         return result
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.integer]) -> PointCloud:
-        """Return the chosen points with all that is known of them; no longer an image."""
-
+        """Return a cloud of the chosen points, with their colours, labels and normals; it is not organised."""
         return PointCloud(
             self.points[chosen],
             None if self.colours is None else self.colours[chosen],

@@ -1,4 +1,4 @@
-"""Clouds as files: one way to read them, whatever their format, and one to write them."""
+"""Read point clouds from files of any supported format, and write them."""
 
 from __future__ import annotations
 
@@ -15,25 +15,41 @@ from deixis.perception.clouds.xyz import read_xyz
 from deixis.perception.errors import CloudError
 
 TEXT = frozenset({".xyz", ".xyzn", ".xyzrgb", ".txt", ".csv", ".asc", ".pts"})
-"""Suffixes of plain tables of points; all other formats are told by how a file begins."""
+"""Suffixes of plain tables of points; the first bytes of a file identify all other formats."""
 _ZIP = b"PK\x03\x04"
 
 
 def read_cloud(path: str | Path, intrinsics: str | Path | Intrinsics | None = None) -> PointCloud:
-    """Read a PCD, PLY, XYZ or NPZ file, or a depth image together with its camera's ``intrinsics``.
+    """Read a PCD, PLY, XYZ or NPZ file, or a depth image together with the intrinsics of its camera.
 
-    A point without depth stays in its place with a coordinate that is not finite. Memory is bounded by what the file's
-    size can justify. Raises CloudError, with the file and the place in it, where it is no cloud or is damaged.
+    The size of the file bounds the memory that is used, whatever its header declares.
+
+    Parameters
+    ----------
+    path
+        File of a point cloud, or a depth image (PNG, .npy or .npz).
+    intrinsics
+        Camera of a depth image, or the JSON file that describes it; None for all other files.
+
+    Returns
+    -------
+    The points in metres, in the order of the file. A point without depth keeps its row, with coordinates that are not
+    finite.
+
+    Raises
+    ------
+    CloudError
+        If the file is not a point cloud or is damaged; the message names the file and the place in it.
     """
     content = content_of(path)
     head = content.data[:8].tobytes()
     if intrinsics is not None:
         if not head.startswith((PNG, MAGIC, _ZIP)):
-            raise CloudError(f"{content.name}: this is no depth image (PNG, .npy, .npz); leave its intrinsics out")
+            raise CloudError(f"{content.name}: not a depth image (PNG, .npy, .npz); leave the intrinsics out")
         camera = intrinsics if isinstance(intrinsics, Intrinsics) else read_intrinsics(intrinsics)
         return read_depth(content, camera)
     if head.startswith((PNG, MAGIC)):
-        raise CloudError(f"{content.name}: a depth image becomes a cloud by its camera's intrinsics; give them too")
+        raise CloudError(f"{content.name}: a depth image needs the intrinsics of its camera; give them too")
     suffix = Path(path).suffix.lower()
     if head.startswith((b"ply\n", b"ply\r")) or suffix == ".ply":
         return read_ply(content)
@@ -43,23 +59,35 @@ def read_cloud(path: str | Path, intrinsics: str | Path | Intrinsics | None = No
         return read_pcd(content)
     if suffix in TEXT:
         return read_xyz(content)
-    raise CloudError(f"{content.name}: this is no format that is read; PCD, PLY, XYZ, NPZ and depth images are")
+    raise CloudError(f"{content.name}: unknown format; give a PCD, PLY, XYZ or NPZ file, or a depth image")
 
 
 def write_cloud(path: str | Path, cloud: PointCloud, encoding: str = "binary") -> None:
-    """Write PCD (``ascii``, ``binary`` or ``binary_compressed``) or PLY (``ascii`` or ``binary``), by the suffix.
+    """Write a cloud as PCD or PLY, depending on the suffix of the file.
 
-    Raises CloudError where the suffix or the encoding is another, or the file cannot be written.
+    Parameters
+    ----------
+    path
+        File to write, ending in ``.pcd`` or ``.ply``.
+    cloud
+        Points, with their colours, labels and normals.
+    encoding
+        ``ascii``, ``binary``, or for PCD also ``binary_compressed``.
+
+    Raises
+    ------
+    CloudError
+        If the suffix or the encoding is unknown, or the file cannot be written.
     """
     pieces = {".pcd": pcd_bytes, ".ply": ply_bytes}.get(Path(path).suffix.lower())
     if pieces is None:
-        raise CloudError(f"{path}: clouds are written as .pcd or .ply; give the file such a suffix")
+        raise CloudError(f"{path}: the suffix must be .pcd or .ply, got '{Path(path).suffix}'; rename the file")
     try:
         whole = list(pieces(cloud, encoding))
     except CloudError as error:
         raise CloudError(f"{path}: {error}") from None
     try:
-        with open(path, "wb") as file:
+        with Path(path).open("wb") as file:
             file.writelines(whole)
     except OSError as error:
         raise CloudError(f"{path}: cannot be written: {error.strerror}") from error

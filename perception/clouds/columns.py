@@ -1,4 +1,4 @@
-"""From the named columns of a file to a cloud: which names mean what, in PCD and PLY alike."""
+"""Build a cloud from the named columns of a PCD or PLY file."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ POINT = ("x", "y", "z")
 NORMALS = (("normal_x", "normal_y", "normal_z"), ("nx", "ny", "nz"))
 COLOURS = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue"))
 PACKED = ("rgb", "rgba")
-"""A colour in 32 bits, 0xAARRGGBB, whatever type the file gives them."""
+"""Names of columns with a colour in 32 bits, 0xAARRGGBB, of any declared type."""
 LABEL = "label"
 
 KNOWN = frozenset((*POINT, *sum(NORMALS, ()), *sum(COLOURS, ()), *PACKED, LABEL))
-"""All columns that are read; others are passed over."""
+"""Names of all columns that are read; other columns are skipped."""
 
 Columns = Mapping[str, NDArray[np.generic]]
 
@@ -29,7 +29,7 @@ def cloud_of_columns(
     organised: tuple[int, int] | None = None,
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> PointCloud:
-    """Return a cloud of columns (n,) in the types that the file declares; CloudError where a coordinate is missing.
+    """Return the cloud of columns of shape (n,) in their declared types; raise CloudError if a coordinate is missing.
 
     >>> one, four = np.ones(1), np.array([0x0000FF80], np.uint32)
     >>> cloud_of_columns({"x": one, "y": one, "z": one, "rgb": four}, "a.pcd").colours.tolist()
@@ -37,7 +37,7 @@ def cloud_of_columns(
     """
     missing = [name for name in POINT if name not in columns]
     if missing:
-        raise CloudError(f"{file}: there is no column '{missing[0]}'; a cloud has x, y and z, one value each")
+        raise CloudError(f"{file}: there is no column '{missing[0]}'; add the columns x, y and z, with one value each")
     normals = next((names for names in NORMALS if all(name in columns for name in names)), None)
     return PointCloud(
         side_by_side(columns, POINT),
@@ -50,7 +50,7 @@ def cloud_of_columns(
 
 
 def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32]:
-    """Return the named columns as one array (n, columns), in single precision."""
+    """Return the named columns as one array of shape (n, columns), in single precision."""
     out = np.empty((len(columns[names[0]]), len(names)), np.float32)
     with np.errstate(over="ignore", invalid="ignore"):
         for place, name in enumerate(names):
@@ -59,28 +59,27 @@ def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32
 
 
 def single(values: NDArray[np.generic]) -> NDArray[np.float32]:
-    """Return numbers in single precision; one too large for it becomes infinite."""
+    """Return numbers in single precision; numbers too large for it become infinite."""
     with np.errstate(over="ignore", invalid="ignore"):
         return values.astype(np.float32)
 
 
 def declared(values: NDArray[np.float64], kind: np.dtype[np.generic], name: str, file: str) -> NDArray[np.generic]:
-    """Return numbers that were read as text, in the type that the file declares for them; CloudError where one is
-    none."""
+    """Return numbers that were read as text in their declared type; raise CloudError if one does not fit it."""
     if kind.kind == "f":
         with np.errstate(over="ignore"):
             return values.astype(kind)
     limits = np.iinfo(kind.str)
     with np.errstate(invalid="ignore"):
         whole = values.astype(kind)
-    # The largest 64-bit numbers round up to the next power of two, which is one too many.
+    # As a double, the largest 64-bit integer rounds up to a power of two that no longer fits.
     inside = not len(values) or (values.min() >= float(limits.min) and values.max() < float(limits.max) + 1)
     if not (inside and (whole == values).all()):
         fits = (values >= float(limits.min)) & (values < float(limits.max) + 1) & (values == np.floor(values))
         row = int(np.argmin(fits))
         raise CloudError(
-            f"{file}: point {row}: {values[row]:g} as '{name}' is no whole number from {limits.min} to {limits.max};"
-            " correct it, or the type of the column"
+            f"{file}: point {row}: '{name}' must be a whole number from {limits.min} to {limits.max}, got"
+            f" {values[row]:g}; correct it, or the type of the column"
         )
     return whole
 
@@ -95,8 +94,10 @@ def _colours(columns: Columns, file: str) -> NDArray[np.uint8] | None:
 
 
 def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> NDArray[np.uint8]:
-    """Return colours (n, 3) as bytes: floats are shares from 0 to 1, unless ``whole``; whole numbers are bytes
-    already."""
+    """Return colours of shape (n, 3) as bytes.
+
+    Integers, and floats if ``whole`` is true, range from 0 to 255; other floats range from 0 to 1.
+    """
     if colours.dtype == np.uint8:
         return colours.astype(np.uint8, copy=False)
     whole = whole or colours.dtype.kind in "iu"
@@ -105,18 +106,20 @@ def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> ND
     if wrong.any():
         row = int(np.argmax(wrong))
         shown = ", ".join(f"{value:g}" for value in values[row])
-        allowed = "0 to 255" if whole else "0 to 1, as they are no whole numbers"
-        raise CloudError(f"{file}: point {row}: {shown} are no red, green and blue; they lie within {allowed}")
+        allowed = "from 0 to 255" if whole else "from 0 to 1, because they are not whole numbers"
+        raise CloudError(f"{file}: point {row}: red, green and blue must be {allowed}, got {shown}; correct them")
     return np.rint(values if whole else values * 255).astype(np.uint8)
 
 
 def labels_of(column: NDArray[np.generic], file: str) -> NDArray[np.int32]:
-    """Return labels in 32 bits; an unsigned 4294967295, which stands for none in some files, becomes -1."""
+    """Return labels in 32 bits; an unsigned 4294967295, which means "no label" in some files, becomes -1."""
     if column.dtype.kind in "iu" and column.dtype.itemsize <= 4:
         return column.astype(np.int32)
     values = column.astype(np.float64)
     fits = (values >= -(2**31)) & (values < 2**32) & (values == np.floor(values))
     if not fits.all():
         row = int(np.argmin(fits))
-        raise CloudError(f"{file}: point {row}: the label {values[row]:g} is no whole number of 32 bits; renumber it")
+        raise CloudError(
+            f"{file}: point {row}: label must be a whole number of 32 bits, got {values[row]:g}; renumber it"
+        )
     return values.astype(np.int64).astype(np.uint32).view(np.int32)

@@ -1,4 +1,4 @@
-"""What a file holds, read in one piece and with bounds; every reader of clouds and meshes begins here."""
+"""Bytes of a file, read in one piece and with bounds; every reader of clouds and meshes starts from them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from deixis.perception.errors import CloudError
 
 MAX_BYTES = 2 * 2**30
-"""The largest file that is read."""
+"""Size of the largest file that is read, in bytes."""
 MAX_LINE = 8192
-"""The longest line of a header, comments included, in bytes."""
+"""Length of the longest line of a header, comments included, in bytes."""
 MAX_HEADER = 2**16
-"""The longest header, in bytes."""
+"""Length of the longest header, in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """A file's bytes and the name by which errors call it."""
+    """Bytes of a file, and its name for error messages."""
 
     name: str
     data: NDArray[np.uint8]
@@ -32,13 +32,13 @@ class Content:
         return len(self.data)
 
     def line_of(self, at: int) -> int:
-        """Return the number, from 1, of the line in which byte ``at`` stands."""
+        """Return the number of the line that contains byte ``at``; lines are counted from 1."""
         return int(np.count_nonzero(self.data[:at] == ord("\n"))) + 1
 
     def header_lines(self) -> Iterator[tuple[int, str, int]]:
-        """Yield lines of a header: number from 1, text without blanks around it, where the next line begins.
+        """Yield the number, the stripped text and the end in bytes of each line of a header.
 
-        Raises CloudError at a line or a header too long to be one, and where the file ends before the caller does.
+        Raises CloudError if a line or the header is too long, or if the file ends before the caller stops.
         """
         at = number = 0
         while True:
@@ -48,35 +48,37 @@ class Content:
             line, newline, _ = self.data[at : at + MAX_LINE].tobytes().partition(b"\n")
             if len(line) == MAX_LINE:
                 raise CloudError(
-                    f"{self.name}:{number}: a header line or comment of more than {MAX_LINE} bytes; shorten it"
+                    f"{self.name}:{number}: a header line must have at most {MAX_LINE} bytes, got more; shorten it"
                 )
             at += len(line) + len(newline)
             if at > MAX_HEADER:
-                raise CloudError(f"{self.name}:{number}: more than {MAX_HEADER} bytes of header; shorten its comments")
+                raise CloudError(
+                    f"{self.name}:{number}: a header must have at most {MAX_HEADER} bytes, got more; shorten it"
+                )
             yield number, line.decode("latin-1").strip(), at
 
     def refuse_rest(self, at: int) -> None:
-        """Raise CloudError where more than padding, that is zeros or blanks, stands from byte ``at`` on.
+        """Raise CloudError if anything but padding (zeros or white space) follows from byte ``at`` on.
 
-        PCL fills binary files up to a whole page with zeros.
+        PCL pads binary files with zeros to a whole page.
         """
         more = len(self.data[at:].tobytes().lstrip(b"\0 \t\r\n\v\f"))
         if more:
             raise CloudError(
-                f"{self.name}: byte {len(self) - more}: data after all that the header declares; correct its counts"
+                f"{self.name}: byte {len(self) - more}: more data than the header declares; correct its counts"
             )
 
 
 def content_of(path: str | Path) -> Content:
-    """Read a file; raise CloudError where that cannot be done, or where it is no regular file or too large."""
+    """Read a file; raise CloudError if it cannot be read, is not a regular file or is too large."""
     name = str(path)
     try:
-        with open(path, "rb", opener=_without_waiting) as file:
+        with open(path, "rb", opener=_without_waiting) as file:  # Path.open takes no opener
             status = os.fstat(file.fileno())
             if not stat.S_ISREG(status.st_mode):
-                raise CloudError(f"{name}: this is no regular file; give a point cloud or mesh file")
+                raise CloudError(f"{name}: not a regular file; give a point cloud or mesh file")
             if status.st_size > MAX_BYTES:
-                raise CloudError(f"{name}: the file is larger than {MAX_BYTES // 2**20} MiB; split or thin it")
+                raise CloudError(f"{name}: the file is larger than {MAX_BYTES // 2**20} MiB; split or subsample it")
             return Content(name, np.frombuffer(file.read(status.st_size), np.uint8))
     except IsADirectoryError:
         raise CloudError(f"{name}: this is a folder; give a point cloud or mesh file") from None
@@ -87,5 +89,5 @@ def content_of(path: str | Path) -> Content:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Open without waiting for somebody to write to a pipe."""
+    """Open a file without blocking, even if it is a pipe that no program writes to."""
     return os.open(path, flags | os.O_NONBLOCK)

@@ -1,8 +1,8 @@
-"""A depth image and its camera's intrinsics, as an organised cloud in the camera's frame.
+"""Convert a depth image and the intrinsics of its camera to an organised cloud in the frame of the camera.
 
-Depth is along the optical axis, as depth cameras give it: a 16-bit greyscale PNG, or an array (rows, columns) in a .npy
-file or, under the name ``depth``, in a .npz file. The frame is the camera's optical one: x to the right in the image, y
-down, z into the scene. A pixel of depth 0, or of none that is finite, has no point: its coordinates are NaN.
+Depth is measured along the optical axis. The image is a 16-bit greyscale PNG, or an array of shape (rows, columns) in a
+.npy file or, with the name ``depth``, in a .npz file. The frame is the optical frame of the camera: x points right in
+the image, y down, z into the scene. A pixel whose depth is 0 or not finite has no point; its coordinates are NaN.
 """
 
 from __future__ import annotations
@@ -25,17 +25,31 @@ from deixis.perception.clouds.npy import MAGIC, MAX_DEFLATED, read_npy, read_npz
 from deixis.perception.errors import CloudError
 
 MAX_PIXELS = 2**25
-"""The largest depth image."""
+"""Number of pixels of the largest depth image."""
 _MAX_JSON = 2**16
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """A pinhole camera: size of its image and, in pixels, focal lengths and principal point (pixel centres are whole).
+    """Pinhole camera without distortion.
 
-    ``depth_scale`` is how many of a depth image's units make a metre: 1000 where they are millimetres. None stands for
-    1000 in images of whole numbers and 1 in those of floats. Raises CloudError where a value makes no camera.
+    Parameters
+    ----------
+    width, height
+        Size of the image, in pixels.
+    fx, fy
+        Focal lengths, in pixels.
+    cx, cy
+        Principal point, in pixels; the centres of pixels have whole coordinates.
+    depth_scale
+        Units of the depth image in one metre: 1000 if they are millimetres. None stands for 1000 in images of integers
+        and for 1 in images of floats.
+
+    Raises
+    ------
+    CloudError
+        If a size, a focal length or the scale is not positive, or a number is not finite.
     """
 
     width: int
@@ -48,27 +62,33 @@ class Intrinsics:
 
     def __post_init__(self) -> None:
         if self.width < 1 or self.height < 1 or self.width * self.height > MAX_PIXELS:
-            raise CloudError(f"an image of {self.width} by {self.height} pixels; it has 1 to {MAX_PIXELS}")
+            raise CloudError(f"an image must have 1 to {MAX_PIXELS} pixels, got {self.width} by {self.height}")
         positive = (self.fx, self.fy, 1.0 if self.depth_scale is None else self.depth_scale)
         if not all(math.isfinite(value) for value in (*positive, self.cx, self.cy)) or min(positive) <= 0:
-            raise CloudError("fx, fy and depth_scale are above 0, and all are finite")
+            raise CloudError("fx, fy and depth_scale must be above 0, and all numbers must be finite")
 
 
 def read_intrinsics(path: str | Path) -> Intrinsics:
-    """Read ``{"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5, "depth_scale": 1000}``.
+    """Read the intrinsics of a camera from a JSON file.
 
-    Raises CloudError, with the file and the key, where it is no such thing.
+    The file holds an object ``{"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5}``,
+    optionally with ``depth_scale``. Raises CloudError, with the file and the key, if a value is missing or wrong.
     """
     content = content_of(path)
     if len(content) > _MAX_JSON:
-        raise CloudError(f"{content.name}: a file of {len(content)} bytes; intrinsics take a few lines of JSON")
+        raise CloudError(
+            f"{content.name}: intrinsics must have at most {_MAX_JSON} bytes, got {len(content)}; give a JSON file with"
+            " width, height, fx, fy, cx and cy"
+        )
     try:
         text = content.data.tobytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise CloudError(f"{content.name}: byte {error.start}: this is no UTF-8; intrinsics are JSON") from None
-    data = parse_json(text, content.name, CloudError, "is no number that a camera can have; correct it")
+        raise CloudError(
+            f"{content.name}: byte {error.start}: intrinsics must be JSON in UTF-8; save the file as UTF-8"
+        ) from None
+    data = parse_json(text, content.name, CloudError, "is not a number for a camera; correct it")
     if not isinstance(data, dict):
-        raise CloudError(f"{content.name}: intrinsics are an object {{…}} with width, height, fx, fy, cx and cy")
+        raise CloudError(f"{content.name}: intrinsics must be an object {{…}} with width, height, fx, fy, cx and cy")
     width, height = (_number(data, key, content.name, whole=True) for key in ("width", "height"))
     fx, fy, cx, cy = (_number(data, key, content.name) for key in ("fx", "fy", "cx", "cy"))
     scale = _number(data, "depth_scale", content.name) if data.get("depth_scale") is not None else None
@@ -83,26 +103,30 @@ def _number(data: dict[str, Any], key: str, file: str, whole: bool = False) -> f
     good = isinstance(value, int if whole else (int, float)) and not isinstance(value, bool) and abs(value) < 1e15
     if not good:
         kind = "whole number" if whole else "number"
-        raise CloudError(f"{file}: '{key}' must be a {kind}; correct it, or put it in")
+        raise CloudError(f"{file}: '{key}' must be a {kind}; correct or add it")
     return float(data[key])
 
 
 def read_depth(content: Content, camera: Intrinsics) -> PointCloud:
-    """Return the organised cloud that a depth image shows; raises CloudError where it is malformed or of another
-    size."""
+    """Return the organised cloud of a depth image.
+
+    Raises CloudError if the image is malformed, or its size is not that of the camera.
+    """
     depth = depth_image(content)
     if depth.shape != (camera.height, camera.width):
         raise CloudError(
-            f"{content.name}: an image of {depth.shape} rows and columns, and the intrinsics are for"
-            f" {(camera.height, camera.width)}; give those of this camera"
+            f"{content.name}: the image has {depth.shape} rows and columns, and the intrinsics are for"
+            f" {(camera.height, camera.width)}; give the intrinsics of this camera"
         )
     scale = camera.depth_scale or (1.0 if depth.dtype.kind == "f" else 1000.0)
     return PointCloud(back_projected(depth.astype(np.float64) / scale, camera), organised=depth.shape)
 
 
 def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[np.float32]:
-    """Return points (rows * columns, 3) of depth (rows, columns) in metres: z = depth, x = (column - cx) z / fx, y
-    alike."""
+    """Return the points, shape (rows * columns, 3), of a depth image of shape (rows, columns), all in metres.
+
+    A pixel of depth z is the point ((column - cx) z / fx, (row - cy) z / fy, z).
+    """
     z = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
     x = (np.arange(camera.width) - camera.cx) * z / camera.fx
     y = (np.arange(camera.height)[:, None] - camera.cy) * z / camera.fy
@@ -110,7 +134,7 @@ def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[n
 
 
 def depth_image(content: Content) -> NDArray[np.generic]:
-    """Return the image's values (rows, columns), in its own units."""
+    """Return the values of a depth image, shape (rows, columns), in the units of the file."""
     head = content.data[:8].tobytes()
     if head == PNG:
         return _png(content)
@@ -122,32 +146,34 @@ def depth_image(content: Content) -> NDArray[np.generic]:
             raise CloudError(f"{content.name}: there is no array 'depth'; save it with numpy.savez(file, depth=…)")
         image = arrays["depth"]
     if image.ndim != 2 or image.dtype.kind not in "iuf":
-        raise CloudError(f"{content.name}: a {image.dtype} array of shape {image.shape}; depth is (rows, columns)")
+        raise CloudError(
+            f"{content.name}: depth must be an array of numbers of shape (rows, columns), got {image.dtype} of shape"
+            f" {image.shape}"
+        )
     return image
 
 
 def _png(content: Content) -> NDArray[np.generic]:
-    """Return greyscale values; what the header declares is compared with the file's size before anything is
-    unpacked."""
+    """Return greyscale values; compare the declared size with that of the file before unpacking anything."""
     require("PIL", f"{content.name}: reading a depth image in PNG")
     from PIL import Image
 
     head = content.data[8:33].tobytes()
     width, height = int.from_bytes(head[8:12], "big"), int.from_bytes(head[12:16], "big")
     if len(head) < 25 or head[4:8] != b"IHDR":
-        raise CloudError(f"{content.name}: byte 8: a PNG begins with its header; get the whole file")
+        raise CloudError(f"{content.name}: byte 8: the PNG has no header; get the whole file")
     if head[17] != 0 or head[16] != 16 or head[20] != 0:
         raise CloudError(
-            f"{content.name}: byte 24: no plain greyscale PNG of 16 bits; save depth as one, not interlaced"
+            f"{content.name}: byte 24: depth must be a 16-bit greyscale PNG that is not interlaced; save it as one"
         )
     size = height * (1 + width * head[16] // 8)
     if not 0 < width * height <= MAX_PIXELS or size > len(content) * MAX_DEFLATED:
         raise CloudError(
-            f"{content.name}: byte 16: {width} by {height} pixels are declared, in a file of {len(content)} bytes;"
-            f" it must be possible, and 1 to {MAX_PIXELS}"
+            f"{content.name}: byte 16: the header declares {width} by {height} pixels, in a file of"
+            f" {len(content)} bytes; there must be 1 to {MAX_PIXELS} pixels, and they must fit the file"
         )
     try:
-        # the pixels must all be there: pillow fills up missing ones with zeros
+        # Pillow fills missing pixels with zeros, so their number is checked first.
         parts, at = [], 8
         while at + 12 <= len(content):
             length = int.from_bytes(content.data[at : at + 4].tobytes(), "big")
@@ -157,7 +183,7 @@ def _png(content: Content) -> NDArray[np.generic]:
         unpacking = zlib.decompressobj()
         there = len(unpacking.decompress(b"".join(parts), size + 1))
         if there != size or not unpacking.eof:
-            raise ValueError(f"{there} bytes of pixels, not {size}")
+            raise ValueError(f"{there} bytes of pixels instead of {size}")
         with Image.open(io.BytesIO(content.data.data), formats=["PNG"]) as image:
             return np.asarray(image)
     except (OSError, SyntaxError, ValueError, zlib.error) as error:

@@ -1,8 +1,8 @@
-"""LZF, the compression of binary_compressed PCD files (Lehmann's liblzf format), compiled.
+"""Compiled LZF, the compression of binary_compressed PCD files (the format of Lehmann's liblzf).
 
-A control byte c below 32 is followed by c + 1 plain bytes. Any other repeats what was written before: its upper three
-bits are the length less 2, extended by a further byte where they are all ones, its lower five and the next byte the
-distance back less 1.
+A control byte c below 32 is followed by c + 1 literal bytes. Any other control byte starts a back-reference: its upper
+three bits are the length minus 2, extended by another byte if all three are set; its lower five bits and the next byte
+are the distance minus 1.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 MAX_EXPANSION = 88
-"""A reference of 3 bytes repeats 264 at the most."""
+"""Maximum ratio of plain to packed bytes: a back-reference of 3 bytes stands for at most 264."""
 
 _HASH_BITS = 14
 _MAX_PLAIN, _MAX_REPEATED, _MAX_DISTANCE = 32, 264, 8192
@@ -21,7 +21,7 @@ _Bytes = NDArray[np.uint8]
 
 @njit(cache=True)
 def decompress(packed: _Bytes, out: _Bytes) -> tuple[int, int]:
-    """Fill ``out``; how many bytes were read and written, fewer than given where the data is not as long as said."""
+    """Fill ``out`` and return the numbers of bytes read and written; both stop at the first damaged byte."""
     read = written = 0
     while read < len(packed):
         control = int(packed[read])
@@ -52,7 +52,7 @@ def decompress(packed: _Bytes, out: _Bytes) -> tuple[int, int]:
 
 @njit(cache=True)
 def compress(plain: _Bytes) -> _Bytes:
-    """Pack bytes greedily: each three that were met before, within 8192 bytes, become a reference."""
+    """Pack bytes greedily: three bytes that occurred within the last 8192 bytes become a back-reference."""
     n = len(plain)
     out = np.empty(n + n // _MAX_PLAIN + 4, np.uint8)
     last = np.full(1 << _HASH_BITS, -1, np.int64)
@@ -90,7 +90,7 @@ def compress(plain: _Bytes) -> _Bytes:
 
 @njit(cache=True)
 def _put_plain(plain: _Bytes, begin: int, end: int, out: _Bytes, size: int) -> int:
-    """Write plain bytes (none, or up to 32) behind their control byte; the new size."""
+    """Write 0 to 32 literal bytes after their control byte, and return the new size."""
     if end > begin:
         out[size] = end - begin - 1
         size += 1

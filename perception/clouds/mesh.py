@@ -1,4 +1,4 @@
-"""A triangle mesh: the surface of a thing, as designers and scanners give it."""
+"""Triangle meshes: the surfaces of objects, from a design program or a scanner."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from deixis.perception.errors import CloudError
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles between vertices, in the file's own unit and frame.
+    """Triangles between vertices, in the unit and frame of the file.
 
-    ``names`` are the parts that the file names (groups in OBJ), ``part`` which of them each face belongs to. Raises
-    CloudError where arrays do not fit one another.
+    ``names`` lists the parts that the file names (groups in OBJ); ``part`` holds the index of the part of each face.
+    Raises CloudError if the arrays do not fit each other.
 
     >>> mesh = Mesh(np.eye(3), np.array([[0, 1, 2]], np.int32), ("fork",), np.array([0], np.int32))
     >>> len(mesh.part_named("fork").faces)
@@ -30,18 +30,20 @@ class Mesh:
     def __post_init__(self) -> None:
         for name, array in (("vertices", self.vertices), ("faces", self.faces)):
             if array.ndim != 2 or array.shape[1] != 3:
-                raise CloudError(f"a mesh's {name} have shape (n, 3), not {array.shape}")
+                raise CloudError(f"`{name}` must have shape (n, 3), got {array.shape}")
         if self.faces.size and not (self.faces.min() >= 0 and self.faces.max() < len(self.vertices)):
-            raise CloudError(f"a mesh's faces name vertices from 0 to {len(self.vertices) - 1}, and others too")
+            raise CloudError(
+                f"`faces` must hold rows of vertices from 0 to {len(self.vertices) - 1}, got {self.faces.min()} to"
+                f" {self.faces.max()}"
+            )
         if self.part is not None and (
             self.part.shape != (len(self.faces),)
             or (self.part.size and not 0 <= self.part.min() <= self.part.max() < len(self.names))
         ):
-            raise CloudError("a mesh's part is the index of a name, one for each face")
+            raise CloudError("`part` must hold the index of a name for each face")
 
     def part_named(self, name: str) -> Mesh:
-        """Return the faces of one part, with no other vertices than theirs; raises CloudError where there is no such
-        part."""
+        """Return the faces of one part with their vertices only; raise CloudError if there is no such part."""
         if self.part is None or name not in self.names:
             known = ", ".join(self.names) or "none"
             raise CloudError(f"the mesh has no part '{name}'; its parts are: {known}")
@@ -51,10 +53,21 @@ class Mesh:
 
 
 def fans(lengths: NDArray[np.int64], corners: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-    """Return triangles (m, 3) of polygons, each a fan around its first corner, and which polygon each comes from (m,).
+    """Split polygons into triangles, each polygon as a fan around its first corner.
 
-    ``corners`` holds the polygons' corners one after the other. A polygon of fewer than three corners has no triangle.
+    Parameters
+    ----------
+    lengths
+        Number of corners of each polygon, shape (polygons,); one with fewer than three corners has no triangle.
+    corners
+        Corners of all polygons one after the other, shape (corners,).
 
+    Returns
+    -------
+    The corners of the triangles, shape (m, 3), and the index of the polygon of each, shape (m,).
+
+    Examples
+    --------
     >>> fans(np.array([3, 4]), np.array([0, 1, 2, 5, 6, 7, 8]))[0].tolist()
     [[0, 1, 2], [5, 6, 7], [5, 7, 8]]
     """

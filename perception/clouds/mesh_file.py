@@ -1,17 +1,18 @@
-"""Meshes as files: PLY, OBJ and STL, told by their content or suffix.
+"""Read meshes from PLY, OBJ and STL files, identified by their content or suffix.
 
-OBJ, Wavefront's format, has vertices (``v``), faces (``f``) and named parts (``o``, ``g``). Normals, texture and
-materials are passed over, as are lines and points. A face's corners count vertices from 1, or back from the last one so
-far where they are negative; polygons become fans. STL has triangles without names: binary (80 bytes, a count, 50 bytes
-a triangle) or ascii (``vertex x y z``). Corners at one place become one vertex. Normals are passed over, since the
-order of corners says the same.
+OBJ, the format of Wavefront, has vertices (``v``), faces (``f``) and named parts (``o``, ``g``). Normals, textures,
+materials, lines and points are skipped. The corners of a face count vertices from 1, or backwards from the last vertex
+so far if they are negative; polygons become fans of triangles. STL has triangles without names: binary (80 bytes, a
+count, 50 bytes per triangle) or ascii (``vertex x y z``). Corners with equal coordinates become one vertex. Normals are
+skipped, because the order of the corners gives the same direction.
 
-The readers of OBJ and STL are our own. Those of trimesh 5.2 were measured beside them, on a sphere of 82,000 triangles
-(medians): OBJ 72 ms against our 183 ms (188 ms where one face is a polygon), binary STL the same 138 ms, ascii STL
-479 ms against 544 ms, with a peak of 177 MiB against 29 MiB for a file of 23 MiB. They are not taken because they read
-wrong or damaged files without an error. OBJ: corner 0 is taken for the first vertex, and negative corners count back
-from the last vertex of the file. Ascii STL: numbers of one line are taken for those of the next, a second solid that is
-cut short is dropped, and a solid with the word vertex in its name is refused. Neither names the line of an error.
+The readers of OBJ and STL are our own. We compared them with those of trimesh 5.2 on a sphere of 82,000 triangles
+(medians of the time, trimesh first). OBJ: 72 ms and 183 ms (188 ms if one face is a polygon). Binary STL: 138 ms both.
+Ascii STL: 479 ms and 544 ms, with a peak memory of 177 MiB and 29 MiB for a file of 23 MiB. We do not use trimesh
+because it reads some wrong or damaged files without an error. In OBJ, it takes corner 0 for the first vertex, and
+counts negative corners from the last vertex of the file. In ascii STL, it takes numbers of one line for those of the
+next, drops a second solid that is truncated, and refuses a solid with the word vertex in its name. It never names the
+line of an error.
 """
 
 from __future__ import annotations
@@ -35,9 +36,10 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("at
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Read a mesh in the file's own unit and frame; polygons become fans of triangles.
+    """Read a mesh from a PLY, OBJ or STL file, in the unit and frame of the file.
 
-    Raises CloudError, with the file and the place in it, where it is none or is damaged.
+    Polygons become fans of triangles. Raises CloudError, with the file and the place in it, if the file is not a mesh
+    or is damaged.
     """
     content, suffix = content_of(path), Path(path).suffix.lower()
     if content.data[:4].tobytes() in (b"ply\n", b"ply\r") or suffix == ".ply":
@@ -47,7 +49,7 @@ def read_mesh(path: str | Path) -> Mesh:
     elif suffix == ".stl":
         mesh = read_stl(content)
     else:
-        raise CloudError(f"{content.name}: this is no mesh that is read; PLY, OBJ (.obj) and STL (.stl) are")
+        raise CloudError(f"{content.name}: unknown mesh format; give a PLY, OBJ (.obj) or STL (.stl) file")
     finite = np.isfinite(mesh.vertices).all(axis=1)
     if not finite.all():
         raise CloudError(f"{content.name}: vertex {np.argmin(finite)} has a coordinate that is not finite; correct it")
@@ -56,7 +58,7 @@ def read_mesh(path: str | Path) -> Mesh:
 
 @dataclass
 class _ObjLines:
-    """Arrays of plain numbers, so that memory stays near the size of the text."""
+    """Content of an OBJ file in plain arrays, so that memory stays near the size of the text."""
 
     vertices: array[float] = field(default_factory=lambda: array("d"))
     lengths: array[int] = field(default_factory=lambda: array("q"))
@@ -67,17 +69,20 @@ class _ObjLines:
 
 
 def read_obj(content: Content) -> Mesh:
-    """Return the mesh in an OBJ file; raises CloudError, with the line, where it is malformed or has no face.
+    """Return the mesh of an OBJ file; raise CloudError, with the line, if it is malformed or has no face.
 
-    The parts are those that have faces, by the last ``o`` or ``g`` before each; faces before any are in the part ''.
+    The last ``o`` or ``g`` before a face names its part; faces before the first one belong to the part ''. Parts
+    without faces are left out.
     """
     parsed = _ObjLines()
     for number, line in enumerate(io.BytesIO(content.data.data), start=1):
         if len(line) > MAX_LINE:
-            raise CloudError(f"{content.name}:{number}: a line of more than {MAX_LINE} bytes; shorten it")
+            raise CloudError(
+                f"{content.name}:{number}: a line must have at most {MAX_LINE} bytes, got more; shorten it"
+            )
         _take_obj_line(line.decode("latin-1").split(), parsed, f"{content.name}:{number}")
     if not parsed.lengths:
-        raise CloudError(f"{content.name}: there is no face (f) in this file; it is no mesh")
+        raise CloudError(f"{content.name}: there is no face (f) in this file; give a mesh")
     faces, polygon = fans(np.array(parsed.lengths), np.array(parsed.corners))
     used, part = np.unique(np.array(parsed.parts)[polygon], return_inverse=True)
     names = list(parsed.names)
@@ -86,17 +91,17 @@ def read_obj(content: Content) -> Mesh:
 
 
 def _take_obj_line(words: list[str], parsed: _ObjLines, where: str) -> None:
-    """Take in one line."""
+    """Add the words of one line to ``parsed``."""
     keyword = words[0] if words else "#"
     if keyword == "v":
         try:
             x, y, z = (float(w) for w in words[1:][:3])
         except ValueError:
-            raise CloudError(f"{where}: a vertex has three numbers, x, y and z") from None
+            raise CloudError(f"{where}: a vertex must have three numbers, x, y and z; correct them") from None
         parsed.vertices.extend((x, y, z))
     elif keyword == "f":
         if len(words) < 4:
-            raise CloudError(f"{where}: a face of {len(words) - 1} corners; it has 3 at the least")
+            raise CloudError(f"{where}: a face must have at least 3 corners, got {len(words) - 1}; take it out")
         parsed.lengths.append(len(words) - 1)
         parsed.corners.extend(_corner(word, len(parsed.vertices) // 3, where) for word in words[1:])
         if parsed.part < 0:
@@ -111,17 +116,23 @@ def _corner(word: str, vertices: int, where: str) -> int:
     try:
         number = int(word.partition("/")[0])
     except ValueError:
-        raise CloudError(f"{where}: '{shown(word)}' is no corner of a face; it is a vertex's number, from 1") from None
+        raise CloudError(
+            f"{where}: a corner must be the number of a vertex, from 1, got '{shown(word)}'; correct it"
+        ) from None
     row = number - 1 if number > 0 else vertices + number
     if number == 0 or not 0 <= row < vertices:
-        raise CloudError(f"{where}: the corner '{shown(word)}' is none of the {vertices} vertices so far, from 1 on")
+        raise CloudError(
+            f"{where}: a corner must be one of the {vertices} vertices so far, from 1, got '{shown(word)}'"
+        )
     return row
 
 
 def read_stl(content: Content) -> Mesh:
-    """Return the mesh in an STL file; raises CloudError, with the line or byte, where it is malformed or has no
-    triangle."""
-    # Binary files may begin with 'solid' too, so that their length, which the count gives, decides.
+    """Return the mesh of an STL file.
+
+    Raises CloudError, with the line or byte, if the file is malformed or has no triangle.
+    """
+    # A binary file may begin with 'solid' too, so the length that its count implies decides.
     declared = int(content.data[80:_STL_HEADER].view("<u4")[0]) if len(content) >= _STL_HEADER else 0
     if _STL_HEADER + declared * _STL_TRIANGLE.itemsize == len(content):
         corners = content.data[_STL_HEADER:].view(_STL_TRIANGLE)["corners"].reshape(-1, 3).astype(np.float64)
@@ -129,11 +140,12 @@ def read_stl(content: Content) -> Mesh:
         corners = _ascii_corners(content)
     else:
         raise CloudError(
-            f"{content.name}: byte 80: {declared} triangles are declared, and the file is {len(content)} bytes long,"
-            f" not {_STL_HEADER + declared * _STL_TRIANGLE.itemsize}; correct the count, or get the whole file"
+            f"{content.name}: byte 80: a file of {declared} triangles must have"
+            f" {_STL_HEADER + declared * _STL_TRIANGLE.itemsize} bytes, got {len(content)}; correct the count, or get"
+            " the whole file"
         )
     if not len(corners):
-        raise CloudError(f"{content.name}: there is no triangle in this file; it is no mesh")
+        raise CloudError(f"{content.name}: there is no triangle in this file; give a mesh")
     vertices, faces = np.unique(corners, axis=0, return_inverse=True)
     return Mesh(vertices, faces.reshape(-1, 3).astype(np.int32))
 
@@ -146,8 +158,13 @@ def _ascii_corners(content: Content) -> NDArray[np.float64]:
             try:
                 x, y, z = (float(word) for word in words[1:])
             except ValueError:
-                raise CloudError(f"{content.name}:{number}: a vertex has three numbers, x, y and z") from None
+                raise CloudError(
+                    f"{content.name}:{number}: a vertex must have three numbers, x, y and z; correct them"
+                ) from None
             corners.extend((x, y, z))
     if len(corners) % 9:
-        raise CloudError(f"{content.name}: {len(corners) // 3} corners make no triangles; get the whole file")
+        raise CloudError(
+            f"{content.name}: the number of corners must be a multiple of 3, got {len(corners) // 3}; get the whole"
+            " file"
+        )
     return np.array(corners).reshape(-1, 3)

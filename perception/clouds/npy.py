@@ -1,12 +1,11 @@
-"""numpy's array files, .npy and zips of them, .npz: arrays, and clouds kept as arrays.
+"""Read the array files of numpy, .npy and .npz, and the clouds stored in .npz files.
 
-numpy reads the header, which it parses without running code; the data behind it is looked at in place, so that nothing
-larger than the file is allocated and nothing is unpickled. A member of a zip is unpacked only where the size that it
-declares can come out of the bytes that are there.
+numpy parses the header without running code. The data is viewed in place, so nothing larger than the file is allocated
+and nothing is unpickled. A member of a zip is unpacked only if its packed bytes can expand to the declared size.
 
-A cloud in a .npz file has the array points and, where they are known, colours, labels, normals and origin. Points are
-(n, 3), or (rows, columns, 3) where they are the pixels of an image; the others are shaped alike. Colours are bytes, or
-floats from 0 to 1, and may be called colors. Other arrays are passed over.
+A cloud in a .npz file has the array points and optionally colours, labels, normals and origin. Points have shape
+(n, 3), or (rows, columns, 3) if they are the pixels of an image; the other arrays have corresponding shapes. Colours
+are bytes, or floats from 0 to 1, and may be called colors. Other arrays are skipped.
 """
 
 from __future__ import annotations
@@ -28,35 +27,35 @@ from deixis.perception.clouds.content import Content
 from deixis.perception.errors import CloudError
 
 MAGIC = npy_format.MAGIC_PREFIX
-"""The first bytes of a .npy file."""
+"""First bytes of a .npy file."""
 MAX_MEMBER = 256 * 2**20
-"""The largest array in a zip, in bytes."""
+"""Size of the largest array in a zip, in bytes."""
 MAX_DEFLATED = 1032
-"""The largest number of bytes that one byte of deflate's gives."""
+"""Maximum ratio of plain to packed bytes of deflate."""
 CLOUD_ARRAYS = ("points", "colours", "colors", "labels", "normals", "origin")
 
 
 def read_npy(data: bytes, where: str) -> NDArray[np.generic]:
-    """Return the array in a .npy file's bytes; raise CloudError where it is not one of plain numbers, or not whole."""
+    """Return the array of a .npy file; raise CloudError if it does not hold plain numbers or is truncated."""
     file = io.BytesIO(data)
     try:
         version = npy_format.read_magic(file)
         read_header = npy_format.read_array_header_1_0 if version == (1, 0) else npy_format.read_array_header_2_0
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # numpy warns of headers that Python 2 wrote, and reads them
+            warnings.simplefilter("ignore")  # numpy reads headers that Python 2 wrote, but warns about them
             shape, in_columns, dtype = read_header(file)
         if dtype.kind not in "biuf" or dtype.itemsize > 8 or min(shape, default=0) < 0:
             raise ValueError(f"an array of {dtype} of shape {shape}")
         return np.frombuffer(data, dtype, offset=file.tell()).reshape(shape, order="F" if in_columns else "C")
-    except Exception as error:  # a damaged header raises whatever Python's own parser raises, not ValueError alone
+    except Exception as error:  # a damaged header raises any error of Python's own parser, not only ValueError
         raise CloudError(
-            f"{where}: this is no whole .npy file of plain numbers ({shown(error) or 'its header is damaged'}); save it"
+            f"{where}: not a complete .npy file of plain numbers ({shown(error) or 'its header is damaged'}); save it"
             " again with numpy.save, not pickled"
         ) from error
 
 
 def read_npz(content: Content, names: Iterable[str]) -> dict[str, NDArray[np.generic]]:
-    """Return those of the named arrays that a .npz file has; raise CloudError where it or one of them is damaged."""
+    """Return the named arrays that a .npz file contains; raise CloudError if the file or one of them is damaged."""
     found = {}
     try:
         with zipfile.ZipFile(io.BytesIO(content.data.data)) as archive:
@@ -68,36 +67,39 @@ def read_npz(content: Content, names: Iterable[str]) -> dict[str, NDArray[np.gen
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, NotImplementedError) as error:
         if isinstance(error, CloudError):
             raise
-        raise CloudError(f"{content.name}: this is no whole .npz file ({shown(error)}); save it again") from error
+        raise CloudError(f"{content.name}: not a complete .npz file ({shown(error)}); save it again") from error
     return found
 
 
 def _unpacked(archive: zipfile.ZipFile, info: zipfile.ZipInfo, where: str) -> bytes:
     if info.flag_bits & 1 or info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise CloudError(f"{where}: it is encrypted or packed in a way that numpy does not; save it with numpy.savez")
+        raise CloudError(f"{where}: the array is encrypted, or packed by another program; save it with numpy.savez")
     if info.file_size > min(MAX_MEMBER, info.compress_size * MAX_DEFLATED + 64):
         raise CloudError(
-            f"{where}: {info.file_size} bytes are declared, in {info.compress_size} packed ones; it must be possible,"
-            f" and no more than {MAX_MEMBER // 2**20} MiB: save it again, or thin it"
+            f"{where}: {info.compress_size} packed bytes declare {info.file_size} bytes, which is impossible or more"
+            f" than {MAX_MEMBER // 2**20} MiB; save it again, or subsample it"
         )
     with archive.open(info) as member:
         return member.read(info.file_size)
 
 
 def read_npz_cloud(content: Content) -> PointCloud:
-    """Return the cloud in a .npz file; raise CloudError, with the array, where it is malformed."""
+    """Return the cloud of a .npz file; raise CloudError, with the array, if it is malformed."""
     arrays = read_npz(content, CLOUD_ARRAYS)
     if "points" not in arrays:
         raise CloudError(f"{content.name}: there is no array 'points'; save it with numpy.savez(file, points=…)")
     points = arrays["points"]
     if points.ndim not in (2, 3) or points.shape[-1] != 3:
-        raise CloudError(f"{content.name}: 'points' has shape {points.shape}; it is (n, 3) or (rows, columns, 3)")
+        raise CloudError(
+            f"{content.name}: 'points' must have shape (n, 3) or (rows, columns, 3), got {points.shape}; reshape it"
+        )
     shape = points.shape[:-1]
     wanted = {"colours": (*shape, 3), "colors": (*shape, 3), "labels": shape, "normals": (*shape, 3), "origin": (3,)}
     for name, array in arrays.items():
         if array.shape != wanted.get(name, array.shape):
             raise CloudError(
-                f"{content.name}: '{name}' has shape {array.shape}; it is {wanted[name]}, to go with the points"
+                f"{content.name}: '{name}' must have shape {wanted[name]} to fit the points, got {array.shape}; reshape"
+                " it"
             )
     colours, labels, normals = arrays.get("colours", arrays.get("colors")), arrays.get("labels"), arrays.get("normals")
     x, y, z = single(arrays["origin"]).astype(np.float64).tolist() if "origin" in arrays else (0.0, 0.0, 0.0)

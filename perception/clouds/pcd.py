@@ -1,9 +1,10 @@
-"""PCD, the Point Cloud Library's format: ascii, binary and binary_compressed, versions 0.5 to 0.7.
+"""Read PCD, the format of the Point Cloud Library: ascii, binary and binary_compressed, versions 0.5 to 0.7.
 
 The format: https://pointclouds.org/documentation/tutorials/pcd_file_format.html. A header of lines ``KEYWORD values``
-ends with ``DATA``. Compressed data is two 32-bit sizes, packed and plain, then LZF
-(:mod:`deixis.perception.clouds.lzf`) of the fields one after the other. All binary numbers are little-endian. A
-viewpoint's position becomes the cloud's origin; its orientation is not used, since points and origin are in one frame.
+ends with ``DATA``. Compressed data consists of two 32-bit sizes, packed and plain, followed by the LZF-compressed
+fields (:mod:`deixis.perception.clouds.lzf`), one field after another. All binary numbers are little-endian. The
+position in VIEWPOINT becomes the origin of the cloud; its orientation is not used, because points and origin share a
+frame.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from deixis.perception.errors import CloudError
 ENCODINGS = ("ascii", "binary", "binary_compressed")
 VERSIONS = frozenset({"0.5", ".5", "0.6", ".6", "0.7", ".7"})
 PADDING = "_"
-"""The name of fields that hold nothing."""
+"""Name of fields that only pad."""
 MAX_POINT_BYTES = 2**20
-"""The largest point, all fields together."""
+"""Maximum size of a point, all fields together, in bytes."""
 
 _KEYWORDS = frozenset(
     {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"}
@@ -45,13 +46,13 @@ class Field:
 
     @property
     def size(self) -> int:
-        """Bytes in a point."""
+        """Bytes of the field in each point."""
         return self.dtype.itemsize * self.count
 
 
 @dataclass(frozen=True)
 class PcdHeader:
-    """What a header declares, and ``end``, the byte at which the data begins."""
+    """Content of a header, and ``end``, the byte at which the data begins."""
 
     fields: tuple[Field, ...]
     width: int
@@ -62,43 +63,44 @@ class PcdHeader:
 
     @property
     def points(self) -> int:
+        """Number of points."""
         return self.width * self.height
 
     @property
     def organised(self) -> tuple[int, int] | None:
-        """Rows and columns, where the points are an image."""
+        """Rows and columns if the points are the pixels of an image, else None."""
         return (self.height, self.width) if self.height > 1 else None
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """The values behind a keyword, and where they stand: ``file:line``."""
+    """Values after a keyword, and their place as ``file:line``."""
 
     values: list[str]
     where: str
 
     def whole(self, value: str) -> int:
         if not re.fullmatch(r"[0-9]{1,15}", value):
-            raise CloudError(f"{self.where}: '{shown(value)}' is no count; put a whole number of 0 or more there")
+            raise CloudError(f"{self.where}: a count must be a whole number of at least 0, got '{shown(value)}'")
         return int(value)
 
     def single(self) -> str:
         if len(self.values) != 1:
-            raise CloudError(f"{self.where}: {len(self.values)} values, where one is wanted; give just one")
+            raise CloudError(f"{self.where}: this entry must have one value, got {len(self.values)}; give just one")
         return self.values[0]
 
 
 def read_header(content: Content) -> PcdHeader:
-    """Return the header of a PCD file; raises CloudError, with the line, where it is none."""
+    """Return the header of a PCD file; raise CloudError, with the line, if it is malformed."""
     entries, end = _entries(content)
     encoding = entries["DATA"].single().lower()
     if encoding not in ENCODINGS:
         raise CloudError(
-            f"{entries['DATA'].where}: '{shown(encoding)}' is no encoding; it is one of {', '.join(ENCODINGS)}"
+            f"{entries['DATA'].where}: the encoding must be one of {', '.join(ENCODINGS)}, got '{shown(encoding)}'"
         )
     version = entries.get("VERSION")
     if version is not None and version.single() not in VERSIONS:
-        raise CloudError(f"{version.where}: version '{shown(version.single())}' is not read; 0.5 to 0.7 are")
+        raise CloudError(f"{version.where}: the version must be 0.5, 0.6 or 0.7, got '{shown(version.single())}'")
     width, height = _size(entries, content.name)
     named = entries.get("FIELDS", entries.get("COLUMNS"))
     if named is None or not named.values:
@@ -117,12 +119,12 @@ def read_header(content: Content) -> PcdHeader:
     if twice is not None:
         raise CloudError(f"{named.where}: the field '{shown(twice)}' is declared twice; rename one")
     if sum(field.size for field in fields) > MAX_POINT_BYTES:
-        raise CloudError(f"{named.where}: a point of more than {MAX_POINT_BYTES} bytes; correct SIZE and COUNT")
+        raise CloudError(f"{named.where}: a point must have at most {MAX_POINT_BYTES} bytes; correct SIZE and COUNT")
     return PcdHeader(fields, width, height, _origin(entries), encoding, end)
 
 
 def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
-    """Return entries by keyword up to DATA, and where the data begins."""
+    """Return the entries up to DATA by keyword, and the byte at which the data begins."""
     entries: dict[str, _Entry] = {}
     for number, line, end in content.header_lines():
         keyword, *values = line.split() or ["#"]
@@ -130,9 +132,9 @@ def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
         if keyword.startswith("#"):
             continue
         if keyword not in _KEYWORDS:
-            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PCD header; take the line out")
+            raise CloudError(f"{where}: unknown entry '{shown(keyword)}' in a PCD header; take the line out")
         if keyword in entries:
-            raise CloudError(f"{where}: a second {keyword}; take one of them out")
+            raise CloudError(f"{where}: {keyword} is given twice; take one of them out")
         entries[keyword] = _Entry(values, where)
         if keyword == "DATA":
             return entries, end
@@ -161,12 +163,14 @@ def _count(entries: dict[str, _Entry], count: str) -> int:
         return 1
     number = entries["COUNT"].whole(count)
     if number == 0:
-        raise CloudError(f"{entries['COUNT'].where}: a field with no values; leave it out, or count 1 at the least")
+        raise CloudError(
+            f"{entries['COUNT'].where}: the COUNT of a field must be at least 1, got 0; leave the field out"
+        )
     return number
 
 
 def _size(entries: dict[str, _Entry], file: str) -> tuple[int, int]:
-    """Return width and height, which agree with POINTS wherever that is given."""
+    """Return width and height; raise CloudError if they do not agree with POINTS."""
     found = {
         keyword: entries[keyword].whole(entries[keyword].single())
         for keyword in ("WIDTH", "HEIGHT", "POINTS")
@@ -174,12 +178,12 @@ def _size(entries: dict[str, _Entry], file: str) -> tuple[int, int]:
     }
     width = found.get("WIDTH", found.get("POINTS"))
     if width is None:
-        raise CloudError(f"{file}: the header has neither WIDTH nor POINTS; add how many points there are")
+        raise CloudError(f"{file}: the header has neither WIDTH nor POINTS; add the number of points")
     height = found.get("HEIGHT", 1)
     if found.get("POINTS", width * height) != width * height:
         raise CloudError(
-            f"{entries['POINTS'].where}: {found['POINTS']} points, and a width of {width} by a height of {height} makes"
-            f" {width * height}; correct one"
+            f"{entries['POINTS'].where}: POINTS must be WIDTH times HEIGHT, {width} * {height} = {width * height}, got"
+            f" {found['POINTS']}; correct one of them"
         )
     return width, height
 
@@ -195,7 +199,8 @@ def _origin(entries: dict[str, _Entry]) -> tuple[float, float, float]:
         values = []
     if len(values) != 7 or not all(math.isfinite(value) for value in values):
         raise CloudError(
-            f"{entry.where}: a VIEWPOINT has 7 finite numbers, position and quaternion; for none: 0 0 0 1 0 0 0"
+            f"{entry.where}: VIEWPOINT must have 7 finite numbers, position and quaternion; the default is"
+            " 0 0 0 1 0 0 0"
         )
     return values[0], values[1], values[2]
 
@@ -204,7 +209,7 @@ _Columns = dict[str, NDArray[np.generic]]
 
 
 def read_pcd(content: Content) -> PointCloud:
-    """Return the cloud in a PCD file; raises CloudError, with the line or byte, where it is malformed."""
+    """Return the cloud of a PCD file; raise CloudError, with the line or byte, if it is malformed."""
     header = read_header(content)
     columns = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}[header.encoding](content, header)
     return cloud_of_columns(columns, content.name, header.organised, header.origin)
@@ -271,15 +276,15 @@ def _unpacked(content: Content, header: PcdHeader) -> NDArray[np.uint8]:
     whole = sum(field.size for field in header.fields) * header.points
     if plain not in (whole, unpadded) or plain > packed * MAX_EXPANSION:
         raise CloudError(
-            f"{content.name}: byte {header.end + 4}: {packed} bytes that hold {plain} are declared, and the header"
-            f" wants {whole}; the file is damaged, write it again"
+            f"{content.name}: byte {header.end + 4}: the data declares {packed} packed bytes for {plain} plain ones,"
+            f" but the header needs {whole}; the file is damaged, write it again"
         )
     out = np.empty(plain, np.uint8)
     read, written = decompress(content.data[begin : begin + packed], out)
     if read != packed or written != plain:
         raise CloudError(
-            f"{content.name}: byte {begin + read}: the compressed data is damaged ({written} of {plain} bytes came"
-            " out); write the file again"
+            f"{content.name}: byte {begin + read}: the compressed data is damaged ({written} of {plain} bytes could be"
+            " unpacked); write the file again"
         )
     return out
 
@@ -290,6 +295,6 @@ def _is_known(field: Field) -> bool:
 
 def _too_short(content: Content, at: int, wanted: int, there: int) -> CloudError:
     return CloudError(
-        f"{content.name}: byte {at}: {wanted} bytes of data are declared, and {there} follow; correct the header's"
+        f"{content.name}: byte {at}: the header declares {wanted} bytes of data, but {there} follow; correct its"
         " counts, or get the whole file"
     )

@@ -1,8 +1,8 @@
-"""PLY, the Stanford polygon format, as clouds and as meshes: ascii, and binary of either order of bytes.
+"""Read PLY, the Stanford polygon format, as clouds and as meshes: ascii, and binary in either byte order.
 
-The format: G. Turk, "The PLY Polygon File Format" (1994). Of the element ``vertex`` the columns that
-:mod:`deixis.perception.clouds.columns` knows are read, of ``face`` the list of its corners; everything else is passed
-over. A file read as a cloud is checked whole all the same.
+The format: G. Turk, "The PLY Polygon File Format" (1994). The readers keep the columns of the element ``vertex`` that
+:mod:`deixis.perception.clouds.columns` knows, and the list of corners of the element ``face``; they skip everything
+else. A file that is read as a cloud is checked to its end too.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from deixis.perception.clouds.number_table import read_table
 from deixis.perception.errors import CloudError
 
 ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
-"""Formats, and the order of bytes as numpy writes it."""
+"""Byte order of each format, as a numpy character."""
 MAX_PROPERTIES = 1024
-"""How many properties an element has at the most."""
+"""Maximum number of properties of an element."""
 
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
@@ -36,7 +36,7 @@ _TYPES = {
 
 @dataclass(frozen=True)
 class Property:
-    """A number in every row of an element; or, where ``length`` is given, a list with a length of that type first."""
+    """Number in every row of an element; or a list, if ``length`` gives the type of the length before its values."""
 
     name: str
     dtype: np.dtype[np.generic]
@@ -44,13 +44,13 @@ class Property:
 
     @property
     def least_bytes(self) -> int:
-        """How many bytes it has in a binary row at the least."""
+        """Minimum number of bytes of the property in a binary row."""
         return (self.length or self.dtype).itemsize
 
 
 @dataclass(frozen=True)
 class Element:
-    """A table of ``rows`` rows, in each its properties one after the other."""
+    """Table of ``rows`` rows, each with the properties one after another."""
 
     name: str
     rows: int
@@ -58,12 +58,13 @@ class Element:
 
     @property
     def has_lists(self) -> bool:
+        """True if a property is a list."""
         return any(column.length is not None for column in self.properties)
 
 
 @dataclass(frozen=True)
 class PlyHeader:
-    """What a header declares, and ``end``, the byte at which the data begins."""
+    """Content of a header, and ``end``, the byte at which the data begins."""
 
     encoding: str
     elements: tuple[Element, ...]
@@ -71,14 +72,14 @@ class PlyHeader:
 
 
 def read_header(content: Content) -> PlyHeader:
-    """Return the header of a PLY file; raises CloudError, with the line, where it is none."""
+    """Return the header of a PLY file; raise CloudError, with the line, if it is malformed."""
     encoding = ""
     elements: list[Element] = []
     for number, line, end in content.header_lines():
         keyword, *words = line.split() or ["comment"]
         where = f"{content.name}:{number}"
         if number == 1 and line != "ply":
-            raise CloudError(f"{where}: a PLY file begins with the line 'ply'; this is another format")
+            raise CloudError(f"{where}: the first line of a PLY file must be 'ply'; this is another format")
         if keyword == "format":
             encoding = _encoding(words, encoding, where)
         elif keyword == "element":
@@ -91,55 +92,61 @@ def read_header(content: Content) -> PlyHeader:
             for element in elements:
                 if element.rows and not element.properties:
                     raise CloudError(
-                        f"{where}: the element '{shown(element.name)}' has no property; state one, or drop it"
+                        f"{where}: the element '{shown(element.name)}' has no property; add one, or take it out"
                     )
             return PlyHeader(encoding, tuple(elements), end)
         elif number > 1 and keyword not in ("comment", "obj_info"):
-            raise CloudError(f"{where}: '{shown(keyword)}' is no entry of a PLY header; take the line out")
+            raise CloudError(f"{where}: unknown entry '{shown(keyword)}' in a PLY header; take the line out")
     raise AssertionError("header_lines raises at the end of the file")
 
 
 def _encoding(words: list[str], before: str, where: str) -> str:
     if before or len(words) != 2 or words[0] not in ORDERS or words[1] != "1.0":
-        raise CloudError(f"{where}: give one format: {', '.join(ORDERS)}, and 1.0 after it")
+        raise CloudError(f"{where}: the format must be given once, as {', '.join(ORDERS)}, followed by 1.0")
     return words[0]
 
 
 def _element(words: list[str], before: list[Element], encoding: str, where: str) -> Element:
     if not encoding:
-        raise CloudError(f"{where}: an element before the format; put the line 'format ascii 1.0' or the like first")
+        raise CloudError(
+            f"{where}: the format must come before the first element; add a line such as 'format ascii 1.0'"
+        )
     if len(words) != 2 or not re.fullmatch(r"[0-9]{1,15}", words[1]):
-        raise CloudError(f"{where}: an element has a name and a whole number of rows: element vertex 8")
+        raise CloudError(f"{where}: an element must have a name and a number of rows, such as 'element vertex 8'")
     if any(element.name == words[0] for element in before):
-        raise CloudError(f"{where}: a second element '{shown(words[0])}'; rename one")
+        raise CloudError(f"{where}: the element '{shown(words[0])}' is declared twice; rename one")
     return Element(words[0], int(words[1]), ())
 
 
 def _with_property(words: list[str], elements: list[Element], order: str, where: str) -> Element:
-    """Return the last element with one property more."""
+    """Return the last element with one more property."""
     if not elements:
-        raise CloudError(f"{where}: a property before any element; put the line 'element …' before it")
+        raise CloudError(f"{where}: a property must follow an element; put a line 'element …' before it")
     types = [_TYPES.get(word) for word in (words[1:3] if words[:1] == ["list"] else words[:1])]
     if len(words) != (4 if words[:1] == ["list"] else 2) or None in types:
         raise CloudError(
-            f"{where}: a property has a type and a name ('float x'), or is a list ('list uchar int vertex_indices');"
-            f" types are {', '.join(sorted(_TYPES))}"
+            f"{where}: a property must have a type and a name ('float x'), or be a list ('list uchar int"
+            f" vertex_indices'); the types are {', '.join(sorted(_TYPES))}"
         )
     dtypes = [np.dtype(f"{order}{kind}") for kind in types]
     last = elements[-1]
     if any(column.name == words[-1] for column in last.properties):
-        raise CloudError(f"{where}: a second property '{shown(words[-1])}' of '{shown(last.name)}'; rename one")
+        raise CloudError(
+            f"{where}: the property '{shown(words[-1])}' of '{shown(last.name)}' is declared twice; rename one"
+        )
     if len(last.properties) == MAX_PROPERTIES:
-        raise CloudError(f"{where}: more than {MAX_PROPERTIES} properties of '{shown(last.name)}'; leave some out")
+        raise CloudError(
+            f"{where}: '{shown(last.name)}' must have at most {MAX_PROPERTIES} properties, got more; leave some out"
+        )
     if len(dtypes) == 2 and dtypes[0].kind == "f":
-        raise CloudError(f"{where}: the length of a list is a whole number; give a type such as uchar")
+        raise CloudError(f"{where}: the length of a list must be a whole number; give a type such as uchar")
     added = Property(words[-1], dtypes[-1], dtypes[0] if len(dtypes) == 2 else None)
     return Element(last.name, last.rows, (*last.properties, added))
 
 
 @dataclass(frozen=True, eq=False)
 class ElementTable:
-    """What was read of one element, and ``end``, where the next begins."""
+    """Columns and list that were read from one element, and ``end``, the byte at which the next element begins."""
 
     end: int
     columns: dict[str, NDArray[np.generic]] = field(default_factory=dict)
@@ -148,7 +155,7 @@ class ElementTable:
 
 
 def text_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """Return an element in ascii, one row a line; raises CloudError, with the line, where it is malformed."""
+    """Return an ascii element, one row per line; raise CloudError, with the line, if it is malformed."""
     properties = list(enumerate(element.properties))
     lists = [place for place, column in properties if column.length is not None]
     kept = next((place for place in lists if element.properties[place].name in wanted), -1)
@@ -162,7 +169,7 @@ def text_table(content: Content, at: int, element: Element, wanted: Set[str]) ->
 
 
 def binary_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """Return an element in binary; raises CloudError, with the byte, where the file is too short for it."""
+    """Return a binary element; raise CloudError, with the byte, if the file is too short for it."""
     least = element.rows * sum(column.least_bytes for column in element.properties)
     if at + least > len(content):
         raise _too_short(content, at, element, least)
@@ -194,7 +201,9 @@ def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str])
         lengths,
     )
     if status == BAD_LENGTH:
-        raise CloudError(f"{content.name}: byte {at}: {element.name} {row} has a list of negative length; correct it")
+        raise CloudError(
+            f"{content.name}: byte {at}: the length of a list is negative in {element.name} {row}; correct it"
+        )
     if status == TOO_SHORT:
         raise _too_short(content, at, element, 0, row)
     table = ElementTable(at)
@@ -211,7 +220,7 @@ def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str])
 def _gathered(
     data: NDArray[np.uint8], starts: NDArray[np.int64], lengths: NDArray[np.int64], dtype: np.dtype[np.generic]
 ) -> NDArray[np.number]:
-    """Return the values of all lists, one after the other, each list at its own place in the bytes."""
+    """Return the values of all lists, concatenated; list i begins at byte ``starts[i]``."""
     size = dtype.itemsize
     before = np.cumsum(lengths) - lengths
     at = np.repeat(starts - before * size, lengths) + np.arange(lengths.sum()) * size
@@ -220,10 +229,10 @@ def _gathered(
 
 
 def _too_short(content: Content, at: int, element: Element, least: int, row: int = 0) -> CloudError:
-    what = f"row {row} of" if row or not least else f"{least} bytes at the least are declared for"
+    what = f"in row {row} of" if row or not least else f"the header declares at least {least} bytes for"
     return CloudError(
-        f"{content.name}: byte {at}: the file ends within element '{shown(element.name)}' ({what} its {element.rows}"
-        f" rows), {len(content) - at} bytes on; correct the count, or get the whole file"
+        f"{content.name}: byte {at}: the file ends {len(content) - at} bytes later, within element"
+        f" '{shown(element.name)}' ({what} its {element.rows} rows); correct the count, or get the whole file"
     )
 
 
@@ -231,25 +240,25 @@ CORNERS = frozenset({"vertex_indices", "vertex_index"})
 
 
 def read_ply(content: Content) -> PointCloud:
-    """Return the vertices as a cloud; raises CloudError, with the line or byte, where the file is malformed."""
+    """Return the vertices as a cloud; raise CloudError, with the line or byte, if the file is malformed."""
     columns, _, _ = _body(content)
     return cloud_of_columns(columns, content.name)
 
 
 def read_ply_mesh(content: Content) -> Mesh:
-    """Return vertices and faces; raises CloudError where there are none, or where the file is malformed."""
+    """Return vertices and faces as a mesh; raise CloudError if the file has no faces or is malformed."""
     columns, lengths, corners = _body(content)
     missing = [name for name in POINT if name not in columns]
     if missing:
-        raise CloudError(f"{content.name}: there is no property '{missing[0]}' of vertex; a vertex has x, y and z")
+        raise CloudError(f"{content.name}: there is no property '{missing[0]}' of vertex; add x, y and z")
     faces, _ = fans(lengths, corners)
     if not len(faces):
-        raise CloudError(f"{content.name}: there is no face in this file; it is a cloud and no mesh")
+        raise CloudError(f"{content.name}: there is no face in this file; it is a cloud and not a mesh")
     return Mesh(np.stack([columns[name] for name in POINT], axis=1).astype(np.float64), faces)
 
 
 def _body(content: Content) -> tuple[Columns, NDArray[np.int64], NDArray[np.int64]]:
-    """Return the vertices' columns, how many corners each face has, and all their corners one after the other."""
+    """Return the columns of the vertices, the number of corners of each face, and all corners, concatenated."""
     header = read_header(content)
     read = text_table if header.encoding == "ascii" else binary_table
     tables: dict[str, ElementTable] = {}
@@ -267,13 +276,13 @@ def _body(content: Content) -> tuple[Columns, NDArray[np.int64], NDArray[np.int6
 
 
 def _corners(file: str, vertices: int, lengths: NDArray[np.int64], values: NDArray[np.number]) -> NDArray[np.int64]:
-    """Return the values as corners; raises CloudError where one is no vertex."""
+    """Return the values as corners; raise CloudError if one is not a vertex."""
     good = (values >= 0) & (values < vertices) & (values == np.floor(values))
     if not good.all():
         wrong = int(np.argmin(good))
         face = int(np.searchsorted(np.cumsum(lengths), wrong, side="right"))
         raise CloudError(
-            f"{file}: face {face} has vertex {values[wrong]:g} as a corner, and there are {vertices}, from 0 on;"
+            f"{file}: the corners of face {face} must be vertices from 0 to {vertices - 1}, got {values[wrong]:g};"
             " correct the face or the count"
         )
     return values.astype(np.int64)

@@ -1,10 +1,10 @@
-"""Compiled passage through tables: numbers in text, exact to the last bit, and binary rows of which columns are lists.
+"""Compiled parsers of tables: numbers in text, exact to the last bit, and binary rows with lists.
 
-Text is read at the speed of the memory that it comes from. Numbers of more than 19 digits and extreme ones are left to
-the caller, who is told where they stand. A decimal, w times a power of ten, becomes the nearest double by the algorithm
-of Eisel and Lemire (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and Experience 51, 2021):
-w is multiplied by the power of five in 128 bits, of which the upper ones settle the rounding. Where w and the power are
-small, one operation on exact doubles does (W. D. Clinger, "How to read floating point numbers accurately", 1990).
+The kernels return the places of numbers with more than 19 digits or an extreme exponent, and leave those to the caller.
+A decimal, w times a power of ten, becomes the nearest double by the algorithm of Eisel and Lemire (D. Lemire, "Number
+parsing at a gigabyte per second", Software: Practice and Experience 51, 2021): w is multiplied by the power of five in
+128 bits, and the upper bits decide the rounding. If w and the power are small, one operation on exact doubles suffices
+(W. D. Clinger, "How to read floating point numbers accurately", 1990).
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 DONE, NO_NUMBER, TOO_FEW, TOO_MANY, BAD_LENGTH, TOO_SHORT = range(6)
-"""What the walk through a table ended with."""
+"""Statuses with which the parsing of a table ends."""
 SKIPPED, LISTED, KEPT = -1, -2, -3
-"""Roles of columns: not wanted; a list, its length first, as in PLY; and the one list whose values are wanted."""
+"""Roles of columns: skipped; a list preceded by its length, as in PLY; and the one list whose values are wanted."""
 
 _NAN, _INF, _INFINITY = b"NAN", b"INF", b"INFINITY"
 _Bytes = NDArray[np.uint8]
 MIN_POWER, MAX_POWER = -100, 60
-"""Powers of ten within which a decimal is converted; doubles near their own limits are left to others."""
+"""Range of powers of ten in which the kernel converts decimals; the caller converts the others."""
 
 _EXACT = 2**53
 _TENS = 10.0 ** np.arange(23)
@@ -33,9 +33,9 @@ _MANTISSA_END = np.uint64(2**53)
 
 
 def _fives() -> NDArray[np.uint64]:
-    """Return powers of five, shifted to 128 bits of which the first is set: upper and lower half (powers, 2).
+    """Return powers of five, shifted so that the first of 128 bits is set: upper and lower half, shape (powers, 2).
 
-    They are rounded down, but the reciprocals down to -27, with which ties can occur, are rounded up.
+    They are rounded down, except the reciprocals down to -27, which allow ties and are rounded up.
     """
     halves = []
     for power in range(MIN_POWER, MAX_POWER + 1):
@@ -51,7 +51,7 @@ _FIVES = _fives()
 
 @njit(cache=True)
 def _product(a: np.uint64, b: np.uint64) -> tuple[np.uint64, np.uint64]:
-    """Return upper and lower half of a product in 128 bits."""
+    """Return the upper and lower half of a product in 128 bits."""
     a1, a0, b1, b0 = a >> _32, a & _LOW, b >> _32, b & _LOW
     low, left, right = a0 * b0, a1 * b0, a0 * b1
     middle = (low >> _32) + (left & _LOW) + (right & _LOW)
@@ -61,8 +61,10 @@ def _product(a: np.uint64, b: np.uint64) -> tuple[np.uint64, np.uint64]:
 
 @njit(cache=True, error_model="numpy")
 def nearest(w: np.uint64, power: int) -> float:
-    """Return the double nearest to w times 10 to the ``power``, which lies within MIN_POWER and MAX_POWER; even on a
-    tie."""
+    """Return the double nearest to w * 10**power, the even one on a tie.
+
+    ``power`` must lie within MIN_POWER and MAX_POWER.
+    """
     if w <= _MANTISSA_END and -22 <= power <= 22:
         ten = float(_TENS[abs(power)])
         return float(w) / ten if power < 0 else float(w) * ten
@@ -79,11 +81,11 @@ def nearest(w: np.uint64, power: int) -> float:
     upper = high >> np.uint64(63)
     dropped = upper + _TO_55_BITS
     mantissa = high >> dropped
-    # Just halfway between two doubles: to the even one. That needs a power of five that fits 64 bits.
+    # A value halfway between two doubles rounds to the even one; ties need a power of five that fits 64 bits.
     if low <= _ONE and -4 <= power <= 23 and mantissa & np.uint64(3) == _ONE and mantissa << dropped == high:
         mantissa -= _ONE
     mantissa = (mantissa + (mantissa & _ONE)) >> _ONE
-    # 217706 / 65536 is the logarithm of 10 to the base 2, near enough for every double's power.
+    # 217706 / 65536 approximates log2(10) well enough for the powers of all doubles.
     exponent = ((217706 * power) >> 16) + 63 + (1 if upper else 0) - shift
     return math.ldexp(float(mantissa), exponent - 52)
 
@@ -95,7 +97,7 @@ def _is_blank(byte: int) -> bool:
 
 @njit(cache=True)
 def _value_start(text: _Bytes, at: int) -> int:
-    """Return where the next value of this line begins, or -1 where there is none."""
+    """Return the byte at which the next value of this line begins, or -1 if it has no more values."""
     while at < len(text):
         if text[at] > 32:
             return at
@@ -114,7 +116,7 @@ def _token_end(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def row_start(text: _Bytes, at: int) -> int:
-    """Return where the next row begins: blank lines and those that begin with # or // are passed over."""
+    """Return the byte at which the next row begins, skipping blank lines and comments (# or //)."""
     while at < len(text):
         if _is_blank(text[at]):
             at += 1
@@ -128,7 +130,7 @@ def row_start(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def count_rows(text: _Bytes, at: int) -> int:
-    """Return how many rows there are from ``at`` on."""
+    """Return the number of rows from byte ``at`` on."""
     rows = 0
     at = row_start(text, at)
     while at < len(text):
@@ -141,7 +143,7 @@ def count_rows(text: _Bytes, at: int) -> int:
 
 @njit(cache=True)
 def _spells(text: _Bytes, at: int, word: bytes) -> bool:
-    """Return whether a word in capitals stands at ``at``, in any case."""
+    """Return True if the text at ``at`` spells ``word`` (in capitals), ignoring case."""
     if at + len(word) > len(text):
         return False
     same = True
@@ -152,7 +154,7 @@ def _spells(text: _Bytes, at: int, word: bytes) -> bool:
 
 @njit(cache=True)
 def _word_at(text: _Bytes, at: int) -> tuple[float, int]:
-    """Return value and end of nan, inf or infinity in any case; the end is ``at`` where it is none of them."""
+    """Return the value and end of nan, inf or infinity, ignoring case; for other text the end is ``at``."""
     if _spells(text, at, _NAN):
         return np.nan, at + len(_NAN)
     if _spells(text, at, _INFINITY):
@@ -164,7 +166,7 @@ def _word_at(text: _Bytes, at: int) -> tuple[float, int]:
 
 @njit(cache=True)
 def _exponent_at(text: _Bytes, at: int) -> tuple[int, int]:
-    """Return the number after an e, and its end; the end is ``at`` where there is none."""
+    """Return the integer after an e, and its end; the end is ``at`` if there is no integer."""
     begin = at
     negative = at < len(text) and text[at] == 45
     if at < len(text) and (text[at] == 45 or text[at] == 43):
@@ -179,7 +181,7 @@ def _exponent_at(text: _Bytes, at: int) -> tuple[int, int]:
 
 @njit(cache=True, error_model="numpy")
 def _number_at(text: _Bytes, at: int) -> tuple[float, int, bool]:
-    """Return a number's value, its end (``at`` where there is none) and whether the value is exact."""
+    """Return the value of a number, its end (``at`` if there is no number), and True if the value is exact."""
     begin = at
     negative = at < len(text) and text[at] == 45
     if at < len(text) and (text[at] == 45 or text[at] == 43):
@@ -222,12 +224,29 @@ def parse_rows(
     lengths: NDArray[np.int64],
     values: NDArray[np.float64],
 ) -> tuple[int, int, int, int, int, int]:
-    """Fill ``out`` (rows, wanted) from text, one row a line; ``roles`` says what to do with each column.
+    """Parse rows of text, one per line, into ``out``.
 
-    A role is the place of the column in ``out``, or SKIPPED, or LISTED or KEPT. Fills in addition ``inexact`` (k, 4),
-    row and column in ``out``, begin and end of values still to be rounded; ``lengths`` (rows,) of the list KEPT; and
-    its ``values``. Returns what went wrong, at which byte, row and column, and how many inexact ones and values there
-    are, which may be more than there was room for.
+    Parameters
+    ----------
+    text
+        Bytes of the file.
+    at
+        Byte at which the first row begins.
+    roles
+        Role of each column: its index in ``out``, or SKIPPED, LISTED or KEPT.
+    out
+        Filled with the values, shape (rows, wanted).
+    inexact
+        Filled with row, column, begin and end of the values that the caller must round, shape (k, 4).
+    lengths
+        Filled with the length of the list KEPT in each row, shape (rows,).
+    values
+        Filled with the values of the list KEPT.
+
+    Returns
+    -------
+    The status; the byte, row and column at which parsing ended; and the numbers of inexact values and of list values,
+    which may exceed the room for them.
     """
     many = filled = 0
     for row in range(len(out)):
@@ -238,7 +257,7 @@ def parse_rows(
             left = 1
             while left:
                 left -= 1
-                # One blank is what mostly stands here, and a look at it is quicker than a call.
+                # Values are usually one blank apart, and checking for it is faster than a call.
                 if at < len(text) and text[at] == 32:
                     at += 1
                 if at == len(text) or text[at] <= 32:
@@ -298,10 +317,30 @@ def walk_rows(
     starts: NDArray[np.int64],
     lengths: NDArray[np.int64],
 ) -> tuple[int, int, int]:
-    """Walk through binary rows; fill ``starts`` and ``lengths`` (rows, wanted) of each wanted value or list: the byte
-    at which it begins, and how many values it has.
+    """Find the wanted values and lists in binary rows.
 
-    ``length_sizes`` is 0 for a column that is no list. Returns what went wrong, at which byte and in which row.
+    Parameters
+    ----------
+    data
+        Bytes of the file.
+    at
+        Byte at which the first row begins.
+    sizes
+        Size of the values of each column, in bytes.
+    length_sizes
+        Size of the length of each list, in bytes; 0 for a column that is not a list.
+    signed
+        True for each column whose length is a signed integer.
+    big
+        True if the lengths are big-endian.
+    slots
+        Index of each column in ``starts`` and ``lengths``, or SKIPPED.
+    starts, lengths
+        Filled with the first byte and the number of values of each value or list, shape (rows, wanted).
+
+    Returns
+    -------
+    The status, and the byte and row at which the walk ended.
     """
     for row in range(len(starts)):
         for column in range(len(sizes)):

@@ -1,4 +1,4 @@
-"""Clouds written as PCD and PLY, with all that is known of each point."""
+"""Write clouds as PCD and PLY, with the colours, labels and normals of the points."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ _PLY_TYPES = {"<f4": "float", "|u1": "uchar", "<i4": "int"}
 
 
 def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
-    """Yield a PCD file, version 0.7, piece by piece; the origin is its viewpoint. An image keeps its rows and
-    columns."""
+    """Yield a PCD file, version 0.7, piece by piece.
+
+    The origin becomes its viewpoint; an organised cloud keeps its rows and columns.
+    """
     _check(encoding, PCD_ENCODINGS, "PCD")
     columns = _coordinates(cloud)
     if cloud.colours is not None:
@@ -44,7 +46,7 @@ def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
 
 
 def ply_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
-    """Yield a PLY file piece by piece, ``binary`` being little-endian; it has no place for origin, rows and columns."""
+    """Yield a PLY file piece by piece; ``binary`` is little-endian. PLY cannot store the origin, rows and columns."""
     _check(encoding, PLY_ENCODINGS, "PLY")
     columns = _coordinates(cloud)
     if cloud.colours is not None:
@@ -59,7 +61,7 @@ def ply_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
 
 def _check(encoding: str, known: tuple[str, ...], name: str) -> None:
     if encoding not in known:
-        raise CloudError(f"{name} is not written as '{encoding}'; it is as {', '.join(known)}")
+        raise CloudError(f"the encoding of {name} must be one of {', '.join(known)}, got '{encoding}'")
 
 
 def _coordinates(cloud: PointCloud) -> dict[str, NDArray[np.generic]]:
@@ -67,7 +69,7 @@ def _coordinates(cloud: PointCloud) -> dict[str, NDArray[np.generic]]:
 
 
 def _rest(cloud: PointCloud, normals: tuple[str, str, str]) -> dict[str, NDArray[np.generic]]:
-    """Return normals and labels, as columns."""
+    """Return the normals and labels as columns."""
     columns: dict[str, NDArray[np.generic]] = {}
     if cloud.normals is not None:
         columns |= dict(zip(normals, cloud.normals.T, strict=True))
@@ -77,7 +79,7 @@ def _rest(cloud: PointCloud, normals: tuple[str, str, str]) -> dict[str, NDArray
 
 
 def _table(columns: dict[str, NDArray[np.generic]]) -> NDArray[np.void]:
-    """Return columns as rows of bytes, little-endian."""
+    """Return columns as little-endian rows."""
     table = np.empty(len(columns["x"]), [(name, column.dtype.newbyteorder("<")) for name, column in columns.items()])
     for name, column in columns.items():
         table[name] = column
@@ -88,7 +90,7 @@ def _body(table: NDArray[np.void], encoding: str) -> Iterator[bytes]:
     if encoding == "binary":
         yield table.tobytes()
         return
-    # Nine digits are enough for any number of single precision to come back as it was.
+    # Nine digits reproduce any number of single precision exactly.
     names = table.dtype.names or ()
     line = " ".join("%.9g" if table.dtype[name].kind == "f" else "%d" for name in names) + "\n"
     for begin in range(0, len(table), _CHUNK):
@@ -100,7 +102,9 @@ def _compressed(table: NDArray[np.void]) -> Iterator[bytes]:
 
     plain = b"".join(table[name].tobytes() for name in table.dtype.names or ())
     if len(plain) >= 2**32:
-        raise CloudError(f"{len(plain)} bytes are too many for binary_compressed PCD; write it as binary")
+        raise CloudError(
+            f"binary_compressed PCD must have less than {2**32} bytes, got {len(plain)}; write it as binary"
+        )
     packed = compress(np.frombuffer(plain, np.uint8))
     yield np.array([len(packed), len(plain)], "<u4").tobytes()
     yield packed.tobytes()

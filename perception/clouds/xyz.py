@@ -1,7 +1,7 @@
-"""XYZ: plain text, a point a line, columns apart by blanks, commas or semicolons; # and // begin comments.
+"""Read XYZ: plain text, one point per line, columns separated by blanks, commas or semicolons; # and // begin comments.
 
-Three columns are x, y and z; a fourth, an intensity, is passed over; columns 4 to 6 of six are red, green and blue, as
-shares where none is above 1, else from 0 to 255. In a file called ``.xyzn`` they are a normal.
+Three columns are x, y and z. A fourth, an intensity, is skipped. Columns 4 to 6 of six are red, green and blue, from 0
+to 1 if none is above 1, else from 0 to 255; in a file with the suffix ``.xyzn`` they are a normal.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _SEPARATORS = b",;"
 
 
 def read_xyz(content: Content) -> PointCloud:
-    """Return the cloud in a text file; raises CloudError, with the line, where it is malformed or has no point."""
+    """Return the cloud of a text file; raise CloudError, with the line, if it is malformed or has no point."""
     from deixis.perception.clouds.table_kernels import row_start
 
     blank = content.data.copy()
@@ -35,11 +35,11 @@ def read_xyz(content: Content) -> PointCloud:
     words = re.split(r"[\s,;]+", line.decode("latin-1").strip())
     where = f"{content.name}:{content.line_of(start)}"
     if words == [""]:
-        raise CloudError(f"{where}: there is no point in this file; write one a line: x y z")
+        raise CloudError(f"{where}: there is no point in this file; write one point per line: x y z")
     if len(words) not in WIDTHS:
         raise CloudError(
-            f"{where}: {len(words)} columns beginning '{shown(words[0])}'; a line has x y z, x y z intensity, or x y z"
-            " red green blue"
+            f"{where}: a line must have x y z, x y z intensity, or x y z red green blue, got {len(words)} columns"
+            f" beginning '{shown(words[0])}'; correct it"
         )
     width = len(words)
     chosen = [0, 1, 2, 3, 4, 5] if width == 6 else [0, 1, 2]

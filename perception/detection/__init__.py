@@ -1,1 +1,1 @@
-"""Detection: the table of a cloud, and the things on it as segments with boxes."""
+"""Detect the table in a point cloud, and the objects on it, as segments with boxes."""

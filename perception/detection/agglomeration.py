@@ -1,4 +1,4 @@
-"""Compiled agglomeration of regions: average linkage over a graph of regions that meet, in a heap of its edges."""
+"""Compiled agglomeration of regions: average linkage over a graph of adjacent regions, with a heap of its edges."""
 
 from __future__ import annotations
 
@@ -6,23 +6,33 @@ import numpy as np
 from numba import njit
 
 _ARITY = 4
-"""Children of a place in the heap: four keys share a line of the cache."""
+"""Number of children of a node of the heap: four keys share a cache line."""
 
 
 @njit(cache=True, nogil=True)
 def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_delay, full_difference):  # type: ignore[no-untyped-def]
-    """Return for each of s regions the first of those that it was merged with, (s,).
+    """Merge adjacent regions, and return the lowest region of each region's group, shape (s,).
 
-    ``pairs`` (m, 2) are regions that meet, each pair once, the lesser first. The pair with the least delay is merged
-    as long as its mean ``evidence``, weighted by ``lengths`` (m,), is below ``limit``. The delay is the evidence, and
-    up to ``colour_delay`` more where the means of ``colours`` (s, 3), weighted by ``weights`` (s,), differ by up to
-    ``full_difference``. Ties go to the pair with the smaller numbers.
+    The pair with the smallest delay is merged as long as its mean evidence is below ``limit``. The delay is the
+    evidence, plus up to ``colour_delay`` for a difference of the mean colours; ``full_difference`` makes it whole. Ties
+    go to the pair with the lower numbers.
+
+    Parameters
+    ----------
+    pairs
+        Adjacent regions, shape (m, 2), each pair once, the lower number first.
+    lengths, evidence
+        Length of the boundary of each pair, and mean evidence for two objects along it, shape (m,).
+    colours, weights
+        Mean colour of each region, shape (s, 3), and its weight in a mean, shape (s,).
+    limit, colour_delay, full_difference
+        Thresholds of :class:`~deixis.perception.detection.settings.BoundarySettings`.
 
     Notes
     -----
-    The edges of a region are a doubly linked list. An edge e has two places in such lists, 2 e in that of its first
-    end and 2 e + 1 in that of its second. A merge visits the edges of both regions once, and each costs O(log m) in
-    the heap, which holds the edges with evidence below the limit, each once, with their keys beside them.
+    The edges of a region form a doubly linked list. An edge e has two nodes in such lists, 2 e for its first end and
+    2 e + 1 for its second. A merge visits the edges of both regions once, and each costs O(log m) in the heap. The heap
+    holds each edge with evidence below the limit once, with its key.
     """
     count, m = len(weights), len(pairs)
     ends, length, total = pairs.copy(), lengths.copy(), lengths * evidence
@@ -59,7 +69,7 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
         at = first[b]
         while at >= 0:
             following, edge, other = after[at], at // 2, ends[at // 2, 1 - at % 2]
-            if marked[other] == merges:  # both met it
+            if marked[other] == merges:  # adjacent to both
                 length[edge_to[other]] += length[edge]
                 total[edge_to[other]] += total[edge]
                 _unlink(4 * edge + 1 - at, other, first, after, before)
@@ -93,14 +103,14 @@ def merge_regions(pairs, lengths, evidence, colours, weights, limit, colour_dela
             elif place[edge] >= 0:
                 size = _remove(edge, heap, keys, place, size, ties)
             at = after[at]
-    for i in range(count):  # a region was merged with a lesser one
+    for i in range(count):  # a region was merged into one with a lower number
         root[i] = root[root[i]]
     return root
 
 
 @njit(cache=True, nogil=True)
 def _link(at, region, first, after, before):  # type: ignore[no-untyped-def]
-    """Put a place at the head of a region's list."""
+    """Insert a node at the head of the list of a region."""
     after[at], before[at] = first[region], -1
     if first[region] >= 0:
         before[first[region]] = at
@@ -109,7 +119,7 @@ def _link(at, region, first, after, before):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _unlink(at, region, first, after, before):  # type: ignore[no-untyped-def]
-    """Take a place out of its region's list."""
+    """Remove a node from the list of its region."""
     if before[at] >= 0:
         after[before[at]] = after[at]
     else:
@@ -120,7 +130,7 @@ def _unlink(at, region, first, after, before):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _unlike(means, a, b, full_difference):  # type: ignore[no-untyped-def]
-    """Return by how much two regions differ in colour, as a share of a full difference, 1 at most."""
+    """Return the difference in colour of two regions as a fraction of a full difference, at most 1."""
     x, y, z = means[a, 0] - means[b, 0], means[a, 1] - means[b, 1], means[a, 2] - means[b, 2]
     tint = x * x + y * y + z * z
     return 1.0 if tint >= full_difference * full_difference else np.sqrt(tint) / full_difference
@@ -128,13 +138,13 @@ def _unlike(means, a, b, full_difference):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _tie(e, ends, count):  # type: ignore[no-untyped-def]
-    """Return a number that orders edges by their lesser, then by their greater end."""
+    """Return a number that orders edges by their lower end, then by their higher end."""
     return min(ends[e, 0], ends[e, 1]) * count + max(ends[e, 0], ends[e, 1])
 
 
 @njit(cache=True, nogil=True)
 def _precedes(key, e, other_key, f, ties):  # type: ignore[no-untyped-def]
-    """Return whether an edge is merged before another."""
+    """Return True if edge ``e`` is merged before edge ``f``."""
     return key < other_key or (key == other_key and ties[e] < ties[f])
 
 
@@ -169,7 +179,7 @@ def _sink(i, heap, keys, place, size, ties):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _remove(e, heap, keys, place, size, ties):  # type: ignore[no-untyped-def]
-    """Take an edge out of the heap; return the new size."""
+    """Remove an edge from the heap, and return the new size."""
     i, last, key = place[e], heap[size - 1], keys[size - 1]
     place[e] = -1
     if last != e:

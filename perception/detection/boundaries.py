@@ -1,10 +1,11 @@
-"""Where patches meet, and how much speaks for two things there.
+"""Compute the evidence for two objects along the boundaries of patches, and merge patches into regions.
 
-Two surfaces of one thing mostly meet convexly, those of two things in a concave crease (Stein et al., Object
-partitioning using local convexity, CVPR 2014). Beside the crease two things are looked at: a step between surfaces
-that run alike, and a jump of depth. Colour says nothing here: most changes of colour are print on one thing.
+Two surfaces of one object mostly meet convexly, those of two objects in a concave crease (Stein et al., Object
+partitioning using local convexity, CVPR 2014). Two other cues are a step between parallel surfaces, and a jump in
+depth. Colour is not a cue, because most changes of colour are prints on one object.
 
-Regions of patches are then merged, the most alike first, until every boundary that is left speaks for two things.
+Regions of patches are then merged, those with the least evidence first, until the evidence along all remaining
+boundaries is high.
 """
 
 from __future__ import annotations
@@ -21,8 +22,12 @@ from deixis.perception.detection.surface import Surface
 
 @dataclass(frozen=True, eq=False)
 class Boundaries:
-    """m pairs of patches that meet: ``pairs`` (m, 2), the first the lesser, ``lengths`` (m,) in pairs of neighbours,
-    ``evidence`` (m,) for two things there, 0 nothing, 1 enough, and the share ``jumped`` (m,) where the depth jumps."""
+    """Boundaries of m pairs of adjacent patches.
+
+    ``pairs``, of shape (m, 2), has the lower number first. ``lengths`` (m,) counts pairs of neighbouring points.
+    ``evidence`` (m,) for two objects is 0 for none and 1 for enough. ``jumped`` (m,) is the fraction of each boundary
+    where the depth jumps.
+    """
 
     pairs: NDArray[np.int64]
     lengths: NDArray[np.float64]
@@ -31,7 +36,7 @@ class Boundaries:
 
 
 def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettings) -> Boundaries:
-    """Return where patches of a surface meet, and what speaks for two things there."""
+    """Return the boundaries between the patches of a surface, with their evidence for two objects."""
     from deixis.perception.detection.kernels import meetings
 
     limits = settings.boundaries
@@ -49,8 +54,7 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
 
 
 def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the angle (m,) by which the surfaces of pairs (m, 2) are bent towards each other; 0 where they bend
-    away."""
+    """Return the concave angle between the patches of each pair in radians, shape (m,); 0 where they meet convexly."""
     i, j = pairs.T
     cosine = (patches.normals[i] * patches.normals[j]).sum(axis=1)
     opening = ((patches.normals[i] - patches.normals[j]) * (patches.middles[i] - patches.middles[j])).sum(axis=1)
@@ -58,10 +62,10 @@ def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float6
 
 
 def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float) -> NDArray[np.float64]:
-    """Return how far (m,) one surface of each pair lies above the other along their common normal; 0 on a sphere.
+    """Return the distance of the two patches of each pair along their mean normal in metres, shape (m,).
 
-    Where two planes meet at an angle that is 0 only if both middles are as far from the edge; ``off_edge_share`` is
-    the difference of the two distances by their sum that is allowed for.
+    It is 0 on a sphere. For two planes that meet at an angle, it is 0 only if both middles are equally far from the
+    edge; ``off_edge_share`` is the tolerated difference of these distances, relative to their sum.
     """
     i, j = pairs.T
     normal = patches.normals[i] + patches.normals[j]
@@ -76,13 +80,13 @@ def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float)
 def agglomerated(
     meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], settings: BoundarySettings
 ) -> NDArray[np.int32]:
-    """Return the region (s,) that each of s patches ends in, numbered from 0 in the order of their first patches.
+    """Return the region of each of s patches, shape (s,), numbered from 0 in the order of their first patches.
 
-    The evidence between two regions is the mean over their common boundary (average linkage). Those with the least are
-    merged, as long as that is below ``merge_limit``; ties go to the pair with the smaller numbers. ``colours`` (s, 3),
-    with what each counts for in a mean, ``weights`` (s,), only decide what is merged first: where a knife ends on the
-    rim of a plate nothing but colour tells the two apart, and once the rim is whole, all else where the knife crosses
-    it does. What is of several colours is merged all the same, as what is printed on a box is.
+    The evidence between two regions is the mean over their common boundary (average linkage). The pair with the least
+    evidence is merged as long as it is below ``merge_limit``; ties go to the pair with the lower numbers. ``colours``
+    (s, 3), with their ``weights`` (s,) in a mean, only change the order of the merges. Where a knife ends on the rim of
+    a plate, only the colour separates the two; once the rim is whole, other evidence along the knife separates them.
+    Regions of several colours are still merged, such as the prints on a box.
 
     >>> chain = Boundaries(np.array([[0, 1], [1, 2]]), np.ones(2), np.array([0.1, 0.9]), np.zeros(2))
     >>> agglomerated(chain, np.zeros((3, 3)), np.ones(3), BoundarySettings(merge_limit=0.5)).tolist()

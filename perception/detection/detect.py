@@ -1,4 +1,4 @@
-"""Detection, from a cloud to the things on its table: the steps in their order."""
+"""Detect the objects on a table in a point cloud: the steps in their order."""
 
 from __future__ import annotations
 
@@ -27,19 +27,36 @@ from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
 BACKGROUND = -1
-"""The label of a point that belongs to no thing."""
+"""Label of a point that does not belong to an object."""
 
 
 @dataclass(frozen=True, eq=False)
 class Detection:
-    """What is on a table of ``cloud``. ``frame`` takes points of the cloud's frame to the table's: z up from its plane,
-    x to the viewer's right, y away from the viewer.
+    """Objects on a table in a cloud of n points.
 
-    ``labels`` (n,) has for each point of the cloud, in its order, the number k of its thing, -1 for none. Thing k has
-    ``boxes[k]``, least and greatest corner in the table's frame, shape (2, 3), ``oriented[k]``, and the id
-    ``o{k + 1}``; things are numbered from left to right, and from near to far where they are equally far left.
-    ``table`` is None where no table was found, ``shows`` says what the cloud shows, and ``notes`` what was not as one
-    would expect. ``upright`` is false of one object alone, unless it was told which way is up: no table shows it.
+    Object k has the id ``o{k + 1}``; objects are numbered from left to right, and from near to far for equal left ends.
+
+    Parameters
+    ----------
+    cloud
+        The cloud in which the objects were detected.
+    table
+        Plane of the table, or None if none was found.
+    frame
+        Transform (4, 4) from the frame of the cloud to that of the table: z up from its plane, x to the viewer's right,
+        y away from the viewer.
+    labels
+        Index k of the object of each point, shape (n,); -1 for none.
+    boxes
+        Lower and upper corner of each object in the frame of the table, in metres, shape (k, 2, 3).
+    oriented
+        Smallest box around each object that is turned about the vertical.
+    notes
+        Warnings: what was left out, and what is unusual.
+    shows
+        Kind of the cloud.
+    upright
+        True if the vertical is known: from a table, or given in the settings.
     """
 
     cloud: PointCloud
@@ -53,7 +70,7 @@ class Detection:
     upright: bool = True
 
     def scene(self, viewpoint: str = "chair", file: str = "<cloud>") -> Scene:
-        """Return the things as a scene, each with its points in the table's frame; ``file`` is what errors name."""
+        """Return the objects as a scene, with their points in the frame of the table; errors name ``file``."""
         boxes = zip(self.boxes.round(6).tolist(), self.oriented, strict=True)
         things = [
             PerceivedObject(
@@ -70,11 +87,24 @@ class Detection:
 
 
 def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
-    """Return a table of a cloud and the things on it; labels that a cloud bears are not looked at.
+    """Detect a table in a cloud and the objects on it.
 
-    Raises CloudError for a cloud without one finite point, or so wide or narrow that it is not in metres. A cloud
-    without a table, and a table with nothing on it, give an answer that says so; so does one with another table.
+    A cloud without a table, an empty table, and further tables are reported in the notes of the detection.
 
+    Parameters
+    ----------
+    cloud
+        Points in metres; its labels are ignored.
+    settings
+        Options and thresholds; the default ones if None.
+
+    Raises
+    ------
+    CloudError
+        If the cloud has no finite point, or is so large or small that it cannot be in metres.
+
+    Examples
+    --------
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.01, 0.5:1.5:0.01])
     >>> table = np.stack([x, y, np.full(x.shape, -0.7)], axis=1)
     >>> found = detect(PointCloud(table.astype(np.float32)))
@@ -84,19 +114,19 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     settings = settings or DetectionSettings()
     kept = np.flatnonzero(cloud.finite)
     if not len(kept):
-        raise CloudError("a cloud without one finite point shows nothing; is its depth image empty?")
+        raise CloudError("a cloud without one finite point cannot be used; check the depth image")
     points = cloud.points[kept].astype(np.float64)
     few = points[:: max(1, len(points) // 10_000)]
     spread = float(np.median(np.linalg.norm(few - np.median(few, axis=0), axis=1)))
     if spread > settings.scale.max_median_radius:
         raise CloudError(
             f"half of the points are more than {spread:.0f} m from the middle, too far for a table;"
-            " coordinates are metres: divide millimetres by 1000, centimetres by 100; a depth image has a depth_scale"
+            " coordinates must be metres: divide millimetres by 1000, or set the depth_scale of a depth image"
         )
     if len(few) > 100 and spread < settings.scale.min_median_radius:
         raise CloudError(
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
-            " coordinates are metres: is the unit, or the depth_scale of the intrinsics, another?"
+            " coordinates must be metres: check the unit, or the depth_scale of the intrinsics"
         )
     view = View(points, kept, cloud.organised, outlook_of(cloud, settings))
     if len(points) >= settings.least_points and is_small(points, settings):
@@ -107,7 +137,7 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         return replace(nothing, shows=Shows.TABLE) if len(seen) == 1 else nothing
     found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
     alone = settings.table == 1 and len(points) >= settings.least_points
-    if alone and not _bears_a_thing(found, seen, settings) and is_one_object(points, settings, len(seen)):
+    if alone and not _has_objects(found, seen, settings) and is_one_object(points, settings, len(seen)):
         return _alone(cloud, view, settings)
     if found is None:
         return _nothing(cloud, view, settings, _no_table(settings, 0))
@@ -116,9 +146,12 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     return found if settings.table == 1 else replace(found, shows=Shows.TABLES)
 
 
-def _bears_a_thing(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:
-    """Return whether something stands on a table. A face of an object is shorter than a table; what only adjoins its
-    outline may be another side of the object, and what is all around it, the object's rim."""
+def _has_objects(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:
+    """Return True if an object stands on the found table, so that it is not a face of a single object.
+
+    A face of an object is shorter than a table. Points near the outline of a face may be another side of the object,
+    and points all around it the rim of the object.
+    """
     if found is None:
         return False
     table = seen[0]
@@ -142,16 +175,16 @@ def _no_table(settings: DetectionSettings, found: int) -> str:
     if found:
         return f"there is no table {settings.table}: {'one table was' if found == 1 else f'{found} tables were'} found"
     if settings.up is not None:
-        return "no table was found: no large surface in view is level, within 45 degrees of what was told to be up"
+        return "no table was found: no large surface in view is level, within 45 degrees of the given up direction"
     return "no table was found: no large level surface is in view"
 
 
 def _more(number: int) -> str:
-    return f"another table is in view, on which something stands: perceive --table {number + 1} looks at that one"
+    return f"another table with objects is in view; use perceive --table {number + 1} to detect them"
 
 
 def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings) -> Detection | None:
-    """Return the things on one table, among the points that are of no table before it; None if it is no table."""
+    """Return the objects on one table, or None if the plane is not a table."""
     from deixis.perception.detection.kernels import in_frame as in_table_frame
 
     table, neighbours = _neighbours(table, settings)
@@ -165,9 +198,9 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     rising = raised(view.heights, view.distance, neighbours, settings)
     pieces = _pieces(view, table, rising, neighbours, cloud.colours, settings)
     found = pieces.things
-    large = _too_large(view, settings)
+    large = _large_note(view, settings)
     seen_so = missing_lines(table.view)
-    if not seen_so:  # lines without depth are no holes
+    if not seen_so:  # lines without depth are not holes
         on = pieces.of >= 0
         on[top] = True
         seen_so = holes(table.view, on, settings.notes)
@@ -176,8 +209,8 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     if not found.max(initial=BACKGROUND) >= 0:
         if not large and max(_sides(view)) < settings.scale.min_bare_table_length:
             return None
-        wall = _a_wall(view, settings)
-        why = ("nothing is on the table", *(large or _too_small(view, settings)), *(wall or missed))
+        wall = _wall_note(view, settings)
+        why = ("nothing is on the table", *(large or _small_note(view, settings)), *(wall or missed))
         shows = Shows.ROOM if large or wall or _is_floor(view, settings) else Shows.TABLE
         return Detection(cloud, table.plane, view.frame, labels, np.zeros((0, 2, 3)), (), why, shows)
     there = np.flatnonzero(found >= 0)
@@ -192,14 +225,14 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     labels[kept] = np.append(np.argsort(order), BACKGROUND)[found]
     oriented = tuple(oriented_box(members[k], settings.outlines, rims[k]) for k in order)
     sizes = odd_sizes((boxes[:, 1] - boxes[:, 0]).max(axis=1), settings.notes)
-    little = _too_little(view, found, settings)
-    notes = (*(large or little or _too_small(view, settings)), *sizes, *missed)
+    little = _sparse_note(view, found, settings)
+    notes = (*(large or little or _small_note(view, settings)), *sizes, *missed)
     shows = Shows.ROOM if large or little or _is_floor(view, settings) else Shows.TABLE
     return Detection(cloud, table.plane, view.frame, labels, boxes[order], oriented, notes, shows)
 
 
 def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTable, NDArray[np.int32]]:
-    """Return the neighbours of all points around a table (n, 8), and the table, as seen from where it can be seen."""
+    """Return the table with a plausible viewpoint, and the neighbours of all points around it, shape (n, 8)."""
     view = table.view
     if view.organised is not None:
         return table, neighbour_table(view.points, view.places, view.organised, settings.surface)
@@ -216,9 +249,10 @@ def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTa
 
 
 def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detection:
-    """Return one thing, all that is seen: upright as told, else as the image, else as the cloud.
+    """Return the whole cloud as one object.
 
-    Only what was told is relied on: else which way up it stands is not known.
+    Its up direction is the given one, else that of the image, else the z axis of the cloud; only a given one counts as
+    known.
     """
     points, outlook = view.points, believed(view.outlook, view.points, settings)
     ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
@@ -231,38 +265,37 @@ def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detect
     labels[view.places] = 0
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
-    notes = [f"no table was found: all there is, {sides} cm, was taken for one thing seen alone"]
+    notes = [f"no table was found: the whole cloud, {sides} cm, was taken for a single object"]
     told = outlook.upwards is not None
     if not told:
-        notes.append("which way up it stands is not known: --up tells it")
+        notes.append("its upright direction is unknown; give it with --up")
     oriented = (oriented_box(thing, settings.outlines),)
     return Detection(cloud, None, frame, labels, box[None], oriented, tuple(notes), Shows.OBJECT, told)
 
 
 @dataclass(frozen=True, eq=False)
 class _TableView:
-    """The finite points in the table's frame, how far from the sensor they are and where it stands, and the table's."""
+    """Finite points in the frame of the table, with their heights and distances from the sensor at ``eye``."""
 
     frame: NDArray[np.float64]  # (4, 4)
     points: NDArray[np.float64]  # (n, 3)
     heights: NDArray[np.float64]  # (n,)
     distance: NDArray[np.float64]  # (n,)
     eye: NDArray[np.float64]  # (3,)
-    top: NDArray[np.intp]  # (m,) the points of the connected piece that is the table
+    top: NDArray[np.intp]  # (m,) points of the connected part that is the table
 
 
-def _too_small(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """Return a note where the table is too small for one."""
+def _small_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
+    """Return a note if the table is implausibly small."""
     across, deep = _sides(view)
     if max(across, deep) >= settings.scale.min_table_length:
         return ()
     size = f"{100 * across:.0f} by {100 * deep:.0f} cm"
-    return (f"what was taken for the table is only {size}: it may be a part of a thing seen alone",)
+    return (f"the detected table is only {size}; it may be a part of a single object",)
 
 
-def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """Return a note where no table is so large: what is level with it is looked at, as points far apart are no one
-    piece."""
+def _large_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
+    """Return a note if the points level with the table reach implausibly far; they need not be connected."""
     level = np.flatnonzero(np.abs(view.heights) < settings.plane.table_band)
     level = level[:: max(1, len(level) // 10_000)]
     if not len(level):
@@ -270,40 +303,38 @@ def _too_large(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]
     across, deep = np.subtract(*np.percentile(view.points[level, :2], (95, 5), axis=0)).tolist()
     if max(across, deep) <= settings.scale.max_table_length:
         return ()
-    return (
-        f"what was taken for the table is {across:.0f} by {deep:.0f} m: coordinates are metres; is the unit another?",
-    )
+    return (f"the detected table is {across:.0f} by {deep:.0f} m; coordinates must be metres: check the unit",)
 
 
 def _sides(view: _TableView) -> tuple[float, float]:
-    """Return how far the table reaches across and away, in metres."""
+    """Return the width and depth of the table as the viewer sees it, in metres."""
     few = view.top[:: max(1, len(view.top) // 10_000)]
     across, deep = np.ptp(view.points[few, :2], axis=0).tolist() if len(few) else (0.0, 0.0)
     return across, deep
 
 
-def _a_wall(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
-    """Return a note where more is far above the table than on it."""
+def _wall_note(view: _TableView, settings: DetectionSettings) -> tuple[str, ...]:
+    """Return a note if more points are far above the table than on it."""
     above = (view.heights > settings.reach).sum()
     if above <= (np.abs(view.heights) < settings.plane.table_band).sum():
         return ()
     rise = f"{100 * settings.reach:.0f} cm"
-    return (f"most of what is seen is more than {rise} above what was taken for the table: it may be a wall",)
+    return (f"most points are more than {rise} above the detected table; it may be a wall",)
 
 
-def _too_little(view: _TableView, found: NDArray[np.int32], settings: DetectionSettings) -> tuple[str, ...]:
-    """Return a note where hardly anything of what is seen is on the table, or of a thing (n,) that stands there."""
+def _sparse_note(view: _TableView, found: NDArray[np.int32], settings: DetectionSettings) -> tuple[str, ...]:
+    """Return a note if few points are on the table or on its objects (n,)."""
     share = (len(view.top) + (found >= 0).sum()) / len(found)
     if share >= settings.scale.min_table_share:
         return ()
     return (
-        f"only {share:.0%} of what is seen is on what was taken for the table or stands there: it may be a part of a"
-        " wall, a floor or a person",
+        f"only {share:.0%} of the points are on the detected table or its objects; it may be a part of a wall, a floor"
+        " or a person",
     )
 
 
 def _is_floor(view: _TableView, settings: DetectionSettings) -> bool:
-    """Return whether what was taken for the table lies so far below the sensor, and is so long, as floors are."""
+    """Return True if the detected table is as far below the sensor and as long as a floor."""
     limits = settings.scale
     return bool(view.eye[2] > limits.min_floor_drop and max(_sides(view)) > limits.min_floor_length)
 
@@ -316,8 +347,7 @@ def _pieces(
     colours: NDArray[np.uint8] | None,
     settings: DetectionSettings,
 ) -> Pieces:
-    """Return the pieces of surface above the table, and which of them are things; ``colours`` are those of the whole
-    cloud."""
+    """Return the pieces of surface above the table with their fates; ``colours`` are those of the whole cloud."""
     from deixis.perception.detection.kernels import renumbered
 
     of = np.full(len(view.points), BACKGROUND, np.int32)
@@ -346,7 +376,7 @@ def _pieces(
 
 
 def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]:
-    """Return the number of its thing for each point of the surface (n,), from 0: supervoxels, merged, then joined."""
+    """Return the object of each point of a surface, shape (n,), from 0: supervoxels are merged, then joined."""
     patches = supervoxels(surface, settings.supervoxels)
     meeting = boundaries(surface, patches, settings)
     regions = agglomerated(meeting, patches.tints, patches.weights, settings.boundaries)

@@ -1,8 +1,8 @@
-"""What rises above the table: heights averaged over neighbours, and two thresholds that follow the sensor's noise.
+"""Find the points above the table, by heights averaged over neighbours and two thresholds that follow the noise.
 
-A fork's tines are a few millimetres high, a depth camera's noise at one metre is half of that for one pixel, and far
-less for the mean of its neighbours. As in edge detection (Canny 1986), points above the upper threshold are things,
-and so is whatever above the lower one is connected with them.
+The tines of a fork are a few millimetres high. The noise of a depth camera at one metre is half of that for one pixel,
+and far less for a mean over neighbours. As in edge detection (Canny 1986), points above the upper threshold count, and
+so do connected points above the lower one.
 """
 
 from __future__ import annotations
@@ -17,8 +17,11 @@ from deixis.perception.detection.settings import DetectionSettings, HeightSettin
 
 @dataclass(frozen=True, eq=False)
 class Raised:
-    """``above`` (n,): which points are things; ``noise`` the standard deviation of one height, ``averaged`` that of a
-    mean over neighbours, both in metres at one metre from the sensor."""
+    """Points above the table, and the noise of their heights.
+
+    ``above`` is a mask of shape (n,). ``noise`` is the standard deviation of one height, ``averaged`` that of a mean
+    over neighbours, both in metres at one metre from the sensor.
+    """
 
     above: NDArray[np.bool_]
     noise: float
@@ -26,7 +29,7 @@ class Raised:
     settings: HeightSettings
 
     def upper(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the height (n,) that is surely no noise, at distances (n,) from the sensor."""
+        """Return the height in metres that exceeds the noise, shape (n,), at distances (n,) from the sensor."""
         nearest = self.settings.min_noise_distance
         return self.settings.upper_threshold * self.averaged * np.maximum(distance, nearest) ** 2
 
@@ -37,10 +40,10 @@ def raised(
     neighbours: NDArray[np.int32],
     settings: DetectionSettings,
 ) -> Raised:
-    """Return which of the points are above the table, by their heights (n,) and their distances (n,) from the sensor.
+    """Return the points above the table, from their heights (n,) and distances from the sensor (n,), in metres.
 
-    A sensor's noise grows with the square of the distance (Khoshelham and Elberink 2012); how large it is, is measured
-    on the table itself.
+    The noise of a depth sensor grows with the square of the distance (Khoshelham and Elberink 2012); its size is
+    measured on the table.
     """
     from deixis.perception.detection.kernels import averaged, grown
 
@@ -57,10 +60,9 @@ def raised(
 
 
 def _noise(heights: NDArray[np.float64], growth: NDArray[np.float64], limits: HeightSettings) -> float:
-    """Return the standard deviation of the table's heights at one metre, by the median, from the points below the
-    plane.
+    """Return the standard deviation of the heights of the table at one metre, by the median.
 
-    Those above are no use: what lies on the table is among them.
+    It uses only the points below the plane, because objects are among those above.
     """
     scaled = heights / growth
     below = -scaled[(scaled < 0) & (scaled > -limits.noise_band)]

@@ -1,7 +1,7 @@
-"""What belongs together although its surfaces do not meet convexly: hollow, draped and partly hidden things.
+"""Join parts of one object whose surfaces do not meet convexly: hollow, draped and partly hidden objects.
 
-A plate has a well, a cup an inside, a napkin hangs over an edge, a knife hides the middle of the plate that it lies on,
-and from above the bowl of a glass hides its stem. Each of these has a rule; a rule gives pairs of parts that are one.
+A plate has a well, a cup has an inside, a napkin hangs over an edge, a knife hides the middle of the plate under it,
+and the bowl of a glass hides its stem from above. Each case has a rule that returns pairs of parts of one object.
 """
 
 from __future__ import annotations
@@ -25,12 +25,14 @@ from deixis.perception.detection.parts import (
 )
 
 Rule = Callable[[Parts, int | None], Pairs]
-"""Gives the pairs of parts that are one, among all or among those with one part. Whether two parts are one depends on
-these two alone."""
+"""Function that returns the pairs of parts of one object, among all pairs or those with a given part.
+
+The decision on a pair depends on its two parts only.
+"""
 
 
 def whole_things(parts: Parts) -> Parts:
-    """Join parts until they are things, rule by rule; return them."""
+    """Join parts into objects, rule by rule, and return them."""
     while len(pairs := fragments(parts)):
         parts.join_all(pairs.first, pairs.second)
     parts.keep_largest(parts.settings.max_parts)
@@ -46,7 +48,7 @@ def whole_things(parts: Parts) -> Parts:
 
 
 def _apply(rule: Rule, parts: Parts) -> None:
-    """Join the pair that meets longest, of those that a rule gives, as long as there is one."""
+    """Join the pair with the longest boundary of those that a rule returns, until the rule returns none."""
     heap: list[tuple[float, int, int, int, int]] = []
 
     def push(pairs: Pairs) -> None:
@@ -62,7 +64,7 @@ def _apply(rule: Rule, parts: Parts) -> None:
 
 
 def fragments(parts: Parts) -> Pairs:
-    """Return pieces that are too small, each with the part that it meets longest and most smoothly."""
+    """Return the parts that are too small, each with the part of its longest and smoothest boundary."""
     pairs = parts.meetings()
     pull = pairs.met[:, 1] * (2.0 - pairs.evidence)
     small = (parts.measures.areas[pairs.first] < parts.settings.fragment_area) & (pull > 0)
@@ -74,16 +76,14 @@ def fragments(parts: Parts) -> Pairs:
 
 
 def of_one_colour(parts: Parts, part: int | None = None) -> Pairs:
-    """Return parts of one colour that meet without much of a crease: the head and the handle of a fork, a draped
-    napkin."""
+    """Return pairs of one colour without a strong crease: the head and handle of a fork, a draped napkin."""
     pairs = parts.meetings(part)
     smooth = pairs.evidence < parts.settings.same_colour_evidence
     return pairs.where(smooth & (np.abs(pairs.rise) < parts.settings.resting_rise) & _alike(parts, pairs))
 
 
 def enclosed(parts: Parts, part: int | None = None) -> Pairs:
-    """Return a part within the outline of one that is above it where they meet, both of one colour: the well of a
-    plate."""
+    """Return parts within the outline of a higher part of the same colour: the well of a plate in its rim."""
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     low = (pairs.rise < limits.well_rise) & ~_differ(parts, pairs)
     low &= seen.tops[pairs.first] <= seen.tops[pairs.second] + limits.well_top_tolerance
@@ -92,7 +92,7 @@ def enclosed(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def insides(parts: Parts, part: int | None = None) -> Pairs:
-    """Return the inside of a cup, with its outside: it is curved inwards, and its rim is as high."""
+    """Return the inside and outside of cups: the inside is concave, and both rims are equally high."""
     seen, pairs = parts.measures, parts.meetings(part)
     bent = seen.bulge < -parts.settings.min_cavity_bend
     deep = seen.tops - seen.bottoms > parts.settings.min_cavity_depth
@@ -101,7 +101,7 @@ def insides(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def bridged(parts: Parts) -> Pairs:
-    """Return two parts of one surface, parted by something narrow that lies on both."""
+    """Return pairs of parts of one surface that a narrow object on both divides."""
     pairs, over = _below_one(parts)
     low, high = parts.measures.low, parts.measures.high
     gaps = np.maximum(low[pairs.first] - high[pairs.second], low[pairs.second] - high[pairs.first]).clip(0.0)
@@ -110,15 +110,14 @@ def bridged(parts: Parts) -> Pairs:
 
 
 def round_rims(parts: Parts) -> Pairs:
-    """Return two pieces of a rim that is round, parted by something that lies on both: a plate, and a napkin across
-    it."""
+    """Return pairs of parts of one round rim that an object on both divides, such as a napkin across a plate."""
     pairs, _ = _below_one(parts)
     pairs = pairs.where(_alike(parts, pairs) & _level(parts, pairs))
     return _chosen(pairs, lambda a, b: parts.once(roundness, a, b) > parts.settings.min_rim_share)
 
 
 def _below_one(parts: Parts) -> tuple[Pairs, dict[tuple[int, int], list[int]]]:
-    """Return pairs of parts, the lesser first, on which one and the same thing lies, and the things that do."""
+    """Return pairs of parts with a common part on top, the lower number first, and these parts for each pair."""
     met = parts.meetings()
     met = met.where(met.rise < -parts.settings.covering_rise)
     below: dict[int, list[int]] = {}
@@ -133,7 +132,7 @@ def _below_one(parts: Parts) -> tuple[Pairs, dict[tuple[int, int], list[int]]]:
 
 
 def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
-    """Return something high above a flat foot of its colour that is no wider: a glass, its stem hidden or not."""
+    """Return high parts above a flat foot of the same colour that is not wider: glasses, with a visible stem or not."""
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     high = seen.middles > 2 * limits.foot_height
     foot = (seen.middles < limits.foot_height) & (seen.bottoms < limits.foot_height / 2)
@@ -144,7 +143,7 @@ def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def necks(parts: Parts, part: int | None = None) -> Pairs:
-    """Return something narrow right on the middle of what is much higher than wide: the neck of a bottle, its cap."""
+    """Return narrow parts on the middle of tall, slender ones: the neck or the cap of a bottle."""
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     neck, bottle, widths = pairs.first, pairs.second, seen.widths
     narrow = widths[neck] < limits.attachment_ratio * widths[bottle]
@@ -156,15 +155,14 @@ def necks(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def handles(parts: Parts, part: int | None = None) -> Pairs:
-    """Return something small that stands on nothing, and the larger thing of its colour and height beside which it
-    is."""
+    """Return small parts that do not stand on anything, with the larger part of their colour and height beside them."""
     limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
     handle, body, widths = pairs.first, pairs.second, seen.widths
     small = widths[handle] < limits.attachment_ratio * widths[body]
     small &= seen.areas[handle] < limits.attachment_ratio * seen.areas[body]
     clear = seen.bottoms[handle] > seen.bottoms[body] + limits.handle_clearance
     as_high = seen.tops[handle] < seen.tops[body] + limits.level_tolerance
-    # Of a fragment all may be within the outline: the body may be seen around it.
+    # A fragment may be entirely within the outline, because the body may be visible around it.
     most = np.where(seen.areas < limits.fragment_area, 1.0, limits.max_handle_inside_share)
 
     def belong(handle: int, body: int) -> bool:
@@ -175,7 +173,7 @@ def handles(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def end_to_end(parts: Parts, part: int | None = None) -> Pairs:
-    """Return two low pieces of one colour in a line, together long and narrow: the head and the handle of a spoon."""
+    """Return two low parts of one colour in a line that are long and narrow together: head and handle of a spoon."""
     limits, pairs = parts.settings, parts.near(parts.settings.max_cutlery_gap, part)
     low = parts.measures.tops < limits.max_cutlery_height
     ordered = pairs.first < pairs.second
@@ -188,17 +186,21 @@ def end_to_end(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def _lie_as_one(parts: Parts, a: int, b: int) -> bool:
-    """Return whether two pieces in a line can be one rigid thing for how high they lie: both come down to what it
-    lies on, or it leans and its slope goes on from the one to the other. Cutlery on a plate does neither to cutlery
-    beside it."""
+    """Return True if the heights of two parts in a line allow one rigid object.
+
+    Either both come down to the same support, or the object leans and its slope continues from one part to the other.
+    Neither holds for cutlery on a plate and cutlery beside it.
+    """
     bottoms = parts.measures.bottoms
     down = abs(bottoms[a] - bottoms[b]) < parts.settings.resting_difference
     return bool(down or parts.once(offset, a, b) < parts.settings.resting_rise)
 
 
 def sides(parts: Parts, part: int | None = None) -> Pairs:
-    """Return a thin upright piece, and the thing of its colour whose side it is: seen so aslant that the edge is a
-    jump."""
+    """Return thin upright parts with the part of their colour whose side they are.
+
+    A side is seen at such a flat angle that the depth jumps at its edge.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
     low = seen.tops[pairs.first] < seen.tops[pairs.second] + limits.resting_rise
     less = seen.areas[pairs.first] < seen.areas[pairs.second]
@@ -221,21 +223,20 @@ def _chosen(pairs: Pairs, belong: Callable[[int, int], bool]) -> Pairs:
 
 
 def _level(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
-    """Return in which pairs both are equally high, (k,)."""
+    """Return a mask of the pairs with equal heights, shape (k,)."""
     tops = parts.measures.tops
     result: NDArray[np.bool_] = np.abs(tops[pairs.first] - tops[pairs.second]) < parts.settings.level_tolerance
     return result
 
 
 def _alike(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
-    """Return in which pairs both are of one plain colour, (k,)."""
+    """Return a mask of the pairs in which both parts have the same plain colour, shape (k,)."""
     plain = parts.measures.motley < parts.settings.max_plain_variation
     return (parts.unlike(pairs) < parts.settings.max_same_colour) & plain[pairs.first] & plain[pairs.second]
 
 
 def _differ(parts: Parts, pairs: Pairs) -> NDArray[np.bool_]:
-    """Return in which pairs the two are surely not of one colour, (k,): they differ by more than both vary in
-    themselves."""
+    """Return a mask of the pairs whose colours differ by more than they vary within both parts, shape (k,)."""
     motley = parts.measures.motley
     varied = np.minimum(motley[pairs.first], motley[pairs.second])
     result: NDArray[np.bool_] = parts.unlike(pairs) >= np.maximum(parts.settings.min_other_colour, varied)

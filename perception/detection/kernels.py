@@ -1,7 +1,7 @@
-"""Compiled loops over points, and walks over a table of neighbours (n, k), in which -1 stands for none.
+"""Compiled loops over points and over a table of neighbours (n, k), in which -1 stands for a missing one.
 
-Planes are compared and refined, heights are averaged over neighbours and grown from seeds, a plane is laid through what
-is around each point, and patches grow along the cheapest paths.
+The kernels compare and refine planes, average heights over neighbours and grow them from seeds, fit a plane around each
+point, and grow patches along the cheapest paths.
 """
 
 from __future__ import annotations
@@ -10,16 +10,19 @@ import numpy as np
 from numba import njit
 
 _BLOCK = 1024
-"""Points that a loop over planes treats at once, so that they stay in the fastest cache."""
+"""Number of points in a block of a loop over planes, so that they stay in the fastest cache."""
 
 _SETTLED = -2
-"""The place in the heap of a point whose path is known."""
+"""Position in the heap of a point whose path is final."""
 
 
 @njit(cache=True, nogil=True, fastmath=True)
 def support(x, y, z, tolerance, planes):  # type: ignore[no-untyped-def]
-    """Return the sum of ``tolerance`` (n,) over the points, ``x``, ``y`` and ``z`` (n,), that are within it of each
-    plane (t, 4), normal and offset, shape (t,)."""
+    """Return the support of each plane (t, 4), normal and offset, shape (t,).
+
+    The support is the sum of the ``tolerance`` (n,) of the points, given by ``x``, ``y`` and ``z`` (n,), that are
+    within their tolerance of the plane.
+    """
     result = np.zeros(len(planes), np.float32)
     for t in range(len(planes)):
         a, b, c, d = planes[t, 0], planes[t, 1], planes[t, 2], planes[t, 3]
@@ -33,8 +36,11 @@ def support(x, y, z, tolerance, planes):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def refine(points, tolerance, normal, offset, shares):  # type: ignore[no-untyped-def]
-    """Return the least-squares plane, normal (3,) and offset, of the points (n, 3) within a share of their tolerance
-    (n,) of the plane before it, for each of the ``shares`` (r,) in turn; points count by the inverse of its square."""
+    """Refit a plane by least squares, and return its normal (3,) and offset.
+
+    Each of the ``shares`` (r,) in turn selects the points (n, 3) within that share of their tolerance (n,) of the
+    plane before. Points are weighted by the inverse square of their tolerance.
+    """
     turned = normal.copy()
     for share in shares:
         total, x, y, z, count = 0.0, 0.0, 0.0, 0.0, 0
@@ -67,8 +73,10 @@ def refine(points, tolerance, normal, offset, shares):  # type: ignore[no-untype
 
 @njit(cache=True, nogil=True)
 def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
-    """Return points (n, 3) taken by a transform (4, 4), their heights (n,), which are their last coordinates, and
-    their distances (n,) from an ``eye`` (3,) in the new frame."""
+    """Return points (n, 3) moved by a transform (4, 4), their heights (n,), and distances (n,) from ``eye`` (3,).
+
+    The heights are the last coordinates; ``eye`` is in the new frame.
+    """
     n = len(points)
     result, heights, distance = np.empty((n, 3)), np.empty(n), np.empty(n)
     for i in range(n):
@@ -83,8 +91,7 @@ def in_frame(points, frame, eye):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
-    """Return each value (n,) averaged with those of its neighbours that differ by no more than ``apart`` (n,),
-    repeatedly."""
+    """Return values (n,) averaged repeatedly with those of neighbours that differ by at most ``apart`` (n,)."""
     before = values.copy()
     after = np.empty_like(before)
     for _ in range(rounds):
@@ -101,7 +108,7 @@ def averaged(values, neighbours, apart, rounds):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
-    """Return the seeds (n,), and all allowed points (n,) that are connected with them through allowed ones."""
+    """Return a mask of the seeds (n,) and all allowed points (n,) that are connected to them through allowed ones."""
     reached = seeds.copy()
     stack = np.empty(len(seeds), np.int64)
     count = 0
@@ -121,8 +128,11 @@ def grown(seeds, allowed, neighbours):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def pixel_neighbours(number, row, column, steps, table):  # type: ignore[no-untyped-def]
-    """Put into a table (n, 8), where it has none, the pixels so many ``steps`` from those in each ``row`` and
-    ``column`` (n,), by their ``number`` (r, c), -1 for none."""
+    """Fill empty entries of a table (n, 8) with the pixels at a distance of ``steps``, in place.
+
+    ``row`` and ``column`` (n,) are the positions of the points; ``number`` (r, c) is the index of the point of each
+    pixel, -1 for none.
+    """
     rows, columns = number.shape
     for i in range(len(row)):
         k = 0
@@ -138,8 +148,7 @@ def pixel_neighbours(number, row, column, steps, table):  # type: ignore[no-unty
 
 @njit(cache=True, nogil=True)
 def nearest_to_means(points, of, count):  # type: ignore[no-untyped-def]
-    """Return for each of ``count`` groups that points (n, 3) belong to by ``of`` (n,) the point nearest to their
-    mean."""
+    """Return the point nearest to the mean of each of ``count`` groups of points (n, 3), given by ``of`` (n,)."""
     middles, sizes = np.zeros((count, 3)), np.zeros(count)
     for i in range(len(of)):
         sizes[of[i]] += 1
@@ -157,7 +166,7 @@ def nearest_to_means(points, of, count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def gaps(points, neighbours):  # type: ignore[no-untyped-def]
-    """Return the mean distance of points (n, 3) from their neighbours, (n,); -1 where there are none."""
+    """Return the mean distance of points (n, 3) from their neighbours, shape (n,); -1 without neighbours."""
     result = np.empty(len(points))
     for i in range(len(points)):
         total, count = 0.0, 0
@@ -171,7 +180,7 @@ def gaps(points, neighbours):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def mixed(values, neighbours):  # type: ignore[no-untyped-def]
-    """Return the means (n, 3) of values (n, 3) and those of their neighbours."""
+    """Return the means (n, 3) of each value (n, 3) and those of its neighbours."""
     result = np.empty_like(values)
     for i in range(len(values)):
         a, b, c, count = values[i, 0], values[i, 1], values[i, 2], 1
@@ -184,9 +193,11 @@ def mixed(values, neighbours):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def planes(points, neighbours, radius, jump, eye, most):  # type: ignore[no-untyped-def]
-    """Return for points (n, 3) the plane through those within ``radius`` (n,) that are reached from neighbour to
-    neighbour without a ``jump`` (n,), ``most`` of them at most: its unit normal (n, 3) towards the ``eye`` (3,), and
-    the point moved onto it."""
+    """Fit a plane around each point (n, 3), and return unit normals (n, 3) and the points moved onto the planes (n, 3).
+
+    A plane is fitted to at most ``most`` points within ``radius`` (n,) that are reached from neighbour to neighbour
+    without a ``jump`` (n,). Normals point towards the ``eye`` (3,).
+    """
     n = len(points)
     middles, moments = np.empty((n, 3)), np.empty((6, n))
     stamp, queue = np.full(n, -1, np.int32), np.empty(n, np.int32)
@@ -206,7 +217,7 @@ def planes(points, neighbours, radius, jump, eye, most):  # type: ignore[no-unty
                 if q < 0 or stamp[q] == i:
                     continue
                 if squared(points, i, q) > reach:
-                    stamp[q] = i  # too far from whichever neighbour it is reached
+                    stamp[q] = i  # too far, from any neighbour
                 elif tail < most and squared(points, p, q) <= step:
                     stamp[q] = i
                     queue[tail] = q
@@ -230,15 +241,17 @@ def planes(points, neighbours, radius, jump, eye, most):  # type: ignore[no-unty
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def least_axes(moments):  # type: ignore[no-untyped-def]
-    """Return the unit eigenvectors (n, 3) of the least eigenvalues of symmetric matrices (6, n): xx, xy, xz, yy, yz,
-    zz.
+    """Return the unit eigenvectors (n, 3) of the smallest eigenvalues of n symmetric matrices.
+
+    The matrices are given as rows xx, xy, xz, yy, yz and zz of an array (6, n).
 
     Notes
     -----
-    Newton's method finds the least root of the characteristic polynomial: from 0, which is not above it, it rises to
-    the root without passing it, since the polynomial is concave below the mean of its roots. A fixed number of steps
-    lets the loop run on several matrices at once. The eigenvector is the longest cross product of two rows of the
-    matrix less the eigenvalue. Where the two least eigenvalues are alike, it is the one of theirs nearest to z.
+    Newton's method finds the smallest root of the characteristic polynomial. Starting from 0, which is not above the
+    root, it rises to the root without passing it, because the polynomial is concave below the mean of its roots. A
+    fixed number of steps lets the loop run on several matrices at once. The eigenvector is the longest cross product of
+    two rows of the matrix minus the eigenvalue. If the two smallest eigenvalues are equal, it is the vector of their
+    eigenspace nearest to z.
     """
     n = moments.shape[1]
     least, result = np.empty(n), np.empty((n, 3))
@@ -268,7 +281,7 @@ def least_axes(moments):  # type: ignore[no-untyped-def]
             x, y, z, length = p, q, r, p * p + q * q + r * r
         if (
             not length > 1e-12 * trace**4
-        ):  # the two least are alike, as of a line: the axis across it that is most upright
+        ):  # the two smallest are equal, as for a line: take the most upright axis across it
             p, q, r = a * a + xy * xy + xz * xz, xy * xy + b * b + yz * yz, xz * xz + yz * yz + c * c
             if p >= q and p >= r:  # the longest row is along the line
                 x, y, z, length = a, xy, xz, p
@@ -290,8 +303,7 @@ def least_axes(moments):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def near_boxes(low, high, gap):  # type: ignore[no-untyped-def]
-    """Return the pairs (k, 2) of boxes, corners (p, 2) in the order of their least x, that are less than a ``gap``
-    apart."""
+    """Return the pairs (k, 2) of boxes less than ``gap`` apart; their corners (p, 2) must be sorted by lower x."""
     found = [(0, 0)][:0]
     for i in range(len(low)):
         for j in range(i + 1, len(low)):
@@ -309,8 +321,11 @@ def near_boxes(low, high, gap):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def outermost(plan):  # type: ignore[no-untyped-def]
-    """Return which of the places (n, 2), finite, may be corners of their convex hull, (n,): those outside the polygon
-    of the farthest ones in sixteen directions (Akl and Toussaint, A fast convex hull algorithm, 1978)."""
+    """Return a mask of the finite places (n, 2) that may be corners of their convex hull, shape (n,).
+
+    They are the places outside the polygon of the farthest places in sixteen directions (Akl and Toussaint, A fast
+    convex hull algorithm, 1978).
+    """
     count = 16
     way, farthest, most = np.empty((count, 2)), np.zeros(count, np.int64), np.full(count, -np.inf)
     for k in range(count):
@@ -346,8 +361,7 @@ def outermost(plan):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def occupied(plan, cell, low, shape):  # type: ignore[no-untyped-def]
-    """Return the cells, of a grid of that ``shape`` from the numbers ``low`` (2,) on, in which there are places
-    (n, 2)."""
+    """Return a mask of the grid cells, of shape ``shape`` and from cell ``low`` (2,), that contain places (n, 2)."""
     grid = np.zeros(shape, np.bool_)
     for i in range(len(plan)):
         grid[int(np.floor(plan[i, 0] / cell)) - low[0], int(np.floor(plan[i, 1] / cell)) - low[1]] = True
@@ -356,7 +370,7 @@ def occupied(plan, cell, low, shape):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def corners_of_box(places):  # type: ignore[no-untyped-def]
-    """Return the least and the greatest coordinates (2, d) of places (n, d), one or more."""
+    """Return the lower and upper corner (2, d) of one or more places (n, d)."""
     box = np.empty((2, places.shape[1]))
     for axis in range(places.shape[1]):
         box[0, axis], box[1, axis] = places[0, axis], places[0, axis]
@@ -369,8 +383,7 @@ def corners_of_box(places):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def renumbered(neighbours, chosen, number):  # type: ignore[no-untyped-def]
-    """Return the neighbours (m, k) of the ``chosen`` points (m,) by their new ``number`` (n,), -1 for those that have
-    none."""
+    """Return the neighbours (m, k) of the ``chosen`` points (m,) as new indices ``number`` (n,), or -1."""
     result = np.full((len(chosen), neighbours.shape[1]), -1, np.int32)
     for i in range(len(chosen)):
         for k in range(neighbours.shape[1]):
@@ -382,7 +395,7 @@ def renumbered(neighbours, chosen, number):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, fastmath=True)
 def greatest_offset(points, sides):  # type: ignore[no-untyped-def]
-    """Return how far points (n, 3) are beyond the farthest of half spaces (h, 4), normal and offset, (n,)."""
+    """Return the largest signed distance of points (n, 3) from half spaces (h, 4), normal and offset, shape (n,)."""
     result = np.empty(len(points))
     x, y, z = np.empty(_BLOCK), np.empty(_BLOCK), np.empty(_BLOCK)
     for start in range(0, len(points), _BLOCK):
@@ -401,20 +414,36 @@ def greatest_offset(points, sides):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def squared(points, i, j):  # type: ignore[no-untyped-def]
-    """Return the squared distance of two of the points (n, 3)."""
+    """Return the squared distance of points i and j of (n, 3)."""
     x, y, z = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1], points[i, 2] - points[j, 2]
     return x * x + y * y + z * z
 
 
 @njit(cache=True, nogil=True)
 def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-def]
-    """Return the pairs (m, 2) of ``count`` patches that meet, in order, the lesser first, and how many neighbours do
-    so (m,), and how many of these with a jump (m,); ``of`` (n,) is the patch of each point (n, 3), and what is farther
-    away than ``jump`` (n,) is another surface.
+    """Find the boundaries between patches.
+
+    Parameters
+    ----------
+    of
+        Patch of each point, shape (n,).
+    neighbours
+        Neighbours of each point, shape (n, k), -1 for missing ones.
+    points
+        Coordinates, shape (n, 3).
+    jump
+        Distance beyond which a neighbour is on another surface, shape (n,).
+    count
+        Number of patches.
+
+    Returns
+    -------
+    The sorted pairs of adjacent patches (m, 2), the lower number first; the number of pairs of neighbouring points of
+    each (m,), and the number of those with a jump (m,).
 
     Notes
     -----
-    The pairs of a patch are a linked list in the order of the other one: a patch meets few others.
+    The pairs of a patch form a linked list sorted by the other patch, because a patch meets few others.
     """
     head, room, size = np.full(count, -1, np.int64), 4 * count + 16, 0
     after, other = np.empty(room, np.int64), np.empty(room, np.int64)
@@ -425,7 +454,7 @@ def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-de
             if q < 0 or of[p] == of[q]:
                 continue
             a, b, before = min(of[p], of[q]), max(of[p], of[q]), -1
-            if a != last_a or b != last_b:  # mostly the same pair as before
+            if a != last_a or b != last_b:  # usually the pair is the previous one
                 last_a, last_b, at = a, b, head[a]
                 while at >= 0 and other[at] < b:
                     before, at = at, after[at]
@@ -453,14 +482,14 @@ def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-de
 
 @njit(cache=True, nogil=True)
 def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, jump):  # type: ignore[no-untyped-def]
-    """Return for each of n points the number of the seed (m,) with the cheapest path (Dijkstra, from all at once).
+    """Return the seed (m,) with the cheapest path to each of n points (Dijkstra from all seeds at once), shape (n,).
 
-    ``costs`` are what a path pays: for a radian by which the normal turns, for a metre of height between the planes of
-    neighbours, and for a difference in colour of 1 beyond the fourth. What no seed reaches grows by itself.
+    ``costs`` holds the cost per radian of turning normals, per metre of height between the planes of neighbours, and
+    per unit of colour difference above the fourth value. Points that no seed reaches form patches of their own.
 
     Notes
     -----
-    The heap has four children at a place, and holds a point at most once, with its cost beside it.
+    A node of the heap has four children. The heap holds a point at most once, with its cost.
     """
     n = len(smooth)
     of, cost = np.full(n, -1, np.int32), np.full(n, np.inf)
@@ -494,7 +523,7 @@ def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, ju
 
 @njit(cache=True, nogil=True)
 def _rise(p, key, heap, keys, place):  # type: ignore[no-untyped-def]
-    """Move a point with a lesser key up from its place."""
+    """Move a point with a smaller key up in the heap."""
     i = place[p]
     while i and keys[(i - 1) // 4] > key:
         above = (i - 1) // 4
@@ -506,7 +535,7 @@ def _rise(p, key, heap, keys, place):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _sink(p, key, heap, keys, place, size):  # type: ignore[no-untyped-def]
-    """Put a point at the top of the heap, and move it down."""
+    """Insert a point at the top of the heap, and move it down."""
     i = 0
     while 4 * i + 1 < size:
         child = 4 * i + 1
@@ -523,7 +552,7 @@ def _sink(p, key, heap, keys, place, size):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _step_cost(smooth, normals, colours, p, q, spacing, costs):  # type: ignore[no-untyped-def]
-    """Return what a path pays for going from a point to its neighbour."""
+    """Return the cost of a path from a point to its neighbour."""
     turn_cost, step_cost, colour_cost, colour_noise = costs
     turned, tint, step, way = 0.0, 0.0, 0.0, 0.0
     for axis in range(3):

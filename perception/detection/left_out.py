@@ -1,4 +1,4 @@
-"""What is above a table, or hidden there, and is not reported as a thing: said in notes."""
+"""Write notes about points above a table that are not reported as objects, and about missing depth."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from deixis.perception.detection.viewpoint import View
 
 
 class Fate(IntEnum):
-    """What became of a point that was looked at."""
+    """Result of the detection for a piece of surface."""
 
     NOT_RAISED = 0
     REPORTED = 1
     BESIDE = 2
-    """It is of a piece that is mostly beside the table."""
+    """The piece is mostly beside the table."""
     DISCARDED = 3
-    """It is of a piece too small, or too low, for a thing."""
+    """The piece is too small or too low for an object."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """The pieces of surface above a table: ``of`` (n,) is each point's, -1 for none, and ``fates`` (p,) theirs."""
+    """Pieces of surface above a table: ``of`` (n,) is the piece of each point or -1, ``fates`` (p,) their results."""
 
     of: NDArray[np.int32]
     fates: NDArray[np.int8]
 
     @property
     def points(self) -> NDArray[np.int64]:
-        """How many points each piece has, (p,)."""
+        """Number of points of each piece, shape (p,)."""
         return np.bincount(self.of[self.of >= 0], minlength=len(self.fates))
 
     @property
     def things(self) -> NDArray[np.int32]:
-        """The number of its thing for each point (n,), from 0, -1 for none."""
+        """Index of the object of each point, shape (n,); -1 for none."""
         reported = self.fates == Fate.REPORTED
         number = np.append(np.where(reported, np.cumsum(reported) - 1, -1), -1).astype(np.int32)
         result: NDArray[np.int32] = number[self.of]
@@ -48,15 +48,14 @@ class Pieces:
 def left_out(
     top: TableTop, heights: NDArray[np.float64], pieces: Pieces, settings: DetectionSettings
 ) -> tuple[str, ...]:
-    """Return notes on what is above the table and not reported, among the points (n, 3) of the top's view, at
-    ``heights`` (n,) above it."""
+    """Return notes on the points above the table, at ``heights`` (n,) in metres, that are not reported as objects."""
     limits = settings.notes
     beyond = top.outside
     high = (heights > settings.reach) & (beyond < 0)
     notes = []
     if high.sum() > limits.min_high_share * max(len(top.on), 1):
         notes.append(
-            f"something is more than {100 * settings.reach:.0f} cm above the table, where nothing is looked for:"
+            f"something is more than {100 * settings.reach:.0f} cm above the table, higher than objects are searched:"
             " a person, a lamp or a wall"
         )
     counts = pieces.points
@@ -67,11 +66,10 @@ def left_out(
     discarded = counts[pieces.fates == Fate.DISCARDED].sum()
     if discarded > limits.min_discarded_share * counts.sum() and discarded >= limits.min_piece_points:
         notes.append(
-            f"{discarded} of the {counts.sum()} points that rise above the table are in pieces too small or too low for"
-            " things"
+            f"{discarded} of the {counts.sum()} points above the table are in pieces too small or too low for objects"
         )
     if _reaches_over(beyond, pieces, limits):
-        notes.append("something reaches over the edge of the table: a hand or an arm, or a thing that hangs over it")
+        notes.append("something reaches over the edge of the table: a hand, an arm, or an object that hangs over it")
     return tuple(notes)
 
 
@@ -80,7 +78,7 @@ def _was(which: NDArray[np.bool_]) -> str:
 
 
 def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSettings) -> bool:
-    """Return whether a piece above the table goes on far beyond its outline, at a height above it."""
+    """Return True if a piece above the table extends far beyond its outline."""
     chosen = np.flatnonzero(pieces.of >= 0)
     of, count = pieces.of[chosen], len(pieces.fates)
     total = np.bincount(of, minlength=count)
@@ -91,7 +89,7 @@ def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSet
 
 
 def missing_lines(view: View) -> tuple[str, ...]:
-    """Return a note where many rows or columns of an image have no depth between others that have it."""
+    """Return a note if many rows or columns of an image have no depth between others that have it."""
     if view.organised is None or not len(view.places):
         return ()
     notes = []
@@ -104,8 +102,7 @@ def missing_lines(view: View) -> tuple[str, ...]:
 
 
 def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[str, ...]:
-    """Return a note where much of the table has no depth: which of the points of an image are ``on`` the table or what
-    stands there, (n,)."""
+    """Return a note if much of the table has no depth; ``on`` (n,) marks the points on the table or its objects."""
     if view.organised is None or not on.any():
         return ()
     from scipy.ndimage import binary_closing, binary_fill_holes
@@ -116,22 +113,20 @@ def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[st
     total = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
     table = np.bincount(cell[on], minlength=shape[0] * shape[1]).reshape(shape) > 0
     whole = binary_fill_holes(binary_closing(table, np.ones((3, 3)), iterations=3))
-    # a cell without depth is a hole; so are the pixels that most cells with depth lack
+    # A cell is a hole if it has far fewer points than usual.
     usual = float(np.median(total[table]))
     empty = whole & (total < 0.2 * usual)
     share = empty.sum() / whole.sum()
     if share <= settings.max_hole_share:
         return ()
-    return (f"{share:.0%} of the table as seen has no depth: shiny, dark or transparent things there are not seen",)
+    return (f"{share:.0%} of the visible table has no depth: shiny, dark or transparent objects there are missing",)
 
 
 def odd_sizes(lengths: NDArray[np.float64], settings: NoteSettings) -> tuple[str, ...]:
-    """Return a note where the things, by their longest sides (k,), are of no size that tableware has."""
+    """Return a note if the longest sides of the objects (k,), in metres, are unusual for tableware."""
     if len(lengths) < 2:
         return ()
     usual = float(np.median(lengths))
     if settings.min_usual_length <= usual <= settings.max_usual_length:
         return ()
-    return (
-        f"half of the things are {'over' if usual > 0.1 else 'under'} {100 * usual:.0f} cm long: is the unit another?",
-    )
+    return (f"half of the objects are {'over' if usual > 0.1 else 'under'} {100 * usual:.0f} cm long; check the unit",)

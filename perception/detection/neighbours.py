@@ -1,9 +1,8 @@
-"""Who is next to whom: the pixels around a pixel, or the nearest points of a cloud that is no image.
+"""Find the neighbours of points: the pixels around a pixel, or the nearest points of an unorganised cloud.
 
-As seen from the sensor a point's neighbours are those in nearly the same direction, as in an image; so it is known what
-hides what. Of a cloud that was not seen from one known place, the nearest in space are taken.
-
-Everything after this works on a table of neighbours, and does not ask where it came from.
+The neighbours of a point are the points in nearly the same direction from the sensor, as in an image, so that occlusion
+is visible. Without a known viewpoint, they are the nearest points in space. All later steps use only the table of
+neighbours.
 """
 
 from __future__ import annotations
@@ -25,11 +24,10 @@ def neighbour_table(
     settings: SurfaceSettings,
     eye: NDArray[np.float64] | None = None,
 ) -> NDArray[np.int32]:
-    """Return for each of the points (n, 3), finite, its neighbours (n, 8) as indices among these, -1 where there is
-    none.
+    """Return the indices of the neighbours of finite points (n, 3), shape (n, 8); -1 for missing ones.
 
-    ``kept`` (n,) are the places of the points in the image of ``organised`` rows and columns; without these, ``eye``
-    (3,) is from where they were seen, if that is known.
+    ``kept`` (n,) are the indices of the points in the image of ``organised`` rows and columns. For an unorganised
+    cloud, ``eye`` (3,) is the viewpoint, or None if it is unknown.
 
     >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2), SurfaceSettings())[0].tolist()
     [-1, -1, -1, -1, 1, -1, -1, 2]
@@ -40,7 +38,7 @@ def neighbour_table(
 
 
 def _nearest(places: NDArray[np.float64], settings: SurfaceSettings) -> NDArray[np.int32]:
-    """Return the nearest of the places (n, 3), in no order, but for those much farther away than usual."""
+    """Return the nearest places of each of n places (n, 3), in any order, without those much farther than usual."""
     from scipy.spatial import cKDTree
 
     count = min(NEIGHBOURS + 1, len(places))
@@ -56,9 +54,9 @@ def _nearest(places: NDArray[np.float64], settings: SurfaceSettings) -> NDArray[
 
 
 def has_enough(table: NDArray[np.int32], settings: SurfaceSettings) -> bool:
-    """Return whether most points have neighbours enough, by some rows of a table (n, 8).
+    """Return True if most points have enough neighbours, judged by a sample of a table (n, 8).
 
-    They have not where points that are next to each other in direction are apart: they were not seen from there.
+    From a wrong viewpoint, points that are adjacent in direction are far apart and have few neighbours.
     """
     few = table[:: max(1, len(table) // settings.neighbour_sample_size)]
     enough = (few >= 0).sum(axis=1) >= settings.min_neighbours
@@ -66,8 +64,7 @@ def has_enough(table: NDArray[np.int32], settings: SurfaceSettings) -> bool:
 
 
 def _pixels(kept: NDArray[np.intp], rows: int, columns: int, settings: SurfaceSettings) -> NDArray[np.int32]:
-    """Return the pixels around each; of an image in which lines or many pixels have no depth, the next ones that have
-    it, in the same directions."""
+    """Return the pixels around each pixel; where they have no depth, the next ones in the same directions."""
     from deixis.perception.detection.kernels import pixel_neighbours
 
     number = np.full((rows, columns), -1, np.int32)

@@ -1,4 +1,4 @@
-"""Outlines as seen from above: connected pieces, circles where the rest of a rim is hidden, boxes around things."""
+"""Outlines seen from above: connected pieces, circles around partly hidden rims, and boxes around objects."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ SECTORS = 36
 
 
 def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.bool_]:
-    """Return which of points (n, 2) are in the connected piece that has most of them, shape (n,).
+    """Return a mask of the points (n, 2) in the largest connected piece, shape (n,).
 
-    Points are connected over a grid of cells of ``cell_size`` (metres), or of a thousandth of the whole if that is
-    more.
+    Points are connected on a grid with cells of ``cell_size`` metres, or of a thousandth of the extent if that is more.
     """
     from scipy.ndimage import label
 
@@ -38,7 +37,7 @@ def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.
 
 
 def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
-    """Return the middles (k, 2) of the squares of a grid in which there are places (n, 2)."""
+    """Return the centres (k, 2) of the grid cells that contain places (n, 2); ``cell`` is their side in metres."""
     if not len(plan):
         return np.zeros((0, 2))
     from deixis.perception.detection.kernels import corners_of_box, occupied
@@ -53,15 +52,13 @@ def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64
 
 
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return the corners (k, 2) of the convex outline of places (n, 2), in turn; None of too few, or of places in a
-    line."""
+    """Return the corners (k, 2) of the convex hull of places (n, 2), in order; None for too few or collinear places."""
     hull = hull_of(plan)
     return None if hull is None else np.asarray(hull.points[hull.vertices])
 
 
 def hull_of(plan: NDArray[np.float64]) -> Any:
-    """Return the convex outline of places (n, 2), ``scipy.spatial.ConvexHull``; None of too few, or of places in a
-    line."""
+    """Return the ``scipy.spatial.ConvexHull`` of places (n, 2), or None for too few or collinear places."""
     from scipy.spatial import ConvexHull, QhullError
 
     from deixis.perception.detection.kernels import outermost
@@ -74,32 +71,32 @@ def hull_of(plan: NDArray[np.float64]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """A circle in the plan, metres."""
+    """Circle seen from above, in metres."""
 
     centre: NDArray[np.float64]  # (2,)
     radius: float
 
     def off(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return how far places (n, 2) are beyond it, in its radius; within it below 0, shape (n,)."""
+        """Return the distances (n,) of places (n, 2) from the circle, relative to its radius; negative inside."""
         out: NDArray[np.float64] = np.linalg.norm(plan - self.centre, axis=1) / self.radius - 1.0
         return out
 
     def sectors(self, plan: NDArray[np.float64], edge: float) -> NDArray[np.int64]:
-        """Return the sectors in which there are places (n, 2) at its edge, in order."""
+        """Return the sorted sectors that have places (n, 2) at the edge of the circle or outside it."""
         x, y = (plan[self.off(plan) > -edge] - self.centre).T
         turn = np.arctan2(y, x) / (2 * np.pi) % 1.0
         return np.unique(np.minimum(turn * SECTORS, SECTORS - 1).astype(np.int64))
 
     def turned(self, axes: NDArray[np.float64]) -> Circle:
-        """Return the same along other axes, in rows, (2, 2)."""
+        """Return the circle in coordinates along other axes, given as rows (2, 2)."""
         return Circle(axes @ self.centre, self.radius)
 
 
 def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
-    """Return the circle on which all corners of the convex outline of places (n, 2) lie, as well as ``edge`` has it.
+    """Return the circle through the corners of the convex hull of places (n, 2), or None.
 
-    By algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976). None where there is
-    none, or fewer than five corners.
+    ``edge`` is the largest distance of a corner from the circle, relative to its radius. The circle is fitted by
+    algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976) to at least five corners.
     """
     corners = corners_of(plan)
     if corners is None or len(corners) < 5:
@@ -111,11 +108,10 @@ def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
 
 
 def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: OutlineSettings) -> Circle | None:
-    """Return the whole rim of a round thing of which places (n, 2) are seen, the rest being hidden by itself or by
-    others.
+    """Return the whole rim of a partly hidden round object with visible places (n, 2).
 
-    None where what is seen is not round, where too little of its edge is, or where the table is seen at places (m, 2)
-    within what would be its rim.
+    The result is None if the visible part is not round, too little of the edge is visible, or the table is visible at
+    places (m, 2) inside the supposed rim.
     """
     circle = circle_around(plan, settings.rim_tolerance)
     if circle is None or not settings.min_rim_radius <= circle.radius <= settings.max_rim_radius:
@@ -133,15 +129,14 @@ def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: Outl
 def upright_box(
     points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None
 ) -> NDArray[np.float64]:
-    """Return least and greatest corner (2, 3) of points (n, 3) in the table's frame; it stands on the table or above
-    it.
+    """Return the lower and upper corner, shape (2, 3), of points (n, 3) in the frame of the table.
 
-    ``rim`` is a circle in the plan that it takes in, too.
+    The box has no part below the table. It also includes ``rim``, a circle seen from above.
 
     >>> upright_box(np.array([[0.0, 0, -0.001], [1, 2, 3]]), OutlineSettings()).tolist()
     [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
     """
-    skip = int(settings.trim_share * len(points))  # the few at either end of an axis are noise
+    skip = int(settings.trim_share * len(points))  # the outermost points along each axis are noise
     ordered = np.sort(points, axis=0)
     box = np.stack([ordered[skip], ordered[len(points) - 1 - skip]])
     if rim is not None:
@@ -152,10 +147,10 @@ def upright_box(
 
 
 def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None) -> OrientedBox:
-    """Return the upright box with the smallest plan, among those with a side along a side of the points' outline.
+    """Return the upright box of points (n, 3) with the smallest base.
 
-    Its first side is the longer one, with a yaw above -pi/2, to pi/2. ``rim`` is a circle in the plan that it takes in,
-    too. That the smallest rectangle has such a side is the theorem of Freeman and Shapira (1975).
+    Its first side is the longer one, with a yaw in (-pi/2, pi/2]. It also includes ``rim``, a circle seen from above.
+    The smallest rectangle has a side along the convex hull by the theorem of Freeman and Shapira (1975).
     """
     box = _box_along(_best_angle(points[:, :2]), points, settings, rim)
     if box.extents[1] > box.extents[0]:
@@ -164,7 +159,7 @@ def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Ci
 
 
 def _box_along(yaw: float, points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None) -> OrientedBox:
-    """Return the box with a side in that direction."""
+    """Return the box with a side in the direction of ``yaw``."""
     yaw = float(np.pi / 2 - (np.pi / 2 - yaw) % np.pi)
     axes = turned_axes(yaw)
     low, high = upright_box(points @ axes.T, settings, rim and rim.turned(axes[:2, :2]))

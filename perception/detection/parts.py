@@ -1,9 +1,8 @@
-"""Parts: pieces of surface of which things consist, how they meet, and how they are joined.
+"""Parts of objects: pieces of surface, their boundaries, and their joining.
 
-What speaks for or against one thing is read off the patches: how long two parts meet, which of them is above the other
-there, whether their colours are alike; and how two parts lie to each other: one within the other as seen from above,
-apart, in one line, in one plane. Only pairs that meet, or that are near each other, are ever looked at, so that the
-time grows with the number of these.
+The evidence for one object comes from the patches of two parts: the length of their boundary, the height of one above
+the other there, and their colours; and their arrangement: one inside the other as seen from above, apart, in one line,
+or in one plane. Only pairs that meet or are near each other are examined, so the time grows with their number.
 """
 
 from __future__ import annotations
@@ -29,22 +28,22 @@ _NONE = np.zeros(0, np.intp)
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """What is known of p parts. Heights are those above the table, colours have their lightness scaled down."""
+    """Measures of p parts; heights are above the table, colours have their lightness scaled down."""
 
     sizes: NDArray[np.float64]  # (p,): points
-    areas: NDArray[np.float64]  # (p,): square metres of surface that are seen
+    areas: NDArray[np.float64]  # (p,): visible surface in square metres
     tops: NDArray[np.float64]  # (p,): the height of the highest patch
     bottoms: NDArray[np.float64]  # (p,): the height of the lowest patch
     middles: NDArray[np.float64]  # (p,): the mean height
-    low: NDArray[np.float64]  # (p, 2): least corner of the box around a part as seen from above
-    high: NDArray[np.float64]  # (p, 2): its greatest corner
+    low: NDArray[np.float64]  # (p, 2): lower corner of the box around a part as seen from above
+    high: NDArray[np.float64]  # (p, 2): its upper corner
     colours: NDArray[np.float64]  # (p, 3): the mean
-    motley: NDArray[np.float64]  # (p,): how much the colours of the patches vary, a standard deviation
+    motley: NDArray[np.float64]  # (p,): standard deviation of the colours of the patches
     bulge: NDArray[np.float64]  # (p,): 1 a sphere from outside, 0 a plane, -1 a sphere from inside
 
     @classmethod
     def of(cls, part: NDArray[np.integer], patches: Supervoxels, chosen: NDArray[np.intp] | slice) -> Measures:
-        """Return the measures of the parts, from 0, that the chosen patches belong to."""
+        """Return the measures of the parts of the chosen patches; ``part`` holds the part of each, from 0."""
         places, weights = patches.middles[chosen], patches.weights[chosen]
         tints, sizes, normals = patches.tints[chosen], patches.sizes[chosen], patches.normals[chosen]
         count = int(part.max()) + 1 if len(part) else 0
@@ -69,29 +68,29 @@ class Measures:
         )
 
     def put(self, part: int, other: Measures) -> None:
-        """Replace what is known of a part."""
+        """Replace the measures of a part by those of the only part of ``other``."""
         for each in fields(self):
             getattr(self, each.name)[part] = getattr(other, each.name)[0]
 
     @property
     def centres(self) -> NDArray[np.float64]:
-        """The middle of the box as seen from above, (p, 2)."""
+        """Centre of the box of each part as seen from above, shape (p, 2)."""
         result: NDArray[np.float64] = (self.low + self.high) / 2
         return result
 
     @property
     def widths(self) -> NDArray[np.float64]:
-        """The longer side of that box, (p,)."""
+        """Longer side of the box of each part as seen from above, shape (p,)."""
         result: NDArray[np.float64] = (self.high - self.low).max(axis=1)
         return result
 
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """k ordered pairs of parts, and how the two meet: ``first`` and ``second`` (k,), and ``met`` (k, 4).
+    """Ordered pairs of parts ``first`` and ``second`` (k,), and their boundaries ``met`` (k, 4).
 
-    The columns of ``met`` are the length of their boundary in pairs of neighbours, of that without a jump of depth, and
-    the sums over it of the evidence for two things, and of the height of the first above the second.
+    The columns of ``met`` are the length of the boundary in pairs of neighbours, its length without jumps in depth, and
+    the sums along it of the evidence for two objects and of the height of the first part above the second.
     """
 
     first: NDArray[np.intp]
@@ -102,17 +101,17 @@ class Pairs:
         return len(self.first)
 
     def where(self, chosen: NDArray[np.bool_]) -> Pairs:
-        """Return the pairs that are marked in (k,)."""
+        """Return the pairs that the mask ``chosen`` (k,) selects."""
         return Pairs(self.first[chosen], self.second[chosen], self.met[chosen])
 
     @property
     def length(self) -> NDArray[np.float64]:
-        """How long they meet, in pairs of neighbours, (k,)."""
+        """Length of the boundary in pairs of neighbours, shape (k,)."""
         return self.met[:, 0]
 
     @property
     def evidence(self) -> NDArray[np.float64]:
-        """What speaks for two things, a mean over where they meet, (k,); infinite where they do not."""
+        """Mean evidence for two objects along the boundary, shape (k,); infinite without a boundary."""
         length = self.length
         evidence: NDArray[np.float64] = np.divide(
             self.met[:, 2], length, out=np.full(len(self), np.inf), where=length > 0
@@ -121,17 +120,17 @@ class Pairs:
 
     @property
     def rise(self) -> NDArray[np.float64]:
-        """How far the first part is above the second where they meet, a mean, (k,); 0 where they do not."""
+        """Mean height of the first part above the second along the boundary, shape (k,); 0 without a boundary."""
         length = self.length
         rise: NDArray[np.float64] = np.divide(self.met[:, 3], length, out=np.zeros(len(self)), where=length > 0)
         return rise
 
 
 class Parts:
-    """The parts that s patches belong to, by ``of`` (s,); joining two of them changes it.
+    """Mutable partition of s patches into parts, given by ``of`` (s,).
 
-    A part keeps the number of the first of those that it was joined from. ``measures`` are those of each, out of date
-    where a part was joined to a lesser one.
+    A joined part has the lower number of the two. ``measures`` holds the measures of each part, out of date for parts
+    that were joined to one with a lower number.
     """
 
     def __init__(
@@ -142,7 +141,7 @@ class Parts:
 
     def _start(self, of: NDArray[np.integer]) -> None:
         self._known: dict[tuple[object, ...], float] = {}
-        self._hulls: dict[int, tuple[int, NDArray[np.float64] | None]] = {}  # with how often the part had changed
+        self._hulls: dict[int, tuple[int, NDArray[np.float64] | None]] = {}  # with the number of changes of the part
         self._trees: dict[int, tuple[int, Any]] = {}
         count = int(of.max()) + 1 if len(of) else 0
         order = np.argsort(of, kind="stable")
@@ -162,16 +161,16 @@ class Parts:
 
     @property
     def of(self) -> NDArray[np.int32]:
-        """The part of each patch, (s,), from 0 in the order of their first patches."""
+        """Part of each patch, shape (s,), numbered from 0 in the order of their first patches."""
         result = np.zeros(sum(map(len, self.members)), np.int32)
         for number, part in enumerate(np.flatnonzero(self.there).tolist()):
             result[self.members[part]] = number
         return result
 
     def keep_largest(self, count: int) -> None:
-        """Let no more than the ``count`` largest parts be joined from now on: the others meet nothing.
+        """Set all but the ``count`` largest parts aside, so that they are not joined any more.
 
-        A part that meets thousands of others would be looked at again with each of them whenever one is joined to it.
+        A part with thousands of neighbours would be examined with each of them again whenever one is joined to it.
         """
         least = np.argsort(-self.measures.sizes, kind="stable")[count:]
         self._set_aside[least] = True
@@ -181,7 +180,7 @@ class Parts:
             self._around[part] = {}
 
     def join_all(self, first: NDArray[np.intp], second: NDArray[np.intp]) -> None:
-        """Join the parts of each pair, and number all anew."""
+        """Join the parts of each pair, and renumber all parts."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -193,7 +192,7 @@ class Parts:
         self._start(np.unique(connected_components(links, directed=False)[1][of], return_inverse=True)[1])
 
     def join(self, a: int, b: int) -> int:
-        """Join two parts; return the number of what they are together."""
+        """Join two parts, and return the number of the joined part."""
         a, b = min(a, b), max(a, b)
         self.members[a] = np.sort(np.concatenate([self.members[a], self.members[b]]))
         self.members[b] = _NONE
@@ -213,7 +212,7 @@ class Parts:
         return a
 
     def meetings(self, part: int | None = None) -> Pairs:
-        """Return all pairs that meet, each both ways round, or those with one ``part``."""
+        """Return all pairs that meet, in both orders, or those with a given ``part``."""
         parts: Iterable[int] = range(len(self._around)) if part is None else (part,)
         ends = [(a, b) for a in parts for b in self._around[a]]
         if part is not None:
@@ -221,8 +220,11 @@ class Parts:
         return self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
 
     def near(self, gap: float, part: int | None = None) -> Pairs:
-        """Return all pairs whose boxes are less than a ``gap`` (metres) apart as seen from above, each both ways round,
-        or those with one ``part``: no patches of others are nearer. Parts of few points are left out."""
+        """Return all pairs whose boxes seen from above are less than ``gap`` metres apart, in both orders.
+
+        With ``part``, only the pairs with this part are returned. Patches of other pairs are at least ``gap`` apart.
+        Parts of few points are left out.
+        """
         large = self.measures.sizes >= self.settings.min_near_points
         there = np.flatnonzero(self.there & large & ~self._set_aside)
         low, high = self.measures.low[there], self.measures.high[there]
@@ -241,7 +243,7 @@ class Parts:
         return self.pairs(np.concatenate([ends, ends[:, ::-1]]))
 
     def pairs(self, ends: NDArray[np.intp]) -> Pairs:
-        """Return pairs of parts (k, 2), and how they meet."""
+        """Return the pairs of parts ``ends`` (k, 2) with their boundaries."""
         nothing = np.zeros(4)
         met = [self._around[a].get(b, nothing) for a, b in ends.tolist()]
         return Pairs(ends[:, 0], ends[:, 1], np.array(met).reshape(-1, 4))
@@ -253,7 +255,7 @@ class Parts:
         return result
 
     def hull(self, part: int) -> NDArray[np.float64] | None:
-        """Return the half planes (k, 3) of a part's convex outline as seen from above; None of patches in a line."""
+        """Return the half planes (k, 3) of the convex hull of a part seen from above; None for collinear patches."""
         from scipy.spatial import ConvexHull, QhullError
 
         if (found := self._hulls.get(part)) is None or found[0] != self.changes[part]:
@@ -265,7 +267,7 @@ class Parts:
         return found[1]
 
     def plan_tree(self, part: int) -> Any:
-        """Return a k-d tree of a part's patches as seen from above."""
+        """Return a k-d tree of the patches of a part seen from above."""
         from scipy.spatial import cKDTree
 
         if (found := self._trees.get(part)) is None or found[0] != self.changes[part]:
@@ -273,8 +275,7 @@ class Parts:
         return found[1]
 
     def once(self, measure: Measure, a: int, b: int) -> float:
-        """Return what a function of the patches of two parts gives, computed once: joining others does not change
-        it."""
+        """Return a measure of the patches of two parts; it is computed once, until one of the parts changes."""
         key = (measure, a, self.changes[a], b, self.changes[b])
         if key not in self._known:
             self._known[key] = measure(self, self.members[a], self.members[b])
@@ -284,7 +285,7 @@ class Parts:
 def _between(
     of: NDArray[np.integer], patches: Supervoxels, meeting: Boundaries
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64]]:
-    """Return the pairs of parts that meet, both ways round, and how they meet as :class:`Pairs` has it."""
+    """Return the pairs of parts that meet, in both orders, and their boundaries in the columns of :class:`Pairs`."""
     i, j = meeting.pairs.T
     a, b = of[i].astype(np.int64), of[j].astype(np.int64)
     apart = a != b
@@ -300,7 +301,7 @@ def _between(
 
 
 def inside(parts: Parts, inner: int, outer: int) -> float:
-    """Return the share of a part's patches that lie within the convex outline of another, as seen from above."""
+    """Return the fraction of the patches of a part inside the convex hull of another, as seen from above."""
     hull = parts.hull(outer)
     if hull is None:
         return 0.0
@@ -309,8 +310,10 @@ def inside(parts: Parts, inner: int, outer: int) -> float:
 
 
 def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
-    """Return whether most places (k, 3) are within a part's outline, or no farther from it than it is higher: hidden
-    by it."""
+    """Return True if a part can hide most of the places (k, 3).
+
+    These are inside its outline, or no farther outside than the part is higher.
+    """
     hull = parts.hull(cover)
     if hull is None:
         return True
@@ -319,22 +322,26 @@ def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
 
 
 def apart(parts: Parts, a: int, b: int) -> float:
-    """Return the least distance between patches of two parts, as seen from above."""
+    """Return the smallest distance between the patches of two parts as seen from above, in metres."""
     return float(parts.plan_tree(b).query(parts.patches.middles[parts.members[a], :2])[0].min())
 
 
 def continues(parts: Parts, a: int, b: int, over: Iterable[int]) -> bool:
-    """Return whether one surface goes on in the other, under a part that is over both: where they are nearest, that
-    part is between them, and their planes are the same."""
+    """Return True if two parts are one surface that continues under a part on both.
+
+    Where the two are nearest, their planes agree and the other part lies between them.
+    """
     if parts.once(_share_of_one_plane, a, b) <= parts.settings.min_coplanar_share:
         return False
     p, q = _nearest(parts, parts.members[a], parts.members[b])
     between = (parts.patches.middles[p] + parts.patches.middles[q]) / 2
-    return any(_covered(parts, part, between) for part in over)  # else a fork and a knife beside a plate
+    return any(
+        _covered(parts, part, between) for part in over
+    )  # otherwise a fork and a knife beside a plate would match
 
 
 def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return the share of the nearest patches of two parts that lie in one plane."""
+    """Return the fraction of the nearest patches of two parts that lie in one plane."""
     p, q = _nearest(parts, one, two)
     if not len(p):
         return 0.0
@@ -348,7 +355,7 @@ def _share_of_one_plane(parts: Parts, one: NDArray[np.intp], two: NDArray[np.int
 
 
 def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return patches of two parts where these are nearest, and not too far apart: of the first, and of the second."""
+    """Return pairs of patches of two parts where these are nearest and not too far apart."""
     from scipy.spatial import cKDTree
 
     middles = parts.patches.middles
@@ -359,8 +366,7 @@ def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tupl
 
 
 def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return the share of a circle around two parts, as seen from above, that their edges follow; 0 where they leave
-    it."""
+    """Return the fraction of a circle that the edges of two parts cover seen from above; 0 if they do not fit one."""
     plan = parts.patches.middles[np.concatenate([one, two]), :2]
     tolerance = parts.settings.rim_tolerance
     circle = circle_around(plan, tolerance)
@@ -368,8 +374,7 @@ def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> flo
 
 
 def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return how often as long as wide two parts are together, if the one begins where the other, longer one ends;
-    else 0."""
+    """Return the ratio of length to width of two parts together, if they lie end to end; else 0."""
     plans = [parts.patches.middles[part, :2] for part in (one, two)]
     longer = max(plans, key=lambda plan: extents(plan)[0])
     turned = [plan @ _axes(longer) for plan in plans]
@@ -383,8 +388,10 @@ def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> f
 
 
 def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return metres by which two pieces of one line miss each other in height, in the middle between them, if each
-    goes on as it slopes: little where both are pieces of something straight, level or leaning."""
+    """Return the difference in height of two parts in a line in metres, each extrapolated to the middle between them.
+
+    It is small if both are pieces of one straight object, level or leaning.
+    """
     places = [parts.patches.middles[part] for part in (one, two)]
     longer = max(places, key=lambda place: extents(place[:, :2])[0])
     along = _axes(longer[:, :2])[:, 0]
@@ -395,21 +402,20 @@ def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
 
 
 def _height_at(along: NDArray[np.float64], heights: NDArray[np.float64], width: float) -> float:
-    """Return where a line through heights (n,) at places (n,) along it passes 0; of what is too short to slope, the
-    mean."""
+    """Return the height at position 0 of a line fitted to heights (n,) at positions (n,); the mean if it is short."""
     off = along - along.mean()
     slope = float(off @ heights) / max(float(off @ off), width**2)
     return float(heights.mean() - slope * along.mean())
 
 
 def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the principal axes of places (n, 2), the longer first, as columns (2, 2)."""
+    """Return the principal axes of places (n, 2) as columns (2, 2), the longer one first."""
     apart = plan - plan.mean(axis=0)
     axes: NDArray[np.float64] = np.linalg.eigh(apart.T @ apart)[1][:, ::-1]
     return axes
 
 
 def extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return length and width (2,) of places (n, 2) along their principal axes."""
+    """Return the length and width (2,) of places (n, 2) along their principal axes."""
     extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
     return extents

@@ -1,7 +1,7 @@
-"""The table's plane: planes by random samples (RANSAC, Fischler and Bolles 1981), refined by least squares.
+"""Find the plane of the table by random samples (RANSAC, Fischler and Bolles 1981), refined by least squares.
 
-Several planes are taken out one after the other. The table is not simply the largest, which may be the floor or a
-wall: it is the one that looks like a table to an upright camera and has most standing on it.
+Several planes are extracted one after another. The largest may be the floor or a wall. The table is the plane that
+could be level for an upright camera and has the most points on it and standing on it.
 """
 
 from __future__ import annotations
@@ -16,46 +16,47 @@ from deixis.perception.detection.settings import DetectionSettings, PlaneSetting
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """The points p with normal · p = offset; the unit normal (3,) points to the side of the things."""
+    """Plane of the points p with normal · p = offset; the unit normal (3,) points to the side of the objects."""
 
     normal: NDArray[np.float64]
     offset: float
 
     def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return metres above the plane, of points (n, 3), shape (n,)."""
+        """Return the heights of points (n, 3) above the plane in metres, shape (n,)."""
         result: NDArray[np.float64] = points @ self.normal - self.offset
         return result
 
     @property
     def across(self) -> NDArray[np.float64]:
-        """Two unit vectors along the plane, at right angles, shape (2, 3)."""
+        """Two orthogonal unit vectors along the plane, shape (2, 3)."""
         along: NDArray[np.float64] = np.linalg.svd(self.normal[None])[2][1:]
         return along
 
     def is_along(self, other: Plane, settings: PlaneSettings) -> bool:
-        """Return whether both are as level, their normals to the same side."""
+        """Return True if both planes are nearly parallel and their normals point to the same side."""
         return bool(self.normal @ other.normal > settings.min_normal_cosine)
 
     def turned(self) -> Plane:
-        """Return the same plane, with its normal to the other side."""
+        """Return the plane with its normal reversed."""
         return Plane(-self.normal, -self.offset)
 
 
 @dataclass(frozen=True, eq=False)
 class Outlook:
-    """From where a cloud was seen. ``up`` and ``right`` (3,) are those of the image, None where that is not known.
+    """Viewpoint of a cloud.
 
-    ``known`` is false for an eye that was only assumed, for want of the place where the sensor stood.
+    ``up`` and ``right`` (3,) are the directions of the image, or None. ``known`` is False if the position ``eye`` of
+    the sensor is only assumed.
     """
 
     eye: NDArray[np.float64]
     up: NDArray[np.float64] | None = None
     right: NDArray[np.float64] | None = None
-    upwards: NDArray[np.float64] | None = None  # against gravity, where it was told
+    upwards: NDArray[np.float64] | None = None  # against gravity, if it was given
     known: bool = True
 
     def could_be_table(self, normal: NDArray[np.float64]) -> bool:
-        """Return whether a plane with this normal, towards the eye, is level for a camera that is held upright."""
+        """Return True if a plane with this normal, towards the eye, could be level for an upright camera."""
         if self.upwards is not None:
             return bool(normal @ self.upwards > 0.7)
         if self.up is None or self.right is None:
@@ -64,7 +65,7 @@ class Outlook:
 
 
 def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Plane | None:
-    """Return the plane of the table under points (n, 3), all finite; None where there is none."""
+    """Return the plane of the table in finite points (n, 3), or None if no plane could be a table."""
     rng, limits = np.random.default_rng(settings.seed), settings.plane
     size = limits.sample_size
     sample = points if len(points) <= size else points[np.sort(rng.choice(len(points), size, replace=False))]
@@ -74,43 +75,43 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: Detecti
     if not planes:
         return None
     free = np.ones(len(sample), dtype=np.bool_)
-    for plane in found:  # a wall is nothing that stands on the floor
+    for plane in found:  # a wall does not stand on the floor as an object
         free &= np.abs(plane.heights(sample)) > tolerance
     levels = [level_of(plane, sample, tolerance, sample[free], limits) for plane in planes]
     total = len(sample)
-    tables = [height for height in levels if height.bears(total, limits)]
+    tables = [height for height in levels if height.has_objects(total, limits)]
     levels = [height for height in levels if not any(height.is_floor_below(table, limits) for table in tables)]
-    # What stands on a table tells its upper side, should the sensor seem to be below: the origin may be a mere default.
+    # Objects on a table show its upper side, even if the sensor seems to be below: the origin may be a default.
     turned = [level.plane.turned() for level in levels]
     levels += [
         level_of(plane, sample, tolerance, sample[free], limits)
         for plane in turned
         if outlook.could_be_table(plane.normal)
     ]
-    best = max(levels, key=lambda level: level.bearing).plane
+    best = max(levels, key=lambda level: level.score).plane
     chosen = points[:: max(1, len(points) // limits.refinement_size)]
     return refined(best, chosen, tolerance_at(chosen, outlook, limits))
 
 
 @dataclass(frozen=True, eq=False)
 class LevelPlane:
-    """A plane, the points on it (k, 3), and how many stand on it."""
+    """Plane, the points on it (k, 3), and the number of points that stand on it."""
 
     plane: Plane
     points: NDArray[np.float64]
     standing: int
 
     @property
-    def bearing(self) -> int:
-        """How much is on it: its own area, and ten times that of what stands on it, as a number of points."""
+    def score(self) -> int:
+        """Score of the plane as a table: its points, and ten times the points that stand on it."""
         return len(self.points) + 10 * self.standing
 
-    def bears(self, total: int, settings: PlaneSettings) -> bool:
-        """Return whether enough of a ``total`` of points stand on it to be things."""
+    def has_objects(self, total: int, settings: PlaneSettings) -> bool:
+        """Return True if enough of ``total`` points stand on the plane to be objects."""
         return self.standing >= settings.min_standing_share * total
 
     def is_floor_below(self, other: LevelPlane, settings: PlaneSettings) -> bool:
-        """Return whether it lies a table's height below another level one."""
+        """Return True if the plane is parallel to another one and below it by the height of a table."""
         drop = np.median(self.plane.heights(other.points))
         return self.plane.is_along(other.plane, settings) and bool(drop > settings.floor_drop)
 
@@ -122,15 +123,16 @@ def level_of(
     free: NDArray[np.float64],
     settings: PlaneSettings,
 ) -> LevelPlane:
-    """Return what of a sample (n, 3) is on a plane within a tolerance (n,), and what of the ``free`` points stands
-    on it."""
+    """Return the points of a sample (n, 3) on a plane, within a tolerance (n,), and count the free ones above it."""
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
     return LevelPlane(plane, on, _standing(plane, on, free, settings))
 
 
 def tolerance_at(points: NDArray[np.float64], outlook: Outlook, settings: PlaneSettings) -> NDArray[np.float64]:
-    """Return metres from a plane, (n,), within which points (n, 3) may be on it; they grow with the square of the
-    distance."""
+    """Return the distance in metres, shape (n,), within which points (n, 3) count as on a plane.
+
+    It grows with the square of the distance from the sensor.
+    """
     squared = ((points - outlook.eye) ** 2).sum(axis=1)
     near: NDArray[np.float64] = settings.tolerance * np.clip(squared, 0.25, settings.max_noise_distance**2)
     return near
@@ -143,7 +145,7 @@ def _planes(
     rng: np.random.Generator,
     settings: PlaneSettings,
 ) -> list[Plane]:
-    """Return the large ones, the one with most points first."""
+    """Return the large planes of a sample in the order in which they are extracted."""
     found = []
     left = np.ones(len(sample), dtype=np.bool_)
     least = max(3, settings.min_inlier_share * len(sample))
@@ -174,8 +176,10 @@ def _planes(
 def _largest(
     points: NDArray[np.float64], tolerance: NDArray[np.float64], rng: np.random.Generator, trials: int
 ) -> Plane | None:
-    """Return the plane through three of the points that most points are on; one far away counts for the area it
-    stands for."""
+    """Return the plane through three points that has the most support.
+
+    A point counts by its tolerance, which grows with the area that it covers.
+    """
     from deixis.perception.detection.kernels import support
 
     triples = points[rng.integers(len(points), size=(trials, 3))]
@@ -193,9 +197,10 @@ def _largest(
 
 
 def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.float64], rounds: int = 6) -> Plane:
-    """Return the least-squares plane of the points near it, over and over, ever nearer: what stands on it has no say.
+    """Return the least-squares plane of the points near a plane, refitted with ever smaller tolerances.
 
-    Points are weighted by the inverse of their noise's variance. ``tolerance`` (n,) is in metres.
+    Objects on the plane do not affect it. Points are weighted by the inverse variance of their noise; ``tolerance``
+    (n,) is in metres.
     """
     from deixis.perception.detection.kernels import refine
 
@@ -205,7 +210,7 @@ def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.flo
 
 
 def _standing(plane: Plane, on: NDArray[np.float64], free: NDArray[np.float64], settings: PlaneSettings) -> int:
-    """Return how many of the ``free`` points are above the box around those that are ``on`` the plane, not far up."""
+    """Return the number of ``free`` points that are above the rectangle around the points ``on`` the plane."""
     if len(on) < 3:
         return 0
     across = plane.across

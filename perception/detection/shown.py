@@ -1,4 +1,4 @@
-"""What a cloud shows: a table, several, one object, or a room. The frame and the descriptor of views depend on it."""
+"""Classify a cloud as a table, several tables, one object or a room; frame and descriptor of views depend on it."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from deixis.perception.detection.settings import DetectionSettings
 
 
 class Shows(StrEnum):
-    """What a cloud shows."""
+    """Kind of a cloud."""
 
     TABLE = "table"
-    """One table, with things on it or bare."""
+    """One table, empty or with objects on it."""
     TABLES = "tables"
-    """Several tables, of which one was looked at."""
+    """Several tables, one of which was used."""
     OBJECT = "object"
-    """One object without a table. Which way up it is was not seen, unless it was told."""
+    """One object without a table; its upright direction is known only if it was given."""
     ROOM = "room"
-    """A room: no table, or a floor with things on it."""
+    """Room: no table, or a floor with objects on it."""
     NOTHING = "nothing"
-    """Neither a table, nor one object, nor a room."""
+    """None of the other kinds."""
 
 
 def is_small(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Return whether all points (n, 3), but for a few, are within the size of tableware."""
+    """Return True if the points (n, 3), except a few, have the extents of tableware."""
     limits = settings.scale
     _, middle, longest = _extents(points, settings)
     return bool(settings.least_length <= longest < limits.max_small_length and middle < limits.min_table_length)
 
 
 def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, levels: int = 0) -> bool:
-    """Return whether points (n, 3) on which no table with things was found are one connected object, and not a sheet.
+    """Return True if points (n, 3) without a table with objects are one connected object, and not a sheet.
 
-    A sheet as wide as a table is a bare table; two ``levels`` and more are tables where there is room for as many.
+    A sheet as wide as a table is an empty table. Two or more ``levels`` are tables if there is room for them.
     """
     limits = settings.scale
     thin, middle, longest = _extents(points, settings)
@@ -49,12 +49,12 @@ def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, leve
 
 
 def is_large(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Return whether points (n, 3) reach as far as a room does."""
+    """Return True if points (n, 3) extend as far as a room."""
     return _extents(points, settings)[1] > settings.scale.min_room_width
 
 
 def _extents(points: NDArray[np.float64], settings: DetectionSettings) -> list[float]:
-    """Return how far all points but a few reach along their principal axes, the least first."""
+    """Return the extents of all points except outliers along their principal axes, in metres, ascending."""
     points = points[:: max(1, len(points) // 20_000)]
     axes = np.linalg.svd(np.cov(points.T))[0]
     outliers = (settings.scale.outlier_percent, 100 - settings.scale.outlier_percent)
@@ -64,8 +64,7 @@ def _extents(points: NDArray[np.float64], settings: DetectionSettings) -> list[f
 
 
 def share_connected(points: NDArray[np.float64], gap: float) -> float:
-    """Return the share of points (n, 3) that are in the largest connected piece over a grid of cells of ``gap``
-    metres."""
+    """Return the fraction of points (n, 3) in the largest connected piece on a grid with cells of ``gap`` metres."""
     from scipy.ndimage import label
 
     points = points[:: max(1, len(points) // 20_000)]

@@ -1,8 +1,8 @@
-"""Supervoxels: small patches of surface that keep to edges of shape and colour, of which things are then put together.
+"""Supervoxels: small patches of surface that respect edges of shape and colour.
 
-As in Papon et al. (Voxel cloud connectivity segmentation, CVPR 2013) patches grow from seeds spread evenly in space,
-along the surface; here a point goes to the seed from which the cheapest path leads to it, and a path pays for turning
-normals, for steps and for changing colours, so that patches meet where these change.
+As in Papon et al. (Voxel cloud connectivity segmentation, CVPR 2013), patches grow along the surface from seeds that
+are spread evenly in space. Here a point belongs to the seed with the cheapest path to it. The cost of a path includes
+turning normals, steps and changes of colour, so that patches end where these change.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from deixis.perception.detection.surface import Surface
 
 @dataclass(frozen=True, eq=False)
 class Supervoxels:
-    """``of`` (n,) is each point's patch, 0 to s - 1; the rest are means over the patches' points."""
+    """Patches of a surface: ``of`` (n,) is the patch of each point, 0 to s - 1; other fields are means and sums."""
 
     of: NDArray[np.int32]
     sizes: NDArray[np.float64]  # (s,): points
     middles: NDArray[np.float64]  # (s, 3)
     normals: NDArray[np.float64]  # (s, 3)
-    # What is higher counts more for a colour: at its border a low thing's points are mixed with the table's.
+    # Colours are weighted by height, because points at the border of a low object mix with those of the table.
     colours: NDArray[np.float64]  # (s, 3)
     areas: NDArray[np.float64]  # (s,): square metres
     settings: SupervoxelSettings
@@ -35,19 +35,19 @@ class Supervoxels:
 
     @cached_property
     def tints(self) -> NDArray[np.float64]:
-        """The colours with their lightness scaled down, (s, 3)."""
+        """Colours with their lightness scaled down, shape (s, 3)."""
         tints: NDArray[np.float64] = self.colours * (self.settings.lightness_weight, 1.0, 1.0)
         return tints
 
     @cached_property
     def weights(self) -> NDArray[np.float64]:
-        """What each counts for in a mean of colours, (s,): what is higher counts more, as in a patch."""
+        """Weights of the patches in a mean of colours, shape (s,): higher patches count more, as higher points do."""
         weights: NDArray[np.float64] = self.sizes * self.middles[:, 2].clip(self.settings.min_colour_height)
         return weights
 
 
 def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
-    """Return patches of a surface of one point or more."""
+    """Return the patches of a surface with at least one point."""
     from deixis.perception.detection.kernels import grow
 
     noisy = np.clip(settings.spacing_noise_ratio * np.median(surface.sigma), settings.min_spacing, settings.max_spacing)
@@ -66,19 +66,19 @@ def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
 def means(
     of: NDArray[np.integer], values: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
-    """Return the means (m, d) of values (n, d) by number ``of`` (n,), weighted by (n,)."""
+    """Return the means (m, d) of values (n, d), grouped by ``of`` (n,), with optional weights (n,)."""
     weights = np.ones(len(of)) if weights is None else weights
     total = np.stack([sums(of, values[:, axis] * weights) for axis in range(values.shape[1])], axis=1)
     return total / sums(of, weights)[:, None]
 
 
 def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, count: int = 0) -> NDArray[np.float64]:
-    """Return the sums of values (n,), or how many there are, by number ``of`` (n,), for at least ``count`` numbers."""
+    """Return the sums of values (n,), or the group sizes, grouped by ``of`` (n,), for at least ``count`` groups."""
     return np.bincount(of, values, minlength=count).astype(np.float64)
 
 
 def _seeds(points: NDArray[np.float64], spacing: float) -> NDArray[np.int64]:
-    """Return for each occupied cell of a grid the point nearest to the mean of its points."""
+    """Return the point nearest to the mean of each occupied grid cell."""
     from deixis.perception.detection.kernels import nearest_to_means
 
     cells = np.floor(points / spacing).astype(np.int64)

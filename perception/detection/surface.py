@@ -1,4 +1,4 @@
-"""The surface around each point: a plane through what is near along the surface, and the colour there."""
+"""Surface around each point: a plane through its neighbourhood, and the colour."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """n points with what is known around each; all lengths in metres, in the table's frame."""
+    """Points with normals, colours and noise; all lengths in metres, in the frame of the table."""
 
     points: NDArray[np.float64]  # (n, 3)
     smooth: NDArray[np.float64]  # (n, 3): moved onto the planes
     normals: NDArray[np.float64]  # (n, 3): unit vectors towards the sensor
-    colours: NDArray[np.float64]  # (n, 3): CIE L*a*b*, averaged over neighbours; 0 where there are none
+    colours: NDArray[np.float64]  # (n, 3): CIE L*a*b*, averaged over neighbours; 0 without colours
     neighbours: NDArray[np.int32]  # (n, k)
     sigma: NDArray[np.float64]  # (n,): the standard deviation of a measured depth
     jump: NDArray[np.float64]  # (n,): neighbours farther away are on another surface
-    spacing: NDArray[np.float64]  # (n,): the usual distance between neighbours, so far from the sensor
+    spacing: NDArray[np.float64]  # (n,): the usual distance between neighbours at this distance from the sensor
 
     @property
     def areas(self) -> NDArray[np.float64]:
-        """Square metres that a point stands for, (n,)."""
+        """Area of the surface for each point, in square metres, shape (n,)."""
         return self.spacing**2
 
     def __len__(self) -> int:
@@ -41,8 +41,7 @@ def surface_of(
     eye: NDArray[np.float64],
     settings: SurfaceSettings,
 ) -> Surface:
-    """Return the surface through points (n, 3) with colours (n, 3), seen from ``eye`` (3,) with noise ``sigma``
-    (n,)."""
+    """Return the surface through points (n, 3) with colours (n, 3), seen from ``eye`` with noise ``sigma`` (n,)."""
     from deixis.perception.detection.kernels import gaps, mixed, planes
 
     distance = np.linalg.norm(points - eye, axis=1)

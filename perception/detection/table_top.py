@@ -1,8 +1,8 @@
-"""The table's top: which of the points level with its plane are on it, and what is above its outline.
+"""Find the top of a table: the points of its plane that belong to it, and its outline.
 
-Things may hide so much of a table that its visible parts are not connected. Two parts are of one table where what lies
-between them, as seen from the sensor, is hidden by something above the plane. Where the view passes through the plane
-to something lower, or to nothing at all, there is no table.
+Objects may hide so much of a table that its visible parts are not connected. Two parts belong to one table if something
+above the plane hides the space between them from the sensor. Where the view passes through the plane to something
+lower, or to nothing, there is no table.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from deixis.perception.detection.settings import DetectionSettings, TableTopSett
 from deixis.perception.detection.viewpoint import View, directions
 
 _EMPTY, _LEVEL, _ABOVE, _BELOW = 0, 1, 2, 3
-"""What a cell of the image shows: nothing, the plane, something above it, or something below it."""
+"""Content of a cell of the image: nothing, the plane, something above it, or something below it."""
 
 
 @dataclass(frozen=True, eq=False)
 class TableTop:
-    """The points (n, 3) of a view that are on a table's top, by their numbers ``on`` (k,), and the top's outline."""
+    """Points of a view (n, 3) on the top of a table, given by their indices ``on`` (k,), and the outline of the top."""
 
     plane: Plane
     points: NDArray[np.float64]
@@ -33,15 +33,15 @@ class TableTop:
 
     @cached_property
     def outline(self) -> NDArray[np.float64]:
-        """The convex hull of the top in the plan of ``plane.across``, as half planes (h, 3); none of too few points."""
+        """Convex hull of the top along ``plane.across``, as half planes (h, 3); h is 0 for too few points."""
         step = max(1, len(self.on) // self.settings.top.outline_sample_size)
         hull = hull_of(self.points[self.on[::step]] @ self.plane.across.T)
         return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
 
     def beyond(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return how far points (n, 3) are outside the outline as seen from above, in metres, (n,); within it below 0.
+        """Return the distances of points (n, 3) from the outline seen from above, in metres, (n,); negative inside.
 
-        Where the top has no outline, all are infinitely far.
+        Without an outline, all distances are infinite.
         """
         from deixis.perception.detection.kernels import greatest_offset
 
@@ -53,18 +53,18 @@ class TableTop:
 
     @cached_property
     def outside(self) -> NDArray[np.float64]:
-        """How far each point of the view is outside the outline, (n,), as :meth:`beyond` has it."""
+        """Distance of each point of the view from the outline in metres, shape (n,); negative inside."""
         return self.beyond(self.points)
 
     @property
     def is_below(self) -> NDArray[np.bool_]:
-        """Over which points of the view, or below them, the top is, (n,)."""
+        """Mask of the points of the view that are above or below the top, shape (n,)."""
         result: NDArray[np.bool_] = self.outside <= self.settings.top.slack
         return result
 
 
 def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop:
-    """Return the top of the table of a ``plane``: its largest connected part, and all parts that things cut off."""
+    """Return the top of the table of a ``plane``: its largest connected part, and all parts that objects separate."""
     limits = settings.top
     flat, shape = _cells(view, plane, limits)
     heights = plane.heights(view.points)
@@ -89,11 +89,9 @@ def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop
 
 
 def _cells(view: View, plane: Plane, settings: TableTopSettings) -> tuple[NDArray[np.int64], tuple[int, int]]:
-    """Return the cell of the image that each point is in, (n,), numbered row by row, and how many rows and columns of
-    cells there are.
+    """Return the cell of each point, shape (n,), numbered row by row, and the numbers of rows and columns of cells.
 
-    Points of an image are in blocks of pixels, others in blocks of directions from the sensor; where that is not known,
-    in squares of the plan.
+    Cells are blocks of pixels for an image, blocks of directions from a known sensor, or else squares seen from above.
     """
     if not len(view.points):
         return np.zeros(0, np.int64), (0, 0)
@@ -107,7 +105,7 @@ def _cells(view: View, plane: Plane, settings: TableTopSettings) -> tuple[NDArra
         rays = directions(view.points, view.outlook.eye)
         ahead = rays.mean(axis=0)
         ahead /= max(float(np.linalg.norm(ahead)), 1e-9)
-        depth = np.maximum(rays @ ahead, 0.1)  # nothing is seen farther aside than 84 degrees
+        depth = np.maximum(rays @ ahead, 0.1)  # no sensor sees more than 84 degrees aside
         at = rays @ np.linalg.svd(ahead[None])[2][1:].T / depth[:, None]
         side = float(np.ptp(np.percentile(at, (1, 99), axis=0), axis=0).max()) / max(count, 1.0)
     else:
@@ -127,7 +125,7 @@ def _shown(
     shape: tuple[int, ...],
     settings: TableTopSettings,
 ) -> NDArray[np.int8]:
-    """Return what each cell shows, of that ``shape``, by the cells (n,) of points with ``heights`` (n,)."""
+    """Return the content of each cell, of shape ``shape``, from the cells (n,) of points with ``heights`` (n,)."""
     count = int(np.prod(shape))
     total = np.bincount(flat, minlength=count)
     on = np.bincount(flat[level], minlength=count)
@@ -145,7 +143,7 @@ def _is_upright(
     plane: Plane,
     settings: DetectionSettings,
 ) -> bool:
-    """Return whether nearly all of a part (n,) has something right above it: a strip of a wall or of a tall thing."""
+    """Return True if nearly all of a part (n,) has something right above it: a strip of a wall or a tall object."""
     limits = settings.top
     above = (heights > settings.plane.table_band) & (heights < settings.reach)
     plan = np.floor(points[part | above] @ plane.across.T / limits.plan_cell).astype(np.int64)
@@ -159,10 +157,10 @@ def _is_upright(
 def _goes_on(
     shown: NDArray[np.int8], top: NDArray[np.bool_], part: NDArray[np.bool_], settings: TableTopSettings
 ) -> bool:
-    """Return whether a part of the plane (r, c) is of the same table as its ``top`` (r, c).
+    """Return True if a part of the plane (r, c) belongs to the same table as its ``top`` (r, c).
 
-    Straight lines are drawn from the cells of the part that face the top to the nearest cells of that. Most must pass
-    over what hides the plane.
+    Straight lines lead from the cells of the part that face the top to the nearest cells of the top. Most of them must
+    pass over something that hides the plane.
     """
     from scipy.spatial import cKDTree
 
@@ -182,6 +180,6 @@ def _goes_on(
 
 
 def largest_part_length(points: NDArray[np.float64], plane: Plane, settings: TableTopSettings) -> float:
-    """Return the longer side, in metres, of the largest connected part of points (n, 3) in the plan of a plane."""
+    """Return the longer side of the largest connected part of points (n, 3) along a plane, in metres."""
     plan = points @ plane.across.T
     return float(np.ptp(plan[in_largest_piece(plan, settings.plan_cell)], axis=0).max())

@@ -1,4 +1,4 @@
-"""The tables of a cloud: the one with most on it, and others, found as if those before were not there."""
+"""Find the tables of a cloud one after another, each without the points of the tables before."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from deixis.perception.detection.viewpoint import View, believed, likely, sample
 
 @dataclass(frozen=True, eq=False)
 class FoundTable:
-    """A table's plane and top, and the points that are of no table before it."""
+    """Plane and top of a table, and the view without the points of the tables before."""
 
     plane: Plane
     top: TableTop
@@ -24,9 +24,9 @@ class FoundTable:
 
 
 def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
-    """Yield the tables of a view; none where nothing large is level.
+    """Yield the tables of a view; yield nothing if no large surface is level.
 
-    Each table has an outlook of its own: one cloud may hold looks from several places.
+    Each table has its own viewpoint, because one cloud may combine several views.
     """
     points, outlook = view.points, believed(view.outlook, view.points, settings)
     base = table_plane(points, outlook, settings)
@@ -47,9 +47,9 @@ def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
 
 
 def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settings: DetectionSettings) -> Plane | None:
-    """Return one more table among points (n, 3), those beside the table of a ``plane``; None where there is none.
+    """Return another table among points (n, 3) beside the table of a ``plane``, or None.
 
-    It is as level and about as high, neither being a floor to the other, and something stands on it.
+    The other table must be parallel, of similar height (neither is the floor below the other), and not empty.
     """
     limits = settings.plane
     few = points[:: max(1, len(points) // limits.next_table_sample_size)]
@@ -58,7 +58,7 @@ def _another(points: NDArray[np.float64], plane: Plane, outlook: Outlook, settin
         return None
     near = tolerance_at(few, outlook, limits)
     level = level_of(other, few, near, few[np.abs(other.heights(few)) > near], limits)
-    if len(level.points) < limits.min_inlier_share * len(few) or not level.bears(len(few), limits):
+    if len(level.points) < limits.min_inlier_share * len(few) or not level.has_objects(len(few), limits):
         return None
     long = largest_part_length(level.points, other, settings.top)
     drop = abs(np.median(plane.heights(level.points)))

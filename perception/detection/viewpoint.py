@@ -1,8 +1,8 @@
-"""Where a cloud was seen from, and the frame of a table as its viewer sees it.
+"""Estimate the viewpoint of a cloud, and compute the frame of a table as its viewer sees it.
 
-A file may hold no viewpoint, or a cloud that was moved to another frame, or one made of several views. As seen from
-where a cloud was taken, points in nearly the same direction are near each other, but for the edges of things; as seen
-from elsewhere they are not.
+A file may lack the viewpoint, or hold a cloud that was moved to another frame or combines several views. Seen from the
+right viewpoint, points in nearly the same direction are near each other, except at the edges of objects; seen from a
+wrong one, they are not.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _Kind = TypeVar("_Kind", bound=np.generic)
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """The points of a cloud that have a depth, and from where they are seen.
+    """Points of a cloud that have a depth, and their viewpoint.
 
-    ``points`` (n, 3) are in the cloud's frame, ``places`` (n,) their numbers in the cloud, which is an image of
-    ``organised`` rows and columns or none.
+    ``points`` (n, 3) are in the frame of the cloud, and ``places`` (n,) are their indices in it. ``organised`` gives
+    the rows and columns if the cloud is an image, or None.
     """
 
     points: NDArray[np.float64]
@@ -36,18 +36,18 @@ class View:
 
     @cached_property
     def pixels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        """The rows and the columns (n,) of the points of an image."""
-        assert self.organised is not None, "a cloud that is no image has no pixels"
+        """Rows and columns of the points of an image, each of shape (n,)."""
+        assert self.organised is not None, "only an organised cloud has pixels"
         rows, columns = np.divmod(self.places.astype(np.int32), np.int32(self.organised[1]))
         return rows, columns
 
     def take(self, chosen: NDArray[np.intp]) -> View:
-        """Return the chosen points alone."""
+        """Return a view of the chosen points."""
         return replace(self, points=self.points[chosen], places=self.places[chosen])
 
 
 def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
-    """Return from where a cloud was seen, and which way up: the rows of its image go down as seen from its origin."""
+    """Return the viewpoint of a cloud, with the up and right directions of its image as seen from its origin."""
     eye = np.asarray(cloud.origin, dtype=np.float64)
     upwards = None
     if settings.up is not None:
@@ -62,7 +62,7 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
     camera = _best_camera(image, eye, limits)
     if camera is None:
         return Outlook(eye, upwards=upwards)
-    # From a wrong place the misfit is smooth; noise across the rays makes steps uneven far more than it makes misfits.
+    # From a wrong place the misfit is smooth; noise across the rays changes the steps far more than the misfit.
     noisy = camera.misfit < min(limits.max_pinhole_misfit, limits.max_smooth_misfit * uneven)
     if uneven > limits.max_direction_change and not noisy:
         return Outlook(eye, upwards=upwards, known=False)
@@ -70,14 +70,13 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
 
 
 def _without_empty_lines(image: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the rows and columns of an image (r, c, 3) in which anything has a depth: some cameras leave lines out."""
+    """Return an image (r, c, 3) without rows and columns that have no depth; some cameras leave lines out."""
     there = np.isfinite(image[..., 2])
     return image[there.any(axis=1)][:, there.any(axis=0)]
 
 
 def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> NDArray[np.float64]:
-    """Return unit vectors (t, 3, c, 3) from the eye to pixels of an image (r, c, 3): t times to three that follow each
-    other down, in each of c columns."""
+    """Return unit vectors (t, 3, c, 3) from the eye to t triples of successive rows of an image, in c columns."""
     rows, columns = image.shape[:2]
     first = np.arange(0, max(rows - 2, 1), max(1, rows // settings.image_steps))
     triples = image[np.minimum(first[:, None] + np.arange(3), rows - 1), :: max(1, columns // settings.image_lines)]
@@ -88,8 +87,11 @@ def _rays(image: NDArray[np.float32], eye: NDArray[np.float64], settings: Viewpo
 
 
 def _uneven(rays: NDArray[np.float64]) -> float:
-    """Return by what share most steps from ray to ray of (t, 3, c, 3) change to the next, at most, beyond what those of
-    a pinhole camera do: up to 45 degrees aside, twice the step's angle. The edges of things are left out."""
+    """Return the 90 % quantile of the relative change between successive steps from ray to ray, of rays (t, 3, c, 3).
+
+    The change of a pinhole camera, up to twice the angle of a step within 45 degrees, is subtracted. The quantile
+    excludes the edges of objects.
+    """
     first, second = rays[:, 1] - rays[:, 0], rays[:, 2] - rays[:, 1]
     angles = np.linalg.norm(second, axis=2)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -99,8 +101,7 @@ def _uneven(rays: NDArray[np.float64]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Pinhole:
-    """The pinhole camera that sees an image from a place: where its columns and rows lead, unit vectors (3,), and by
-    how many pixels most points are off."""
+    """Pinhole camera fitted to an image: unit vectors (3,) along its columns and rows, and its misfit in pixels."""
 
     down: NDArray[np.float64]
     right: NDArray[np.float64]
@@ -108,10 +109,10 @@ class _Pinhole:
 
 
 def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings: ViewpointSettings) -> _Pinhole | None:
-    """Return the camera at the eye that sees the points of an image (r, c, 3) nearest to their pixels; None of too few.
+    """Return the camera at the eye that projects the points of an image (r, c, 3) nearest to their pixels.
 
-    By the direct linear transformation (Abdel-Aziz and Karara, Direct linear transformation from comparator
-    coordinates, 1971).
+    The result is None for too few points. The camera is fitted by the direct linear transformation (Abdel-Aziz and
+    Karara, Direct linear transformation from comparator coordinates, 1971).
     """
     row, column = np.nonzero(np.isfinite(image[..., 2]))
     few = slice(None, None, max(1, len(row) // settings.pinhole_sample_size))
@@ -129,7 +130,7 @@ def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings:
     with np.errstate(invalid="ignore", divide="ignore"):
         off = size * np.linalg.norm(rays @ camera[:2].T / (rays @ camera[2])[:, None] - at, axis=1)
     ways = []
-    for along, other in ((1, 0), (0, 1)):  # a column is where its own coordinate does not change
+    for along, other in ((1, 0), (0, 1)):  # a column is the direction in which its own coordinate stays constant
         way = np.cross(camera[other], camera[2])
         length = float(np.linalg.norm(way))
         if not length > 0:
@@ -139,9 +140,8 @@ def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings:
 
 
 def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionSettings) -> Outlook:
-    """Return the outlook on the points (n, 3), if they may have been seen from there; else one from above, as not
-    known."""
-    if outlook.up is not None:  # of an image, that has been looked at
+    """Return the viewpoint if the points (n, 3) are consistent with it, else an assumed one above them."""
+    if outlook.up is not None:  # the viewpoint of an image has been checked before
         return outlook
     limits = settings.viewpoint
     few = sampled(points, settings)
@@ -152,8 +152,10 @@ def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionS
 
 
 def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings) -> Outlook:
-    """Return the outlook, if it is known and above the table; else from where the points (n, 3) look most as if
-    seen. One that is doubtful gives way to another that is twice as likely."""
+    """Return the viewpoint if it is known and above the table, else the most plausible one for points (n, 3).
+
+    A doubtful viewpoint is replaced if another one has at most half of its share of inconsistent neighbours.
+    """
     limits = settings.viewpoint
     few, told = sampled(points, settings), float(np.inf)
     if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
@@ -174,7 +176,7 @@ def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings
 
 
 def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kind]:
-    """Return points, or their numbers, (n, …), or as many of them at random as a viewpoint is judged by."""
+    """Return the points or indices (n, …), or a random sample of the size that the settings give."""
     size = settings.viewpoint.sample_size
     if len(points) <= size:
         return points
@@ -182,8 +184,7 @@ def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kin
 
 
 def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: ViewpointSettings) -> float:
-    """Return the share of neighbours in direction, as seen from ``eye`` (3,), that are apart in space, of points (n,
-    3).
+    """Return the fraction of neighbours in direction from ``eye`` (3,) that are far apart in space, for points (n, 3).
 
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.02, -0.5:0.5:0.02])
     >>> bowl = np.stack([x, y, x**2 + y**2], axis=1)
@@ -213,12 +214,11 @@ def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray
 def table_frame(
     plane: Plane, on: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
 ) -> NDArray[np.float64]:
-    """Return the transform (4, 4) that takes points of the cloud's frame to the table's.
+    """Return the transform (4, 4) from the frame of the cloud to that of the table.
 
-    z is the height above the plane. y points away from the viewer: from a ``viewer`` that is given to the middle of
-    the table's points ``on`` (n, 3); else upwards in the image, as whoever holds the camera sees it; else from the
-    sensor to the middle. x is to the right. The origin is the middle of the rectangle around the table's points, on
-    the table.
+    z is the height above the plane. y points away from the viewer: from a given ``viewer`` to the middle of the points
+    ``on`` the table (n, 3); else upwards in the image; else from the sensor to the middle. x points to the right. The
+    origin is on the table, in the middle of the rectangle around its points.
     """
     up = plane.normal
     away = _across(up, _away(plane, on.mean(axis=0), outlook, viewer))
@@ -235,7 +235,7 @@ def table_frame(
 def _away(
     plane: Plane, middle: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
 ) -> list[NDArray[np.float64]]:
-    """Return directions away from the viewer, the best first; not all need to be of use."""
+    """Return directions away from the viewer, the best first; some may be vertical."""
     if viewer is not None:
         return [middle - np.asarray(viewer, dtype=np.float64)]
     if not outlook.known:
@@ -246,7 +246,7 @@ def _away(
 
 
 def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return the first direction that is not along ``up``, made level; else y or x of the cloud's frame."""
+    """Return the first direction that is not along ``up``, projected to the plane; else y or x of the cloud."""
     for direction in (*wanted, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])):
         level = direction - (direction @ up) * up
         length = float(np.linalg.norm(level))
@@ -256,14 +256,14 @@ def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArr
 
 
 def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (n, 3) taken by a transform (4, 4); what is not finite stays so."""
-    with np.errstate(invalid="ignore"):  # infinity times nothing
+    """Return points (n, 3) moved by a transform (4, 4); coordinates that are not finite stay so."""
+    with np.errstate(invalid="ignore"):  # infinity times 0
         result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result
 
 
 def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
-    """Return the same points in another frame, without labels; ``frame`` (4, 4) takes the cloud's frame to it."""
+    """Return a cloud moved by the transform ``frame`` (4, 4), without labels."""
     origin = moved(np.array([cloud.origin]), frame)[0]
     normals = None if cloud.normals is None else (cloud.normals @ frame[:3, :3].T).astype(np.float32)
     points = moved(cloud.points, frame).astype(np.float32)

@@ -1,1 +1,1 @@
-"""Scenes as files: scene JSON, COCO and LabelMe."""
+"""Read scenes from scene JSON, COCO, LabelMe and 3-D detections, and write them."""

@@ -1,11 +1,10 @@
-"""Scenes from COCO instance annotations: ``images``, ``annotations`` and ``categories`` in one JSON file.
+"""Read scenes from COCO instance annotations: ``images``, ``annotations`` and ``categories`` in one JSON file.
 
-The format: https://cocodataset.org/#format-data. Of the chosen image every annotation becomes an object, but crowds
-(``"iscrowd": 1``), which outline many things at once and none of them, are left out without a word. A ``bbox``
-[x, y, width, height] gives the box; without one the polygons of ``segmentation`` do, all parts of an object in one
-box. Run-length encoded masks are not decoded: they need a ``bbox`` beside them. A ``score``, as detectors write it,
-is the label's confidence; ``"category_id": null`` leaves an object unnamed. Keys that are not needed are not looked
-at, and of the annotations of other images nothing but the image that they belong to.
+The format: https://cocodataset.org/#format-data. Each annotation of the chosen image becomes an object, except crowds
+(``"iscrowd": 1``), which outline several objects at once and are skipped without a note. The box is the ``bbox``
+[x, y, width, height], or else the box around all polygons of ``segmentation``. Run-length encoded masks are not decoded
+and need a ``bbox``. A ``score``, as detectors write it, is the confidence of the label; ``"category_id": null`` leaves
+an object without a label. Other keys are not read. Of annotations of other images, only the ``image_id`` is read.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from deixis.perception.formats.image_boxes import box_around, image_scene
 from deixis.perception.scene import Scene
 
 MAX_LISTED = 5
-"""How many images an error lists to choose from."""
+"""Maximum number of images that an error lists."""
 
 _Id = int | str
 
@@ -36,13 +35,29 @@ class _Image:
 
 
 def is_coco(data: Any) -> bool:
-    """Return whether parsed JSON is meant as COCO annotations."""
+    """Return True if parsed JSON has the keys of COCO annotations."""
     return isinstance(data, Mapping) and "images" in data and "annotations" in data and "objects" not in data
 
 
 def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = None) -> Scene:
-    """Return the scene of one image; ``image`` chooses it by file name or id where there are several.
+    """Return the scene of one image of parsed COCO annotations.
 
+    Parameters
+    ----------
+    data
+        Parsed JSON of the annotations.
+    file
+        Name of the file for error messages.
+    image
+        File name or id of the image; None if the file has only one.
+
+    Raises
+    ------
+    SceneError
+        If the file is malformed, has no such image, or has several and ``image`` is None; the message names the place.
+
+    Examples
+    --------
     >>> found = coco_scene({
     ...     "images": [{"id": 1, "file_name": "table.jpg", "width": 640, "height": 480}],
     ...     "categories": [{"id": 7, "name": "fork"}],
@@ -50,8 +65,6 @@ def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = Non
     ... }, "table.json")
     >>> found["o1"].label, found["o1"].minimum, found["o1"].maximum
     ('fork', (100.0, 200.0), (120.0, 400.0))
-
-    Raises SceneError, with the place, where the file is malformed, the image is none of its, or none is chosen.
     """
     images = _images(data, file)
     chosen = _chosen(images, image, file)
@@ -62,7 +75,7 @@ def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = Non
         where = f"{file}: annotations[{position}]"
         belongs_to = _id(_required(mapping(entry, where), "image_id", where), f"{where}: 'image_id'")
         if belongs_to not in known:
-            raise SceneError(f"{where}: 'image_id' {shown(belongs_to)} is the id of no image in this file")
+            raise SceneError(f"{where}: 'image_id' {shown(belongs_to)} is not the id of an image in this file")
         if belongs_to == chosen.id and not _is_crowd(entry, where):
             label = _label(_required(entry, "category_id", where), labels, where)
             if entry.get("bbox") is not None:
@@ -85,12 +98,12 @@ def _images(data: Mapping[str, Any], file: str) -> list[_Image]:
             pixels(height, f"{where}: 'height'"),
         )
     if not images:
-        raise SceneError(f"{file}: 'images' is empty, so there is no scene in this file")
+        raise SceneError(f"{file}: 'images' must have at least one image, got none")
     return list(images.values())
 
 
 def _chosen(images: list[_Image], wanted: str | int | None, file: str) -> _Image:
-    """Return the image of a file name, else of an id, which may be given as a text."""
+    """Return the image with a file name or else an id, which may be given as a text."""
     if wanted is None and len(images) == 1:
         return images[0]
     named = [image for image in images if image.name is not None and image.name == wanted]
@@ -101,7 +114,7 @@ def _chosen(images: list[_Image], wanted: str | int | None, file: str) -> _Image
     listed = ", ".join(str(image) for image in (named or images)[:MAX_LISTED])
     listed += ", …" if len(named or images) > MAX_LISTED else ""
     if named:
-        raise SceneError(f"{file}: {len(named)} images are called '{shown(wanted)}'; choose one by its id: {listed}")
+        raise SceneError(f"{file}: {len(named)} images are called '{shown(wanted)}'; choose one by id: {listed}")
     if wanted is None:
         raise SceneError(f"{file}: the file has {len(images)} images; choose one by file name or id: {listed}")
     raise SceneError(f"{file}: there is no image '{shown(wanted)}' in this file; it has {listed}")
@@ -119,7 +132,7 @@ def _categories(data: Mapping[str, Any], file: str) -> dict[_Id, str]:
 def _is_crowd(entry: Mapping[str, Any], where: str) -> bool:
     crowd = entry.get("iscrowd", 0)
     if not isinstance(crowd, int) or crowd not in (0, 1):
-        raise SceneError(f"{where}: 'iscrowd' must be 0 or 1")
+        raise SceneError(f"{where}: 'iscrowd' must be 0 or 1, got {shown(crowd)}")
     return bool(crowd)
 
 
@@ -128,7 +141,7 @@ def _label(category: Any, labels: Mapping[_Id, str], where: str) -> str | None:
         return None
     identifier = _id(category, f"{where}: 'category_id'")
     if identifier not in labels:
-        raise SceneError(f"{where}: 'category_id' {shown(identifier)} is the id of no category in this file")
+        raise SceneError(f"{where}: 'category_id' {shown(identifier)} is not the id of a category in this file")
     return labels[identifier]
 
 
@@ -137,23 +150,23 @@ def _bbox(data: Any, where: str) -> list[tuple[float, float]]:
         raise SceneError(f"{where} must have 4 numbers: x, y, width and height")
     x, y, width, height = (number(value, where) for value in data)
     if width < 0 or height < 0:
-        raise SceneError(f"{where}: a width or height below 0")
+        raise SceneError(f"{where}: width and height must be at least 0")
     return [(x, y), (x + width, y + height)]
 
 
 def _polygons(data: Any, where: str) -> list[tuple[float, float]]:
-    """Return the corners of all parts."""
+    """Return the corners of all polygons of a segmentation."""
     if data is None:
-        raise SceneError(f"{where}: 'bbox' is missing, and so is 'segmentation'; an object needs one of them")
+        raise SceneError(f"{where}: 'bbox' and 'segmentation' are both missing; give one of them")
     if isinstance(data, Mapping):
-        raise SceneError(f"{where}: 'segmentation' is run-length encoded, which is not read; give a 'bbox' beside it")
+        raise SceneError(f"{where}: run-length encoded 'segmentation' cannot be read; add a 'bbox'")
     if not isinstance(data, list) or not data:
-        raise SceneError(f"{where}: 'segmentation' must be a list of polygons, with one at least")
+        raise SceneError(f"{where}: 'segmentation' must be a list of at least one polygon")
     corners: list[tuple[float, float]] = []
     for part, flat in enumerate(data):
         place = f"{where}: 'segmentation'[{part}]"
         if not isinstance(flat, list) or len(flat) < 6 or len(flat) % 2:
-            raise SceneError(f"{place} must be a list x1, y1, x2, y2, … of 3 corners or more")
+            raise SceneError(f"{place} must be a list x1, y1, x2, y2, … of at least 3 corners")
         values = [number(value, place) for value in flat]
         corners += zip(values[::2], values[1::2], strict=True)
     return corners
@@ -168,7 +181,7 @@ def _new_id(entry: Mapping[str, Any], taken: Mapping[_Id, object], where: str) -
 
 def _id(data: Any, where: str) -> _Id:
     if isinstance(data, bool) or not isinstance(data, int | str):
-        raise SceneError(f"{where}: an id is a whole number or a text, not {kind(data)}")
+        raise SceneError(f"{where}: an id must be a whole number or a text, got {kind(data)}")
     if isinstance(data, int) and abs(data) >= 2**63:
         raise SceneError(f"{where}: the number is too large")
     return data

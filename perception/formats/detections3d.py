@@ -1,8 +1,8 @@
-"""Scenes from 3-D detections with the fields of ROS's `vision_msgs/Detection3DArray`, and back.
+"""Convert 3-D detections with the fields of the ROS message `vision_msgs/Detection3DArray` to scenes, and back.
 
-The fields: https://docs.ros.org/en/api/vision_msgs/html/msg/Detection3DArray.html (ROS 2's names). Messages are read by
-attribute or by key, so that a ROS message, its JSON and a dictionary all do; no ROS is needed. A turned box becomes the
-axis-aligned one around it, with the turned one beside it where it is turned about the vertical only.
+The fields: https://docs.ros.org/en/api/vision_msgs/html/msg/Detection3DArray.html (names of ROS 2). Fields are read by
+attribute or by key, from a ROS message, its JSON or a dictionary; ROS need not be installed. A rotated box becomes the
+axis-aligned box around it; the object also keeps the rotated box if it is rotated about the vertical only.
 """
 
 from __future__ import annotations
@@ -17,26 +17,27 @@ from deixis.perception.errors import SceneError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
 UPRIGHT_TOLERANCE = 1e-3
-"""Maximum difference from 1 of the cosine between a box's third axis and the vertical, for it to count as upright."""
+"""Maximum difference from 1 of the cosine between the third axis of an upright box and the vertical."""
 
 
 def scene_from_detections3d(message: Any, *, viewpoint: str = "chair", file: str = "<detections>") -> Scene:
-    """Return the scene that a ``Detection3DArray`` describes.
+    """Return the scene of a ``Detection3DArray``.
 
     Parameters
     ----------
     message
-        A message, or the same as dictionaries and lists: ``header.frame_id`` and ``detections``, each with ``id``,
-        ``bbox.center.position``, ``bbox.center.orientation`` (a quaternion), ``bbox.size`` in metres, and ``results``
-        of ``hypothesis.class_id`` and ``hypothesis.score``. Without an id a detection is called by its place: ``d1``.
+        ROS message, or dictionaries and lists with its fields: ``header.frame_id`` and ``detections``, each with
+        ``id``, ``bbox.center.position``, ``bbox.center.orientation`` (a quaternion), ``bbox.size`` in metres, and
+        ``results`` of ``hypothesis.class_id`` and ``hypothesis.score``. A detection without an id is named after its
+        position: ``d1``.
     viewpoint
         The side from which left and right are seen: x to its right, y away from it.
 
     Returns
     -------
     Scene
-        An object for each detection. Its label is the hypothesis with the highest score; all of them are candidates
-        where there are several.
+        One object for each detection. Its label is the hypothesis with the highest score; several hypotheses all become
+        candidates, unless their scores add up to more than 1.
 
     Raises
     ------
@@ -105,12 +106,12 @@ def _hypotheses(results: Any, where: str) -> dict[str, float]:
 
 
 def _rotation(quaternion: Any, where: str) -> NDArray[np.float64]:
-    """Return the rotation matrix (3, 3) of a quaternion; the identity where there is none or it is all zeros."""
+    """Return the rotation matrix (3, 3) of a quaternion; the identity if it is missing or all zeros."""
     if quaternion is None:
         return np.eye(3)
     values = _vector(quaternion, "xyzw", where)
     norm = float(np.linalg.norm(values))
-    if norm == 0.0:  # a message whose orientation was never set
+    if norm == 0.0:  # the orientation of the message was never set
         return np.eye(3)
     x, y, z, w = values / norm
     return np.array(
@@ -152,9 +153,9 @@ def _triple(values: NDArray[np.float64]) -> tuple[float, float, float]:
 
 
 def scene_to_detections3d(scene: Scene) -> dict[str, Any]:
-    """Return a scene as the fields of a ``Detection3DArray``, as dictionaries and lists.
+    """Return the fields of a ``Detection3DArray`` for a scene, as dictionaries and lists.
 
-    A scene without heights gives boxes of no height at z = 0. The header has no time stamp: a scene has none.
+    Boxes without heights have height 0 at z = 0. The header has no time stamp, because a scene has no time.
 
     Raises
     ------
@@ -162,7 +163,7 @@ def scene_to_detections3d(scene: Scene) -> dict[str, Any]:
         If the scene is measured in pixels.
     """
     if scene.unit == "px":
-        raise SceneError(f"{scene.file}: 3-D detections are in metres, and this scene is in pixels")
+        raise SceneError(f"{scene.file}: 3-D detections must be in metres, and this scene is in pixels")
     return {"header": {"frame_id": scene.frame}, "detections": [_detection(thing) for thing in scene.objects]}
 
 

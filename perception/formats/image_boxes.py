@@ -1,4 +1,4 @@
-"""Boxes in an image, turned into a scene: image coordinates have y downwards, and a scene has it upwards."""
+"""Convert boxes of an image, where y points down, to a scene, where y points up."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from deixis.perception.scene import PerceivedObject, Scene
 
 @dataclass(frozen=True, slots=True)
 class ImageBox:
-    """What an annotator outlined: the bounding box in pixels, x to the right and y *down* from the top left corner."""
+    """Bounding box of an annotation in pixels, x to the right and y *down* from the top left corner."""
 
     left: float
     top: float
@@ -22,7 +22,7 @@ class ImageBox:
     confidence: float = 1.0
 
     def joined(self, other: ImageBox) -> ImageBox:
-        """Return the box around both, named and trusted as this one."""
+        """Return the box around both boxes, with the label and confidence of this one."""
         return ImageBox(
             min(self.left, other.left),
             min(self.top, other.top),
@@ -38,10 +38,10 @@ def box_around(
 ) -> ImageBox:
     """Return the bounding box of points (x, y).
 
+    Raises SceneError if a coordinate is not finite, or the width or the height is 0.
+
     >>> box_around([(0, 4), (2, 0), (3, 1)], "polygon")
     ImageBox(left=0, top=0, right=3, bottom=4, label=None, confidence=1.0)
-
-    Raises SceneError where a coordinate is not finite or the box has no width or no height.
     """
     xs, ys = zip(*points, strict=True)
     box = ImageBox(min(xs), min(ys), max(xs), max(ys), label, confidence)
@@ -49,16 +49,16 @@ def box_around(
         raise SceneError(f"{where}: a coordinate is not finite")
     if box.left >= box.right or box.top >= box.bottom:
         side = "width" if box.left >= box.right else "height"
-        raise SceneError(f"{where}: the outline has no {side}; an object's box needs both")
+        raise SceneError(f"{where}: the outline must have a {side} above 0")
     return box
 
 
 def image_scene(boxes: Sequence[ImageBox], height: float | None, file: str) -> Scene:
-    """Return the scene of an image, y turned upwards: what is higher in the image lies farther away, as seen in it.
+    """Return the scene of an image, with y upwards: an object higher in the image is farther away.
 
-    The origin is the image's bottom left corner where its ``height`` is known, else the height of the lowest
-    outline, so that the least y is 0. The unit is px, the frame ``image``, and the image counts as seen from the
-    chair, as in Figure 3 of the paper. Objects are called o1, o2, … in the order given.
+    The origin is the bottom left corner of the image if its ``height`` is known; otherwise the lowest box has y = 0.
+    The unit is px, the frame ``image``, and the viewpoint the chair, as in Figure 3 of the paper. The objects are named
+    o1, o2, … in the given order.
 
     >>> scene = image_scene([ImageBox(10, 20, 30, 60, "fork")], 100, "table.json")
     >>> scene["o1"].minimum, scene["o1"].maximum

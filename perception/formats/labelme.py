@@ -1,9 +1,9 @@
-"""Scenes from LabelMe annotations: one JSON file an image, with a list of ``shapes``.
+"""Read scenes from LabelMe annotations: one JSON file per image, with a list of ``shapes``.
 
-The format: https://github.com/wkentaro/labelme. A shape is a label and points (x, y), which its ``shape_type`` reads;
-every shape gives its bounding box. As in LabelMe's own exporters, shapes that share both a label and a ``group_id``
-are parts of one object. A single point has no extent and is refused, like every outline without width or height.
-A ``score``, as some of its relatives write it, is the label's confidence. Other keys are not looked at.
+The format: https://github.com/wkentaro/labelme. A shape has a label and points (x, y), whose meaning depends on its
+``shape_type``; the object has the bounding box of the shape. As in the exporters of LabelMe, shapes that share both a
+label and a ``group_id`` are parts of one object. A single point, or an outline without width or height, is refused. A
+``score``, which some related tools write, is the confidence of the label. Other keys are not read.
 """
 
 from __future__ import annotations
@@ -30,32 +30,34 @@ POINTS = {
     "mask": (2, 2),
     "oriented_rectangle": (4, 4),
 }
-"""How many points each type of shape has, from and to; a circle's are its centre and a point on it, a mask's and a
-rectangle's two opposite corners (or all four of a rectangle)."""
+"""Minimum and maximum number of points of each type of shape.
+
+A circle has its centre and a point on it, a mask and a rectangle two opposite corners (a rectangle may have all four).
+"""
 
 _MARKS = {"version", "flags", "imagePath", "imageData", "imageHeight", "imageWidth"}
 
 
 def is_labelme(data: Any) -> bool:
-    """Return whether parsed JSON is meant as LabelMe annotations."""
+    """Return True if parsed JSON has the keys of LabelMe annotations."""
     return isinstance(data, Mapping) and "shapes" in data and "objects" not in data and not _MARKS.isdisjoint(data)
 
 
 def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = None) -> Scene:
-    """Return the scene of the one image; ``image`` need not be given, and must be the file's own (``imagePath``) if it
-    is.
+    """Return the scene of parsed LabelMe annotations, which describe one image.
+
+    ``image`` must be None or the image of the file (``imagePath``). Raises SceneError, with the place, if it is another
+    one or the file is malformed.
 
     >>> found = labelme_scene({"version": "5.4.1", "imageHeight": 100, "shapes": [
     ...     {"label": "plate", "points": [[50, 40], [50, 70]], "shape_type": "circle"}]}, "table.json")
     >>> found["o1"].label, found["o1"].minimum, found["o1"].maximum
     ('plate', (20.0, 30.0), (80.0, 90.0))
-
-    Raises SceneError, with the place, where the file is malformed or ``image`` is another one.
     """
     path = data.get("imagePath")
     own = path if isinstance(path, str) else ""
     if image is not None and str(image) not in (own, PurePath(own.replace("\\", "/")).name):
-        raise SceneError(f"{file}: this file is about the image '{shown(own)}' alone, not '{shown(image)}'")
+        raise SceneError(f"{file}: the only image of this file is '{shown(own)}', got '{shown(image)}'")
     height = pixels(data.get("imageHeight"), f"{file}: 'imageHeight'")
     boxes: dict[object, ImageBox] = {}
     for position, entry in enumerate(items(data, "shapes", file)):
@@ -63,7 +65,7 @@ def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = 
         box = _box(mapping(entry, where), where)
         group = entry.get("group_id")
         if group is not None and (isinstance(group, bool) or not isinstance(group, int | str)):
-            raise SceneError(f"{where}: 'group_id' is a whole number, a text or null, not {kind(group)}")
+            raise SceneError(f"{where}: 'group_id' must be a whole number, a text or null, got {kind(group)}")
         key = position if group is None else (box.label, group)
         boxes[key] = boxes[key].joined(box) if key in boxes else box
     return image_scene(list(boxes.values()), height, file)
@@ -74,21 +76,21 @@ def _box(entry: Mapping[str, Any], where: str) -> ImageBox:
         if key not in entry:
             raise SceneError(f"{where}: '{key}' is missing")
     label = text(entry["label"], f"{where}: 'label'")
-    shape = "polygon"  # what old files mean, which have no types
+    shape = "polygon"  # the meaning of old files, which have no types
     if entry.get("shape_type") is not None:
         shape = text(entry["shape_type"], f"{where}: 'shape_type'")
     if shape == "point":
-        raise SceneError(f"{where}: a point has no extent, and an object needs a box; outline it, or leave it out")
+        raise SceneError(f"{where}: a point has no extent; outline the object, or leave it out")
     if shape not in POINTS:
-        raise SceneError(f"{where}: the shape_type '{shown(shape)}' is not known; use one of {', '.join(POINTS)}")
+        raise SceneError(f"{where}: unknown shape_type '{shown(shape)}'; use one of {', '.join(POINTS)}")
     data = entry["points"]
     at = f"{where}: 'points'"
     least, most = POINTS[shape]
     if not isinstance(data, list):
-        raise SceneError(f"{at} must be a list of points [x, y], not {kind(data)}")
+        raise SceneError(f"{at} must be a list of points [x, y], got {kind(data)}")
     if len(data) < least or (most is not None and len(data) > most):
         number_of = f"{least} or more" if most is None else f"{least}" if least == most else f"{least} to {most}"
-        raise SceneError(f"{at}: a {shape} has {number_of} points, not {len(data)}")
+        raise SceneError(f"{at}: a {shape} must have {number_of} points, got {len(data)}")
     points = [_point(point, f"{at}[{position}]") for position, point in enumerate(data)]
     corners = _around(points) if shape == "circle" else points
     return box_around(corners, f"{where}: 'points'", label, score(entry, where))
@@ -101,7 +103,7 @@ def _point(data: Any, where: str) -> _Point:
 
 
 def _around(points: list[_Point]) -> list[_Point]:
-    """Return two corners of the square around a circle, of which the centre and a point on it are given."""
+    """Return two opposite corners of the square around a circle, given by its centre and a point on it."""
     (x, y), (rim_x, rim_y) = points
     radius = math.hypot(rim_x - x, rim_y - y)
     return [(x - radius, y - radius), (x + radius, y + radius)]

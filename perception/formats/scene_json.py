@@ -1,7 +1,6 @@
-"""Scenes as JSON: ``.scene.json``, read with an error that names the place, and as text to be written.
+"""Read and write scenes as JSON (``.scene.json``); errors name the place in the file.
 
-Annotation files (COCO, LabelMe) are told by their content and read too: see
-:mod:`deixis.perception.formats.scene_json`.
+Annotation files in the formats COCO and LabelMe are recognised by their content and read too.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ from deixis.perception.formats.labelme import is_labelme, labelme_scene
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
-"""From parsed JSON, the file's name and the chosen image (or None) to a scene; raises SceneError."""
+"""Function from parsed JSON, the name of the file and the chosen image (or None) to a scene; raises SceneError."""
 
 FORMATS: tuple[tuple[Callable[[Any], bool], Reader], ...] = ((is_coco, coco_scene), (is_labelme, labelme_scene))
 
 
 def annotation_reader(data: Any) -> Reader | None:
-    """Return the reader of the annotation format that parsed JSON is in, or None where it is in none.
+    """Return the reader of the annotation format of parsed JSON, or None if it is in none of the formats.
 
     >>> annotation_reader({"images": [], "annotations": [], "categories": []}).__name__
     'coco_scene'
@@ -42,7 +41,7 @@ def annotation_reader(data: Any) -> Reader | None:
 
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
-"""Accepted units, and how many metres one is; pixels stay pixels."""
+"""Accepted units with their lengths in metres; pixels stay pixels."""
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows"}
@@ -51,37 +50,47 @@ _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
 def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
-    """Read a scene from a ``.scene.json`` or an annotation file, or take one that is parsed already.
+    """Read a scene from a ``.scene.json`` or an annotation file, or from parsed JSON.
 
-    ``image`` chooses the image, by file name or id, in a COCO file that has several.
+    Parameters
+    ----------
+    source
+        File, or parsed JSON of one.
+    image
+        File name or id of the image, in a COCO file with several images.
 
+    Raises
+    ------
+    SceneError
+        If the source is not a scene; the message names the file and the place in it.
+
+    Examples
+    --------
     >>> scene = read_scene({"objects": [{"id": "o1", "min": [0, 0], "max": [20, 1]}], "unit": "cm"})
     >>> scene.objects[0].maximum
     (0.2, 0.01)
-
-    Raises SceneError, with the file and the place in it, where it is no such thing.
     """
     if isinstance(source, Mapping):
         return scene_from_dict(source, "<scene>", image)
     if not isinstance(source, str | Path):
         raise SceneError(
-            f"a scene is read from a file or from parsed JSON, not from {type(source).__name__};"
-            " what 'perceive' gives in Python is a scene already"
+            f"a scene must be read from a file or from parsed JSON, not from {type(source).__name__};"
+            " in Python, 'perceive' already returns a scene"
         )
     path = Path(source)
     try:
         if path.is_dir():
-            raise SceneError(f"{path}: this is a folder, and a scene is a .scene.json file")
+            raise SceneError(f"{path}: this is a folder; give a .scene.json file")
         if not path.is_file() and path.exists():
-            raise SceneError(f"{path}: this is no regular file, and a scene is a .scene.json file")
+            raise SceneError(f"{path}: not a regular file; give a .scene.json file")
         if path.stat().st_size > MAX_BYTES:
-            raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB")
+            raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB; split the scene")
         content = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise SceneError(
-            f"{path}: the file is not UTF-8 (byte {error.start}), as a scene is; of a cloud 'deixis perceive' makes one"
+            f"{path}: the file is not UTF-8 (byte {error.start}), so not a scene; 'deixis perceive' reads point clouds"
         ) from error
     except ValueError as error:
         raise SceneError(f"{path}: cannot be read: {error}") from error
@@ -89,22 +98,22 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
 
 
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:
-    """Return the scene that parsed JSON describes, whichever of the formats it is in; ``image`` as in
-    :func:`read_scene`.
+    """Return the scene of parsed JSON in any of the formats.
 
-    In a scene of our own unknown keys are errors, so that a misspelt one is not lost.
+    ``image`` has the same meaning as in :func:`read_scene`. Unknown keys of a ``.scene.json`` are errors, so that a
+    misspelt key is not ignored.
     """
     reader = annotation_reader(data)
     if reader is not None:
         return reader(data, file, image)
     found = _mapping(data, file, _SCENE_KEYS)
     if "objects" not in found:
-        raise SceneError(f"{file}: 'objects' is missing: the list of what was seen")
+        raise SceneError(f"{file}: 'objects' is missing; add the list of the objects")
     if not isinstance(found["objects"], list):
         raise SceneError(f"{file}: 'objects' must be a list")
     unit = text(found.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
-        raise SceneError(f"{file}: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
+        raise SceneError(f"{file}: unknown unit '{unit}'; use one of {', '.join(UNITS)}")
     scene = Scene(
         objects=tuple(
             _object(entry, f"{file}: objects[{position}]", UNITS[unit])
@@ -116,7 +125,7 @@ def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Sce
         file=file,
     )
     if image is not None:
-        raise SceneError(f"{file}: an image ('{shown(image)}') is chosen in annotation files, and this is a scene")
+        raise SceneError(f"{file}: an image ('{shown(image)}') can be chosen in annotation files only; leave it out")
     return scene
 
 
@@ -139,7 +148,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
 
 
 def _id(data: Any, where: str) -> str:
-    """Return an id as text; detectors and trackers count, so that an integer will do."""
+    """Return an id as text; integers are accepted, because detectors and trackers use them."""
     if isinstance(data, Integral) and not isinstance(data, bool):
         return str(int(data))
     return text(data, where)
@@ -162,24 +171,24 @@ def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
 
 
 def _colour(data: Any, where: str) -> Rgb:
-    """Return a colour from a word of the ontology (its prototype), from ``#rrggbb``, or from three numbers."""
+    """Return the colour of a word of the ontology (its prototype), of ``#rrggbb``, or of three numbers."""
     if isinstance(data, list | tuple):
         parts = [number(part, where) for part in data]
         if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
-            raise SceneError(f"{where} as a list is red, green and blue, each from 0 to 255")
+            raise SceneError(f"{where} as a list must be red, green and blue, each from 0 to 255")
         return round(parts[0]), round(parts[1]), round(parts[2])
     if not isinstance(data, str):
-        raise SceneError(f"{where} is a word such as red, #rrggbb, or [red, green, blue], not {kind(data)}")
+        raise SceneError(f"{where} must be a word such as red, #rrggbb, or [red, green, blue], got {kind(data)}")
     said = text(data, where)
     if said.startswith("#"):
         if (found := rgb_of_hex(said)) is None:
-            raise SceneError(f"{where}: '{shown(said)}' is no colour; write #rrggbb in hexadecimal digits")
+            raise SceneError(f"{where}: '{shown(said)}' is not a colour; write #rrggbb in hexadecimal digits")
         return found
     colours = default_ontology().colours
     if (colour := colours.of_word(said)) is not None:
         return colour.prototype
     near = nearest(said.casefold(), list(colours.words)) if len(said) <= MAX_SHOWN else None
-    told = f"did you mean '{near}'?" if near else f"say one of {', '.join(c.label for c in colours)}, or #rrggbb"
+    told = f"did you mean '{near}'?" if near else f"use one of {', '.join(c.label for c in colours)}, or #rrggbb"
     raise SceneError(f"{where}: there is no colour '{shown(said)}'; {told}")
 
 
@@ -187,7 +196,7 @@ def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
     entry = mapping(data, where)
     unknown = sorted(set(entry) - known, key=str)
     if unknown:
-        raise SceneError(f"{where}: '{shown(unknown[0])}' is no key here; the keys are {', '.join(sorted(known))}")
+        raise SceneError(f"{where}: '{shown(unknown[0])}' is not a key here; the keys are {', '.join(sorted(known))}")
     return entry
 
 
@@ -206,8 +215,7 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """Return the scene as :func:`read_scene` takes it, coordinates in metres (or pixels); points in memory are left
-    out."""
+    """Return the scene as a dictionary for :func:`read_scene`, in metres or pixels, without points in memory."""
     objects = []
     for thing in scene.objects:
         entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}
@@ -228,7 +236,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
 
 
 def scene_text(scene: Scene) -> str:
-    """Return the text of a ``.scene.json``, an object a line, as :func:`scene_to_dict` has it."""
+    """Return the text of a ``.scene.json``, one object per line."""
     data = scene_to_dict(scene)
     lines = ",\n".join("    " + json.dumps(entry, ensure_ascii=False) for entry in data.pop("objects"))
     head = "".join(f'  "{key}": {json.dumps(value, ensure_ascii=False)},\n' for key, value in data.items())

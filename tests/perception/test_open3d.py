@@ -1,4 +1,4 @@
-"""Clouds, boxes and scenes as Open3D's objects: the same numbers, in classes that its drawing functions take."""
+"""Clouds, boxes and scenes converted to Open3D: equal numbers, in classes that its drawing functions accept."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_cloud_keeps_its_points_colours_and_normals() -> None:
     np.testing.assert_allclose(cloud.normals, [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 
 
-def test_what_a_cloud_does_not_know_is_left_out() -> None:
+def test_missing_arrays_of_a_cloud_are_left_out() -> None:
     cloud = PointCloud(np.zeros((2, 3), np.float32)).to_open3d()
     assert (cloud.has_points(), cloud.has_colors(), cloud.has_normals()) == (True, False, False)
     assert not PointCloud(np.full((2, 3), np.nan, np.float32)).to_open3d().has_points()
@@ -43,7 +43,7 @@ def test_a_box_has_the_corners_of_its_object() -> None:
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3, -2.0])
-def test_an_oriented_box_contains_what_lies_in_it(yaw: float) -> None:
+def test_an_oriented_box_contains_its_points(yaw: float) -> None:
     box = OrientedBox((0.3, 0.2, 0.1), yaw, (0.4, 0.1, 0.2))
     signs = np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, -1).T
     corners = np.array(box.centre) + signs * np.array(box.extents) / 2 @ box.axes
@@ -52,7 +52,7 @@ def test_an_oriented_box_contains_what_lies_in_it(yaw: float) -> None:
     np.testing.assert_allclose(theirs[order], corners[wanted], atol=1e-9)
 
 
-def test_a_scene_is_its_clouds_and_a_box_about_each_object(tmp_path: Path) -> None:
+def test_a_scene_becomes_its_clouds_and_boxes(tmp_path: Path) -> None:
     write_cloud(tmp_path / "o2.pcd", CLOUD)
     turned = OrientedBox((0.5, 0.5, 0.5), 0.2, (1.0, 1.0, 1.0))
     low, high = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
@@ -72,7 +72,7 @@ def test_a_scene_is_its_clouds_and_a_box_about_each_object(tmp_path: Path) -> No
 
 
 def test_the_classes_are_those_of_the_whole_library() -> None:
-    """``import open3d`` finds the classes that were used before; in a process of its own, as it takes a second."""
+    """Import all of open3d in another process, because that takes a second, and compare the classes."""
     code = (
         "import numpy as np\n"
         "from deixis.perception.clouds.cloud import PointCloud\n"

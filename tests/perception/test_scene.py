@@ -1,4 +1,4 @@
-"""A scene as a value: what it refuses, its boxes, its graph."""
+"""Scenes: refused values, boxes and relation graphs."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ def test_the_graph_names_every_ordered_pair() -> None:
 
 
 def test_the_tolerance_reaches_the_graph() -> None:
-    """A fork whose corner overlaps the plate's by a millimetre lies top left of it, to the centimetre."""
+    """Check that a fork that overlaps the plate by a millimetre is top left of it at a tolerance of a centimetre."""
     scene = Scene((PerceivedObject("fork", (0.0, 0.249), (0.051, 0.5)), PLATE))
     names = [str(next(scene.graph(R, tolerance).facts())) for tolerance in (0.0, 0.01)]
     assert names == ["exactly_top(fork, plate)", "exactly_top_left(fork, plate)"]
 
 
-def test_without_labels_nothing_is_named_and_all_else_is_the_same() -> None:
+def test_without_labels_only_the_names_are_gone() -> None:
     plain = Scene((FORK, PLATE), frame="tray").without_labels()
     assert [(thing.label, thing.confidence) for thing in plain.objects] == [(None, 1.0)] * 2
     assert plain.frame == "tray"
@@ -72,14 +72,14 @@ def test_scenes_from_different_files_may_be_equal() -> None:
         ((0.0, 2.0), (1.0, 1.0), "on y its min 2 is above its max 1"),
     ],
 )
-def test_a_box_that_is_none_is_refused(minimum: tuple[float, ...], maximum: tuple[float, ...], message: str) -> None:
+def test_an_invalid_box_is_refused(minimum: tuple[float, ...], maximum: tuple[float, ...], message: str) -> None:
     with pytest.raises(SceneError, match=message):
         Scene((PerceivedObject("o", minimum, maximum),))
 
 
 @pytest.mark.parametrize("confidence", [-0.5, 1.01, math.nan])
-def test_a_confidence_that_is_no_probability_is_refused(confidence: float) -> None:
-    with pytest.raises(SceneError, match="between 0 and 1"):
+def test_a_confidence_must_be_a_probability(confidence: float) -> None:
+    with pytest.raises(SceneError, match="must be from 0 to 1"):
         Scene((PerceivedObject("o", (0.0, 0.0), (1.0, 1.0), label="x", confidence=confidence),))
 
 
@@ -94,14 +94,14 @@ def test_two_objects_of_one_id_are_refused() -> None:
 
 @pytest.mark.parametrize(
     ("id", "corner", "message"),
-    [("a\n\x1b[31mred", 1.0, "control character"), ("a", 1e12, "beyond 1e\\+09; is the unit right")],
+    [("a\n\x1b[31mred", 1.0, "control character"), ("a", 1e12, "beyond 1e\\+09; check the unit")],
 )
-def test_what_would_spoil_a_terminal_or_a_picture_is_refused(id: str, corner: float, message: str) -> None:
+def test_control_characters_and_huge_coordinates_are_refused(id: str, corner: float, message: str) -> None:
     with pytest.raises(SceneError, match=message):
         Scene((PerceivedObject(id, (0.0, 0.0), (corner, 1.0)),))
 
 
-def test_boxes_alike_mean_the_same_in_any_order_of_listing() -> None:
+def test_relations_of_equal_boxes_do_not_depend_on_their_order() -> None:
     relations = default_ontology().relations
     things = [PerceivedObject(id, (0.0, 0.0), (1.0, 1.0)) for id in ("b", "a")]
     facts = [{str(fact) for fact in Scene(tuple(order)).graph(relations).facts()} for order in (things, things[::-1])]

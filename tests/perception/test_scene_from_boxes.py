@@ -1,4 +1,4 @@
-"""Test scenes made from arrays."""
+"""Scenes made from arrays."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_boxes_around_turned_ones_touch_all_their_corners(yaw: float, length: fl
         ({"min": [[0, 0]]}, "give boxes by `min` and `max`, or by `centre` and `size`"),
         ({"min": [[0, 0]], "max": [[1, 1]], "yaw": 0.0}, "give boxes by"),
         ({"min": [0, 0], "max": [1, 1]}, r"`min` must have shape \(n, 2\) or \(n, 3\), got \(2,\)"),
-        ({"min": [[0, 0]], "max": [[1, 1, 1]]}, "must have one shape"),
+        ({"min": [[0, 0]], "max": [[1, 1, 1]]}, "must have the same shape"),
         ({"min": [["a", 0]], "max": [[1, 1]]}, "`min` must be an array of numbers"),
         ({"min": [[0, np.nan]], "max": [[1, 1]]}, "not finite"),
         ({"min": [[2, 0]], "max": [[1, 1]]}, "above its max"),

@@ -1,4 +1,4 @@
-"""docs/reference/clouds.md: its Python runs, and it names every column that is read and every error as it is."""
+"""Check docs/reference/clouds.md: its Python runs, and it quotes every column and the errors correctly."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def test_the_python_on_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert len(read_cloud("table.ply")) == 6
 
 
-def test_the_page_names_all_columns_and_suffixes_and_its_camera_is_one(tmp_path: Path) -> None:
+def test_the_page_names_all_columns_suffixes_and_a_valid_camera(tmp_path: Path) -> None:
     assert {name for name in KNOWN | TEXT if f"`{name}`" not in PAGE} == set()
     (camera,) = re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL)
     (tmp_path / "camera.json").write_text(camera)
     assert read_intrinsics(tmp_path / "camera.json").depth_scale == 1000
 
 
-def test_the_errors_on_the_page_are_those_that_come(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_quotes_the_errors_correctly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("cup.pcd").write_text(
         "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"

@@ -1,4 +1,4 @@
-"""Depth images and intrinsics: where a pixel's point lies, and what goes with what."""
+"""Depth images and intrinsics: the position of a pixel's point, and sizes that must agree."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def test_a_pixel_is_projected_back_through_the_pinhole(name: str, tmp_path: Path
     cloud = read_cloud(saved(tmp_path, name, MILLIMETRES), CAMERA)
     assert cloud.organised == (2, 3)
     assert cloud.finite.tolist() == [True, False, True, True, True, True]
-    # Column 2, row 0 at 2 m: x = (2 - 1) 2 / 2, y = (0 - 0.5) 2 / 4. Column 0, row 1 at 0.5 m alike.
+    # Column 2, row 0 at 2 m: x = (2 - 1) 2 / 2, y = (0 - 0.5) 2 / 4. The same formulas apply to column 0, row 1.
     np.testing.assert_array_equal(cloud.points[2], np.array([1, -0.25, 2], np.float32))
     np.testing.assert_array_equal(cloud.points[3], np.array([-0.25, 0.0625, 0.5], np.float32))
 
 
-def test_floats_are_metres_and_depth_scale_says_otherwise(tmp_path: Path) -> None:
+def test_floats_are_metres_unless_depth_scale_is_given(tmp_path: Path) -> None:
     metres = np.array([[1, np.nan, -1], [np.inf, 0, 2.5]], np.float32)
     cloud = read_cloud(saved(tmp_path, "a.npy", metres), CAMERA)
     assert cloud.points[cloud.finite][:, 2].tolist() == [1, 2.5]
@@ -60,16 +60,16 @@ def test_intrinsics_are_read_from_json(tmp_path: Path) -> None:
     [
         ({"width": None}, "'width' must be a whole number"),
         ({"width": 2.5}, "'width' must be a whole number"),
-        ({"fx": 0}, "fx, fy and depth_scale are above 0"),
+        ({"fx": 0}, "fx, fy and depth_scale must be above 0"),
         ({"fy": "2"}, "'fy' must be a number"),
         ({"cx": True}, "'cx' must be a number"),
-        ({"depth_scale": -1}, "fx, fy and depth_scale are above 0"),
-        ({"height": 0}, "an image of 3 by 0 pixels"),
-        ({"height": 10**9}, "an image of 3 by 1000000000 pixels"),
+        ({"depth_scale": -1}, "fx, fy and depth_scale must be above 0"),
+        ({"height": 0}, "an image must have 1 to 33554432 pixels, got 3 by 0"),
+        ({"height": 10**9}, "an image must have 1 to 33554432 pixels, got 3 by 1000000000"),
         ({"fx": 10**400}, "'fx' must be a number"),
     ],
 )
-def test_intrinsics_of_no_camera_are_refused(change: dict[str, object], message: str, tmp_path: Path) -> None:
+def test_impossible_intrinsics_are_refused(change: dict[str, object], message: str, tmp_path: Path) -> None:
     file = tmp_path / "camera.json"
     file.write_text(json.dumps({"width": 3, "height": 2, "fx": 2, "fy": 4.0, "cx": 1, "cy": 0.5} | change))
     with pytest.raises(CloudError, match=r"camera\.json: ") as raised:
@@ -78,7 +78,7 @@ def test_intrinsics_of_no_camera_are_refused(change: dict[str, object], message:
 
 
 @pytest.mark.parametrize("text", ["[]", "{", '{"fx": NaN}', "\udc80", " " * 70_000])
-def test_what_is_no_json_object_is_refused(text: str, tmp_path: Path) -> None:
+def test_intrinsics_that_are_not_a_json_object_are_refused(text: str, tmp_path: Path) -> None:
     file = tmp_path / "camera.json"
     file.write_bytes(text.encode("utf-8", "surrogateescape"))
     with pytest.raises(CloudError, match=r"camera\.json"):
@@ -93,5 +93,5 @@ def test_a_depth_image_and_its_intrinsics_go_together(tmp_path: Path) -> None:
         read_cloud(depth, Intrinsics(3, 3, 1.0, 1.0, 1.0, 1.0))
     text = tmp_path / "a.xyz"
     text.write_text("1 2 3")
-    with pytest.raises(CloudError, match="this is no depth image"):
+    with pytest.raises(CloudError, match="not a depth image"):
         read_cloud(text, CAMERA)

@@ -1,4 +1,4 @@
-"""Files damaged at random: read as a valid cloud or mesh, or refused with a CloudError, and never anything else."""
+"""Randomly damaged files: the readers return a valid cloud or mesh, or raise a CloudError."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ end_header
 
 
 def good_files(folder: Path) -> dict[str, bytes]:
-    """One small file of each kind, by the name it has to have."""
+    """Return one small file of each format by file name."""
     rng = np.random.default_rng(1)
     points = rng.normal(size=(12, 3)).astype(np.float32)
     colours, labels = rng.integers(0, 256, (12, 3), np.uint8), rng.integers(0, 9, 12).astype(np.int32)
@@ -106,7 +106,7 @@ def test_a_damaged_file_is_a_mesh_or_refused(
     read_damaged(tmp_path_factory.getbasetemp() / name, damaged(files[name], data), read_mesh)
 
 
-def test_the_files_to_be_damaged_are_good(files: dict[str, bytes], tmp_path: Path) -> None:
+def test_the_undamaged_files_can_be_read(files: dict[str, bytes], tmp_path: Path) -> None:
     for name, content in files.items():
         file = tmp_path / name
         file.write_bytes(content)
@@ -124,7 +124,7 @@ XYZ = "property float x\nproperty float y\nproperty float z\n"
 
 
 def zipped(shape: tuple[int, ...], content: bytes) -> bytes:
-    """A .npz file whose array 'points' says that it has this shape."""
+    """Return a .npz file whose array 'points' declares this shape."""
     array, archive = io.BytesIO(), io.BytesIO()
     header = {"descr": "<f4", "fortran_order": False, "shape": shape}
     np.lib.format.write_array_header_1_0(array, header)
@@ -161,7 +161,7 @@ HOSTILE: dict[str, bytes] = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_what_a_file_declares_is_not_believed(name: str, tmp_path: Path) -> None:
+def test_huge_declared_sizes_cost_little_memory_and_time(name: str, tmp_path: Path) -> None:
     file = tmp_path / name
     file.write_bytes(HOSTILE[name])
     started = time.process_time()
@@ -177,7 +177,7 @@ def test_what_a_file_declares_is_not_believed(name: str, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("name", ["binary.pcd", "bytes.ply", "fields.pcd", "declared.npz", "zeros.xyz"])
-def test_the_command_says_in_one_line_what_is_wrong_with_a_cloud(name: str, tmp_path: Path) -> None:
+def test_the_command_reports_a_bad_cloud_in_one_line(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(HOSTILE[name])
     code, out, err = deixis("perceive", tmp_path / name)
     assert (code, out) == (2, "") and err.startswith(f"deixis: {tmp_path / name}") and err.count("\n") == 1

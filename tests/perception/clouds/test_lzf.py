@@ -1,4 +1,4 @@
-"""LZF: what the format says of single bytes, and that packing is undone by unpacking."""
+"""LZF: the meaning of single bytes, and unpacking as the inverse of packing."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def unpacked(packed: bytes, size: int) -> tuple[bytes, int, int]:
     ("packed", "plain"),
     [
         (b"\x02abc", b"abc"),
-        (b"\x00a\x20\x00", b"aaaa"),  # three, one byte back
-        (b"\x02abc\x80\x02", b"abcabcabc"),  # six, three bytes back: source and target overlap
-        (b"\x00a\xe0\x00\x00", b"a" * 10),  # nine, the shortest that takes a further byte
-        (b"\x00a\xe0\xff\x00", b"a" * 265),  # 264, the longest
+        (b"\x00a\x20\x00", b"aaaa"),  # length 3, distance 1
+        (b"\x02abc\x80\x02", b"abcabcabc"),  # length 6, distance 3: source and target overlap
+        (b"\x00a\xe0\x00\x00", b"a" * 10),  # length 9, the shortest that takes another byte
+        (b"\x00a\xe0\xff\x00", b"a" * 265),  # length 264, the longest
         (b"\x01ab\x20\x01\x00c", b"ababac"[:5] + b"c"),
     ],
 )
-def test_control_bytes_mean_what_the_format_says(packed: bytes, plain: bytes) -> None:
+def test_control_bytes_follow_the_format(packed: bytes, plain: bytes) -> None:
     assert unpacked(packed, len(plain)) == (plain, len(packed), len(plain))
 
 
@@ -46,8 +46,8 @@ def test_damage_stops_where_it_is_found(packed: bytes) -> None:
 
 
 @given(st.lists(st.tuples(st.binary(max_size=40), st.integers(0, 60)), max_size=12))
-@settings(deadline=None)  # the first compiles
-def test_what_was_packed_comes_out(parts: list[tuple[bytes, int]]) -> None:
+@settings(deadline=None)  # the first call compiles
+def test_unpacking_inverts_packing(parts: list[tuple[bytes, int]]) -> None:
     plain = b"".join(part * times for part, times in parts)
     packed = compress(np.frombuffer(plain, np.uint8))
     assert unpacked(packed.tobytes(), len(plain)) == (plain, len(packed), len(plain))
@@ -57,7 +57,7 @@ def test_what_was_packed_comes_out(parts: list[tuple[bytes, int]]) -> None:
 
 @given(st.binary(max_size=200), st.integers(0, 300))
 @settings(deadline=None)
-def test_any_bytes_are_unpacked_within_the_bounds_of_both_sides(packed: bytes, size: int) -> None:
+def test_unpacking_any_bytes_stays_within_both_arrays(packed: bytes, size: int) -> None:
     _, read, written = unpacked(packed, size)
     assert 0 <= read <= len(packed) and 0 <= written <= size
 

@@ -1,4 +1,4 @@
-"""A catalogue of malformed files: each gets one line that names the file and says what to do, in bounded memory."""
+"""Malformed files: each raises a one-line error that names the file and the remedy, in bounded memory."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Made = tuple[str, bytes]
 
 
 def pcd(body: bytes = b"0 0 1\n0 1 1\n", encoding: str = "ascii", **changes: str | int) -> bytes:
-    """Two points, with entries of the header changed, or left out where they are empty."""
+    """Return a PCD file of two points with changed entries of the header; an empty entry is left out."""
     entries: dict[str, str | int] = {
         **{"VERSION": "0.7", "FIELDS": "x y z", "SIZE": "4 4 4", "TYPE": "F F F", "COUNT": "1 1 1", "WIDTH": 2},
         **{"HEIGHT": 1, "VIEWPOINT": "0 0 0 1 0 0 0", "POINTS": 2, "DATA": encoding},
@@ -63,7 +63,7 @@ def npy(shape: str, descr: str, data: bytes) -> bytes:
 
 
 def lying_zip(size: int) -> bytes:
-    """An .npz file whose directory declares ``size`` bytes for its only member."""
+    """Return a .npz file whose directory declares ``size`` bytes for its only member."""
     whole = zipped()
     directory = whole.rindex(b"PK\x01\x02")
     return whole[: directory + 24] + struct.pack("<I", size) + whole[directory + 28 :]
@@ -79,7 +79,7 @@ def png(width: int, height: int, bits: int = 16, kind: int = 0, rows: bytes = b"
 
 def pcd_files() -> Iterator[Made]:
     yield "empty", b""
-    yield "points declared by the hundred million", pcd(b"0 0 1\n", WIDTH=MANY, POINTS=MANY)
+    yield "hundreds of millions of points declared", pcd(b"0 0 1\n", WIDTH=MANY, POINTS=MANY)
     yield "the same, binary", pcd(bytes(24), "binary", WIDTH=MANY, POINTS=MANY)
     yield "the same, compressed", pcd(packed(bytes(4), plain=12 * 10**8 % 2**32), "binary_compressed", POINTS=10**8,
                                       WIDTH=10**8)  # fmt: skip
@@ -98,7 +98,7 @@ def pcd_files() -> Iterator[Made]:
     yield "an unknown type", pcd(TYPE="Q F F")
     yield "fewer sizes than fields", pcd(SIZE="4 4")
     yield "a negative count", pcd(COUNT="-1 1 1")
-    yield "a count of nothing", pcd(COUNT="1 0 1")
+    yield "a count of zero", pcd(COUNT="1 0 1")
     yield "a point of a terabyte", pcd(COUNT="1 1 1000000000000")
     yield "a negative width", pcd(WIDTH=-2)
     yield "a width with a sign of digits", pcd(WIDTH="1_0")
@@ -111,13 +111,16 @@ def pcd_files() -> Iterator[Made]:
     yield "a value too many in a line", pcd(b"0 0 1 1\n0 0 1\n")
     yield "a line too many", pcd(b"0 0 1\n0 0 1\n0 0 1\n")
     yield "a number of a million digits", pcd(b"0 0 1\n0 0 " + b"7" * 10**6)
-    yield "a colour that is no whole number", pcd(b"0 0 1 0.5\n0 0 1 7\n", FIELDS="x y z rgb", SIZE="4 4 4 4",
+    yield "a colour that is not a whole number", pcd(b"0 0 1 0.5\n0 0 1 7\n", FIELDS="x y z rgb", SIZE="4 4 4 4",
                                                   TYPE="F F F U", COUNT="1 1 1 1")  # fmt: skip
     yield "binary data cut short", pcd(bytes(23), "binary")
     yield "more binary data than declared", pcd(b"\1" * 25, "binary")
     yield "compressed data cut short", pcd(packed(bytes(3), size=100), "binary_compressed")
     yield "no room for compressed sizes", pcd(bytes(7), "binary_compressed")
-    yield "another plain size than declared", pcd(packed(b"\x17" + bytes(24), plain=25), "binary_compressed")
+    yield (
+        "a plain size that is not declared",
+        pcd(packed(b"\x17" + bytes(24), plain=25), "binary_compressed"),
+    )
     yield "compressed data that reaches back too far", pcd(packed(b"\x00a\xe0\x20\x10"), "binary_compressed")
     yield "compressed data that gives too little", pcd(packed(b"\x00a"), "binary_compressed")
     yield "compressed data that gives too much", pcd(packed(b"\x00a\xe0\xff\x00"), "binary_compressed")
@@ -140,7 +143,7 @@ def ply_files() -> Iterator[Made]:
     yield "the same, binary", ply(floats + b"\xff" + bytes(12), faces=with_faces(1, "char"), kind=little)
     yield "a list of billions", ply(floats + b"\xff" * 4 + bytes(12), faces=with_faces(1, "uint"), kind=little)
     yield "the same, text", ply(three + b"4000000000 0 1 2\n", faces=with_faces(1, "uint"))
-    yield "a length that is no whole number", ply(three, faces=with_faces(1, "float"))
+    yield "a length that is not a whole number", ply(three, faces=with_faces(1, "float"))
     yield "vertices cut short", ply(floats[:-1], kind=little)
     yield "vertices cut short, text", ply(three[:-3])
     yield "data after the last element", ply(floats + b"more", kind=little)
@@ -172,13 +175,13 @@ def other_files() -> Iterator[tuple[str, str, bytes]]:
     yield "xyz", "no text", bytes(range(256))
     yield "xyz", "one line of 2 MB", b"1" * 2**21
     yield "xyz", "colours out of range", b"1 2 3 0 0 256\n"
-    yield "xyz", "colours that are none", b"1 2 3 0 nan 0\n"
+    yield "xyz", "colours that are not finite", b"1 2 3 0 nan 0\n"
     yield "npz", "empty", b""
     yield "npz", "no zip", b"PK\x03\x04 and no more"
     yield "npz", "cut short", zipped()[:-30]
     yield "npz", "no points", zipped(name="dots.npy")
     yield "npz", "points by the hundred million", zipped(f"({MANY}, 3)")
-    yield "npz", "a member said to be of gigabytes", lying_zip(2**32 - 2)
+    yield "npz", "a member that declares gigabytes", lying_zip(2**32 - 2)
     yield "npz", "a member of more zeros than are read", zipped("(80000000, 3)", data=bytes(2**28 + 1))
     yield "npz", "a shape that overflows", zipped("(999999999999999, 999999999999999, 3)")
     yield "npz", "a negative shape", zipped("(-2, 3)")
@@ -224,7 +227,7 @@ def mesh_files() -> Iterator[tuple[str, str, bytes]]:
     yield "stl", "triangles by the hundred million", bytes(80) + struct.pack("<I", MANY) + bytes(50)
     yield "stl", "a triangle cut short", bytes(80) + struct.pack("<I", 1) + bytes(49)
     yield "stl", "no triangles", bytes(84)
-    yield "stl", "a coordinate that is none", bytes(80) + struct.pack("<I12fH", 1, *[float("nan")] * 12, 0)
+    yield "stl", "a coordinate that is not finite", bytes(80) + struct.pack("<I12fH", 1, *[float("nan")] * 12, 0)
     yield "stl", "corners that make no triangle", b"solid a\nvertex 0 0 0\n"
     yield "stl", "numbers shifted between lines", b"solid a\nvertex 0 0\nvertex 1 0 0 7\nvertex 0 1 0\nendsolid a\n"
     yield "stl", "a vertex of words", b"solid a\nvertex a b c\n"
@@ -239,7 +242,7 @@ CLOUDS = [
 
 
 def peak_while(read: Callable[[], object]) -> tuple[str, int]:
-    """The message of the error that reading raises, and the most memory that it held."""
+    """Return the message of the error that reading raises, and the peak memory in bytes."""
     tracemalloc.start()
     try:
         with pytest.raises(CloudError) as raised:
@@ -259,7 +262,7 @@ def check(read: Callable[[], object], file: Path) -> None:
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Compiling takes memory of its own, so that it comes first."""
+    """Compile the kernels first, because compiling takes memory of its own."""
     folder = tmp_path_factory.mktemp("compiled")
     for name, content in (
         ("a.pcd", pcd()),
@@ -293,7 +296,7 @@ def test_a_malformed_mesh_gets_one_line_in_bounded_memory(
 
 
 @pytest.mark.parametrize("read", [read_cloud, read_mesh])
-def test_what_is_no_file_gets_one_line(read: Callable[[Path], object], tmp_path: Path) -> None:
+def test_a_path_that_is_not_a_file_gets_one_line(read: Callable[[Path], object], tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "nothing.ply", Path("/dev/zero"), tmp_path / "nul\0.ply"):
         with pytest.raises(CloudError) as raised:
             read(path)
@@ -309,8 +312,8 @@ def test_a_file_larger_than_any_cloud_is_not_read(tmp_path: Path, monkeypatch: p
         read_cloud(file)
 
 
-def test_memory_is_bounded_where_a_file_is_good_too(tmp_path: Path) -> None:
-    """A few times the size of what comes out, and not of what could have."""
+def test_reading_a_good_file_takes_bounded_memory(tmp_path: Path) -> None:
+    """Check that reading takes a few times the memory of the points, not of the file's bounds."""
     file = tmp_path / "cloud.pcd"
     file.write_bytes(pcd(b"0.25 0.5 0.75\n" * 100_000, WIDTH=100_000, POINTS=100_000))
     tracemalloc.start()

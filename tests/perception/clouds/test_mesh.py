@@ -1,4 +1,4 @@
-"""Meshes from OBJ and STL, and what a mesh refuses to be."""
+"""Meshes from OBJ and STL files, and arrays that a mesh refuses."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_all_solids_of_an_stl_file_are_one_mesh(tmp_path: Path) -> None:
     np.testing.assert_array_equal(mesh.vertices[mesh.faces], TRIANGLES)
 
 
-def test_fans_leave_out_what_has_fewer_than_three_corners() -> None:
+def test_fans_leave_out_polygons_of_fewer_than_three_corners() -> None:
     faces, polygon = fans(np.array([2, 0, 5, 3]), np.array([9, 9, 0, 1, 2, 3, 4, 5, 6, 7]))
     assert faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 3, 4], [5, 6, 7]]
     assert polygon.tolist() == [2, 2, 2, 3]
@@ -101,7 +101,7 @@ def test_fans_leave_out_what_has_fewer_than_three_corners() -> None:
         (np.array([[0, 1, 2]], np.int32), ("a",), np.array([0, 0], np.int32)),
     ],
 )
-def test_a_mesh_refuses_what_does_not_fit(
+def test_a_mesh_refuses_arrays_that_do_not_fit(
     faces: np.ndarray[tuple[int, ...], np.dtype[np.int32]],
     names: tuple[str, ...],
     part: np.ndarray[tuple[int, ...], np.dtype[np.int32]] | None,

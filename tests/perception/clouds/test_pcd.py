@@ -1,4 +1,4 @@
-"""PCD files written out by hand, byte by byte, and what they hold."""
+"""PCD files written by hand, byte by byte, and the clouds that they hold."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_binary_gives_the_same_as_ascii(tmp_path: Path) -> None:
 
 
 def test_compressed_data_is_one_field_after_the_other(tmp_path: Path) -> None:
-    # Bytes of three fields of two points each: x is twice 1.0, its second as a reference four bytes back.
+    # Three fields of two points each: x is 1.0 twice, the second time as a back-reference with distance 4.
     one, rest = struct.pack("<f", 1), struct.pack("<4f", 2, 3, 4, 5)
     packed = b"\x03" + one + bytes([(2 << 5) | 0, 3]) + b"\x0f" + rest
     cloud = pcd(tmp_path, HEADER + "binary_compressed", struct.pack("<II", len(packed), 24) + packed)
@@ -87,7 +87,7 @@ def test_a_packed_colour_in_text_is_a_number_of_its_type(kind: str, text: str, t
     assert cloud.colours is not None and cloud.colours.tolist() == [[0x10, 0x20, 0x30]]
 
 
-def test_fields_of_any_type_size_and_count_are_passed_over_or_read(tmp_path: Path) -> None:
+def test_fields_of_any_type_size_and_count_are_read_or_skipped(tmp_path: Path) -> None:
     header = fields("label _ x fpfh y z normal_x normal_y normal_z", "2 1 8 4 2 8 4 4 4", "I U F F I F F F F",
                     "1 3 1 33 1 1 1 1 1", "binary", 1)  # fmt: skip
     body = struct.pack("<h3Bd33fhd3f", -7, 1, 2, 3, 0.5, *range(33), 4, 0.25, 0, 0, 1)
@@ -97,7 +97,7 @@ def test_fields_of_any_type_size_and_count_are_passed_over_or_read(tmp_path: Pat
     assert cloud.normals is not None and cloud.normals.tolist() == [[0, 0, 1]]
 
 
-def test_a_field_with_several_values_takes_as_many_columns_of_text(tmp_path: Path) -> None:
+def test_a_field_of_several_values_takes_several_columns(tmp_path: Path) -> None:
     cloud = pcd(tmp_path, fields("x y _ z", "4 4 1 4", "F F U F", "1 1 4 1", "ascii", 1), b"1 2 0 0 128 63 3")
     assert cloud.points.tolist() == [[1, 2, 3]]
 
@@ -112,21 +112,21 @@ def test_padding_may_be_left_out_of_compressed_data(padded: bool, tmp_path: Path
 
 
 @pytest.mark.parametrize("version", ["0.5", ".5", "0.6", ".6", "0.7", ".7"])
-def test_versions_before_the_last_leave_entries_out(version: str, tmp_path: Path) -> None:
+def test_older_versions_may_leave_entries_out(version: str, tmp_path: Path) -> None:
     cloud = pcd(tmp_path, f"VERSION {version}\nCOLUMNS x y z\nPOINTS 1\nDATA ascii", b"1 2 3\n")
     assert cloud.points.tolist() == [[1, 2, 3]]
     assert cloud.origin == (0, 0, 0)
 
 
-def test_an_unsigned_label_beyond_32_signed_bits_is_what_its_bits_say(tmp_path: Path) -> None:
+def test_a_label_beyond_32_signed_bits_keeps_its_bits(tmp_path: Path) -> None:
     header = fields("x y z label", "4 4 4 4", "F F F U", "1 1 1 1", "ascii", 1)
     assert pcd(tmp_path, header, b"0 0 1 4294967295").labels == [-1]
 
 
-def test_zeros_to_the_end_of_a_page_are_passed_over_and_other_bytes_are_not(tmp_path: Path) -> None:
+def test_trailing_zeros_are_skipped_and_other_bytes_refused(tmp_path: Path) -> None:
     body = struct.pack("<6f", 1, 2, 3, 4, 5, 6)
     assert len(pcd(tmp_path, HEADER + "binary", body + b"\0" * 4096)) == 2
-    with pytest.raises(CloudError, match="data after all that the header declares"):
+    with pytest.raises(CloudError, match="more data than the header declares"):
         pcd(tmp_path, HEADER + "binary", body + b"\0" * 20 + b"\1")
 
 
@@ -142,10 +142,10 @@ def test_a_cloud_may_have_no_points(tmp_path: Path) -> None:
 
 
 def test_errors_name_the_line_or_the_byte(tmp_path: Path) -> None:
-    with pytest.raises(CloudError, match=r"cloud\.pcd:13: 'one' is no number"):
+    with pytest.raises(CloudError, match=r"cloud\.pcd:13: expected a number, got 'one'"):
         pcd(tmp_path, HEADER + "ascii", b"1 2 3\n1 one 3\n")
     with pytest.raises(CloudError, match=r"cloud\.pcd:5: there is no type 'F' of 2 bytes|:4: there is no type"):
         pcd(tmp_path, HEADER.replace("SIZE 4", "SIZE 2") + "ascii", b"1 2 3\n4 5 6\n")
     size = len(HEADER) + len("binary\n")
-    with pytest.raises(CloudError, match=rf"cloud\.pcd: byte {size}: 24 bytes of data are declared, and 20 follow"):
+    with pytest.raises(CloudError, match=rf"cloud\.pcd: byte {size}: the header declares 24 bytes of data, but 20"):
         pcd(tmp_path, HEADER + "binary", bytes(20))

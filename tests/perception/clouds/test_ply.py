@@ -1,4 +1,4 @@
-"""PLY files written out by hand, in all three formats, as clouds and as meshes."""
+"""PLY files written by hand, in all three formats, read as clouds and as meshes."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_all_three_formats_give_one_cloud_and_one_mesh(kind: str, order: str, tm
 
 
 @pytest.mark.parametrize(("kind", "order"), ORDERS)
-def test_a_list_may_be_as_long_as_its_type_of_length_says(kind: str, order: str, tmp_path: Path) -> None:
+def test_a_list_may_be_as_long_as_its_length_type_allows(kind: str, order: str, tmp_path: Path) -> None:
     header = (
         f"ply\nformat {kind} 1.0\nelement vertex 300\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list short uint vertex_index\nend_header\n"
@@ -84,7 +84,7 @@ def test_a_list_may_be_as_long_as_its_type_of_length_says(kind: str, order: str,
 
 
 @pytest.mark.parametrize("types", ["float x|float y|float z", "float32 x|float32 y|float32 z|int8 extra"])
-def test_either_set_of_type_names_is_read_and_windows_line_ends_too(types: str, tmp_path: Path) -> None:
+def test_both_sets_of_type_names_and_windows_line_ends_are_read(types: str, tmp_path: Path) -> None:
     properties = "\r\n".join(f"property {each}" for each in types.split("|"))
     header = f"ply\r\nformat binary_little_endian 1.0\r\nelement vertex 1\r\n{properties}\r\nend_header\r\n"
     file = tmp_path / "a.ply"
@@ -106,14 +106,14 @@ def test_normals_labels_and_colours_as_shares_are_read(tmp_path: Path) -> None:
     assert cloud.labels is not None and cloud.labels.tolist() == [42]
 
 
-def test_a_cloud_without_faces_is_no_mesh(tmp_path: Path) -> None:
+def test_a_cloud_without_faces_is_not_a_mesh(tmp_path: Path) -> None:
     file = tmp_path / "cloud.ply"
     file.write_text(
         "ply\nformat ascii 1.0\nelement vertex 1\n"
         "property float x\nproperty float y\nproperty float z\nend_header\n0 0 0"
     )
     assert len(read_cloud(file)) == 1
-    with pytest.raises(CloudError, match="it is a cloud and no mesh"):
+    with pytest.raises(CloudError, match="it is a cloud and not a mesh"):
         read_mesh(file)
 
 
@@ -121,5 +121,5 @@ def test_a_face_out_of_range_is_named(tmp_path: Path) -> None:
     file = tmp_path / "bad.ply"
     file.write_bytes(square("binary_big_endian", ">").replace(struct.pack(">3i", 0, 1, 4), struct.pack(">3i", 0, 1, 5)))
     for read in (read_cloud, read_mesh):
-        with pytest.raises(CloudError, match=r"bad\.ply: face 1 has vertex 5 as a corner, and there are 5, from 0 on"):
+        with pytest.raises(CloudError, match=r"bad\.ply: the corners of face 1 must be vertices from 0 to 4, got 5"):
             read(file)

@@ -1,4 +1,4 @@
-"""Real files read whole, and as Open3D reads them."""
+"""Real files: complete, and equal to what Open3D reads."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ def folder(name: str) -> Path:
     return Path(os.environ["DEIXIS_DATA"]) / name
 
 
-def test_table_scenes_are_images_with_labels_and_colours() -> None:
+def test_table_scenes_are_organised_with_labels_and_colours() -> None:
     files = sorted(folder("mosd-tabletop").glob("*.pcd"))
     assert len(files) == 10
     for file in files:
         cloud = read_cloud(file)
         assert cloud.organised == (480, 640)
         assert cloud.colours is not None and cloud.labels is not None
-        # Its README: label 0 for the points that have no depth.
+        # Its README assigns label 0 to the points without depth.
         np.testing.assert_array_equal(cloud.labels == 0, ~cloud.finite)
 
 
-def test_single_objects_and_tutorial_clouds_are_what_open3d_reads() -> None:
+def test_single_objects_and_tutorial_clouds_agree_with_open3d() -> None:
     open3d = pytest.importorskip("open3d")
     files = [
         file
@@ -50,9 +50,9 @@ def test_single_objects_and_tutorial_clouds_are_what_open3d_reads() -> None:
             np.testing.assert_array_equal(cloud.colours, np.rint(np.asarray(theirs.colors) * 255))
 
 
-def test_meshes_have_the_faces_that_their_index_says() -> None:
+def test_meshes_have_the_number_of_faces_in_their_index() -> None:
     root = folder("tabletop-meshes")
-    with open(root / "index.csv", newline="") as index:
+    with (root / "index.csv").open(newline="") as index:
         rows = list(csv.DictReader(index))
     assert len(rows) >= 74
     for row in rows:

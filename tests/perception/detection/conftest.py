@@ -1,4 +1,4 @@
-"""A table with boxes on it, as a pinhole camera sees it: every point and its truth follow by hand from the boxes."""
+"""Depth images of a table with boxes on it, as a pinhole camera sees them, with the true label of each point."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def look(
     colours: Sequence[tuple[int, int, int]] | None = None,
     half: float = 0.5,
 ) -> PointCloud:
-    """The cloud in the camera's frame; label 0 is the table, a square around the origin, k the k-th box."""
+    """Return the cloud in the frame of the camera; label 0 is the table, a square around the origin, k the k-th box."""
     directions, pose = rays()
     slabs: list[Box] = [((-half, -half, -0.03), (half, half, 0.0)), *boxes]
     depths = np.stack([_depths(directions @ pose.T, box) for box in slabs])
@@ -41,7 +41,7 @@ def look(
 
 
 def rays() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Directions of the pixels with z = 1 in the camera's frame, and the rotation (3, 3) from it to the table's."""
+    """Return the directions of the pixels (z = 1) in the frame of the camera, and its rotation to that of the table."""
     v, u = np.mgrid[:ROWS, :COLUMNS]
     directions = np.stack(
         [(u - COLUMNS / 2 + 0.5) / FOCAL, (v - ROWS / 2 + 0.5) / FOCAL, np.ones(u.shape)], axis=-1
@@ -57,7 +57,7 @@ def in_table_frame(points: NDArray[np.floating]) -> NDArray[np.float64]:
 
 
 def _depths(directions: NDArray[np.float64], box: Box) -> NDArray[np.float64]:
-    """Where rays from the eye first meet a box, by the slabs of its three axes; infinite where they do not."""
+    """Return the depths at which rays from the eye enter a box, by its slabs; infinite for a miss."""
     with np.errstate(divide="ignore"):
         meets = (np.array(box)[:, None] - EYE) / directions
     enter, leave = meets.min(axis=0).max(axis=1), meets.max(axis=0).min(axis=1)

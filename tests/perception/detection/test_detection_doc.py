@@ -1,4 +1,4 @@
-"""docs/explanation/detection.md: its Python runs, and its settings are those that there are."""
+"""Check docs/explanation/detection.md: its Python runs, and it names every setting."""
 
 from __future__ import annotations
 

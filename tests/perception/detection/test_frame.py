@@ -1,4 +1,4 @@
-"""The table's frame: right-handed, level, as seen from the viewer."""
+"""Frame of a table: right-handed, level, and oriented to the viewer."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SQUARE = np.array([[0.0, 0.0, 0.7], [1.0, 0.0, 0.7], [1.0, 1.0, 0.7], [0.0, 1.0,
 
 @settings(max_examples=50, deadline=None)
 @given(st.tuples(*[st.floats(-2, 2)] * 3))
-def test_the_frame_is_orthonormal_and_right_handed_and_y_points_away_from_the_viewer(
+def test_the_frame_is_right_handed_with_y_away_from_the_viewer(
     viewer: tuple[float, float, float],
 ) -> None:
     frame = table_frame(LEVEL, SQUARE, Outlook(np.array([0.5, -1.0, 1.5])), viewer)
@@ -43,7 +43,7 @@ def test_another_viewer_sees_left_and_right_the_other_way_round() -> None:
     assert np.allclose(near[:, :2], -far[:, :2], atol=1e-9)
 
 
-def test_an_image_says_which_way_is_up_and_right() -> None:
+def test_an_image_defines_up_and_right() -> None:
     v, u = np.mgrid[:8, :10]
     points = np.stack([(u - 4.5) / 10, (v - 3.5) / 10, np.ones(u.shape)], axis=-1).reshape(-1, 3)
     outlook = outlook_of(PointCloud(points.astype(np.float32), organised=(8, 10)), DetectionSettings())
@@ -51,7 +51,7 @@ def test_an_image_says_which_way_is_up_and_right() -> None:
     assert np.allclose(outlook.up, [0, -1, 0], atol=0.02) and np.allclose(outlook.right, [1, 0, 0], atol=0.02)
 
 
-def test_a_camera_straight_above_the_table_has_the_top_of_its_image_as_far() -> None:
+def test_the_image_of_a_camera_above_has_its_top_at_the_far_side() -> None:
     plane = Plane(np.array([0.0, 0.0, -1.0]), -1.0)
     outlook = Outlook(np.zeros(3), up=np.array([0.0, -1.0, 0.0]), right=np.array([1.0, 0.0, 0.0]))
     frame = table_frame(plane, np.array([[-1.0, -1, 1], [1, 1, 1]]), outlook, None)

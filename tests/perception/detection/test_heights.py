@@ -1,4 +1,4 @@
-"""What rises above the table, in the noise of a sensor."""
+"""Points above the table, in the noise of a sensor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROWS, COLUMNS = 60, 80
 
 
 @pytest.mark.parametrize("noise", [0.0, 5e-4, 1.4e-3])
-def test_a_strip_of_a_few_millimetres_survives_and_the_table_does_not(noise: float) -> None:
+def test_a_strip_of_a_few_millimetres_is_kept_without_the_table(noise: float) -> None:
     heights = np.random.default_rng(0).normal(0, noise, (ROWS, COLUMNS))
     strip = np.zeros((ROWS, COLUMNS), dtype=np.bool_)
     strip[25:32, 10:70] = True
@@ -30,7 +30,7 @@ def test_a_strip_of_a_few_millimetres_survives_and_the_table_does_not(noise: flo
     assert found.noise == pytest.approx(max(noise, 1e-4), rel=0.15)
 
 
-def test_what_is_only_a_little_high_counts_where_it_is_connected_with_what_is_high() -> None:
+def test_low_points_count_if_connected_to_high_ones() -> None:
     heights = np.zeros(30)
     heights[5:10], heights[10:15], heights[22:26] = 0.01, 0.0012, 0.0012
     line = np.full((30, 2), -1, np.int32)

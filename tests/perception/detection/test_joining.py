@@ -1,4 +1,4 @@
-"""Which parts are one thing, for parts whose patches are set down by hand."""
+"""Joining of parts with patches that are placed by hand."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ PLAIN = np.zeros(3)
 
 
 def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
-    """The near half of a cup's outside and, behind it, the far half of its inside, on which a handle may be; between
-    the colours of the two is ``tint``, and within each they vary by ``mottle``. The depth jumps where they meet."""
+    """Return the near half of the outside of a cup and the far half of its inside, optionally with a handle.
+
+    ``tint`` is the difference of their colours, and ``mottle`` the variation within each. The depth jumps where they
+    meet.
+    """
     turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.1, np.pi - 0.1, AROUND), np.linspace(0, 0.1, ROWS)))
     out = np.stack([np.cos(turn), -np.sin(turn), np.zeros_like(turn)], axis=1)
     into = out * (1, -1, 1)
@@ -36,11 +39,11 @@ def _cup(tint: NDArray[np.float64], mottle: float, handle: int = 0) -> Parts:
     return Parts(of, patches, meeting, JoiningSettings())
 
 
-def test_the_inside_of_a_cup_is_the_cup() -> None:
+def test_the_inside_of_a_cup_joins_its_outside() -> None:
     assert len(whole_things(_cup(PLAIN, 0.0))) == 1
 
 
-def test_the_inside_of_a_cup_is_the_cup_though_a_handle_is_taken_for_a_part_of_it() -> None:
+def test_the_inside_of_a_cup_joins_despite_a_handle_in_it() -> None:
     parts = _cup(PLAIN, 0.0, handle=12)
     assert -0.4 < parts.measures.bulge[1] < -0.1
     assert len(whole_things(parts)) == 1
@@ -54,7 +57,7 @@ def test_colours_differ_only_by_more_than_they_vary(mottle: float, count: int) -
 
 
 @pytest.mark.parametrize(("width", "count"), [(0.06, 1), (0.16, 2)])
-def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width: float, count: int) -> None:
+def test_a_glass_with_a_stem_joins_its_foot_but_not_a_plate(width: float, count: int) -> None:
     x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:8j, -0.5:0.5:8j])
     stem = np.linspace((0.0, 0.0, 0.025), (0.0, 0.0, 0.09), 10)
     bowl = np.stack([0.07 * x, 0.07 * y, np.full(x.shape, 0.15)], axis=1)
@@ -71,7 +74,7 @@ def test_a_glass_whose_stem_is_seen_stands_on_its_foot_but_not_on_a_plate(width:
 
 
 def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
-    """The near half of an upright cylinder."""
+    """Return patches on the near half of an upright cylinder."""
     turn, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.0, np.pi, AROUND), np.linspace(low, high, ROWS)))
     return np.stack([radius * np.cos(turn), -radius * np.sin(turn), z], axis=1)
 
@@ -81,7 +84,7 @@ def _wall(radius: float, low: float, high: float) -> NDArray[np.float64]:
     [(0.15, 0.0, 1), (0.15, 0.006, 1), (0.15, 0.02, 2), (0.07, 0.0, 2)],
     ids=["a bottle", "a bottle a little askew", "a thing on the edge of another", "a thing on a cup"],
 )
-def test_a_neck_is_the_bottles_on_whose_middle_it_is(height: float, off: float, count: int) -> None:
+def test_a_neck_joins_the_bottle_below_its_middle(height: float, off: float, count: int) -> None:
     body, neck = _wall(0.035, 0.0, height), _wall(0.013, height + 0.005, height + 0.05)
     neck[:, 0] += off
     middles = np.concatenate([body, neck])
@@ -96,13 +99,13 @@ def test_a_neck_is_the_bottles_on_whose_middle_it_is(height: float, off: float, 
 
 
 def _grid(x: tuple[float, float], y: tuple[float, float], z: float) -> NDArray[np.float64]:
-    """Patches a centimetre apart."""
+    """Return the centres of patches on a level grid, a centimetre apart."""
     plan = np.mgrid[x[0] : x[1] + 0.005 : 0.01, y[0] : y[1] + 0.005 : 0.01].reshape(2, -1).T
     return np.column_stack([plan, np.full(len(plan), z)])
 
 
 def _below(cover: NDArray[np.float64], one: NDArray[np.float64], other: NDArray[np.float64]) -> Parts:
-    """Level parts of one colour; the first meets both others, and is higher."""
+    """Return level parts of one colour; the first one is adjacent to both others, and higher."""
     middles = np.concatenate([cover, one, other])
     ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
     of = np.repeat([0, 1, 2], [len(cover), len(one), len(other)]).astype(np.int32)
@@ -112,7 +115,7 @@ def _below(cover: NDArray[np.float64], one: NDArray[np.float64], other: NDArray[
     return Parts(of, patches, Boundaries(pairs, np.ones(2), np.full(2, 1.2), np.ones(2)), JoiningSettings())
 
 
-def test_a_surface_goes_on_below_what_lies_between_its_parts() -> None:
+def test_a_surface_continues_below_an_object_on_it() -> None:
     knife, halves = (
         _grid((-0.01, 0.01), (-0.1, 0.1), 0.02),
         [_grid((side, side + 0.06), (-0.1, 0.1), 0.01) for side in (-0.08, 0.02)],
@@ -121,14 +124,14 @@ def test_a_surface_goes_on_below_what_lies_between_its_parts() -> None:
     assert (pairs.first.tolist(), pairs.second.tolist()) == ([1], [2])
 
 
-def test_cutlery_on_two_sides_of_a_plate_is_not_one_thing_below_it() -> None:
+def test_cutlery_on_two_sides_of_a_plate_is_not_one_object() -> None:
     plate = _grid((-0.1, 0.1), (-0.1, 0.1), 0.03)
     plate = plate[np.linalg.norm(plate[:, :2], axis=1) < 0.105]
     fork, knife = _grid((-0.08, 0.09), (0.11, 0.12), 0.004), _grid((0.11, 0.12), (-0.1, 0.09), 0.004)
     assert not len(bridged(_below(plate, fork, knife)))
 
 
-def test_a_round_plate_goes_on_below_a_napkin_however_wide() -> None:
+def test_a_round_plate_continues_below_a_napkin_of_any_width() -> None:
     disc = _grid((-0.13, 0.13), (-0.13, 0.13), 0.01)
     disc = disc[np.linalg.norm(disc[:, :2], axis=1) < 0.132]
     halves = [disc[side * disc[:, 0] > 0.065] for side in (-1, 1)]
@@ -137,13 +140,13 @@ def test_a_round_plate_goes_on_below_a_napkin_however_wide() -> None:
 
 
 @pytest.mark.parametrize("length", [0.06, 0.16])
-def test_two_things_on_both_sides_of_a_napkin_are_no_plate(length: float) -> None:
+def test_objects_on_two_sides_of_a_napkin_are_not_a_plate(length: float) -> None:
     sides = [_grid((x, x + 0.02), (-length / 2, length / 2), 0.01) for x in (-0.09, 0.07)]
     assert not len(round_rims(_below(_grid((-0.08, 0.08), (-0.1, 0.1), 0.02), *sides)))
 
 
 def _apart(*pieces: NDArray[np.float64], normals: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> Parts:
-    """Parts that do not meet, of one colour; the last one's ``normals`` can be told."""
+    """Return parts of one colour that do not meet; ``normals`` are those of the last one."""
     middles = np.concatenate(pieces)
     ones, number = np.ones(len(middles)), np.arange(len(middles), dtype=np.int32)
     of = np.repeat(np.arange(len(pieces)), [len(piece) for piece in pieces]).astype(np.int32)
@@ -159,7 +162,7 @@ HANDLE = _grid((0.0, 0.01), (0.0, 0.12), 0.004)
 @pytest.mark.parametrize(
     ("other", "count"),
     [
-        (_grid((-0.01, 0.02), (0.14, 0.18), 0.006), 1),  # the head, behind a neck that is not seen
+        (_grid((-0.01, 0.02), (0.14, 0.18), 0.006), 1),  # the head, behind an invisible neck
         (_grid((-0.01, 0.02), (0.17, 0.21), 0.006), 2),  # too far away
         (_grid((0.03, 0.04), (0.0, 0.12), 0.004), 2),  # another handle beside it
         (_grid((0.03, 0.04), (0.13, 0.2), 0.004), 2),  # not in a line
@@ -167,7 +170,7 @@ HANDLE = _grid((0.0, 0.01), (0.0, 0.12), 0.004)
         (_grid((-0.05, 0.06), (0.14, 0.2), 0.006), 2),  # something wide
     ],
 )
-def test_the_head_of_a_spoon_goes_on_in_its_handle(other: NDArray[np.float64], count: int) -> None:
+def test_the_head_of_a_spoon_joins_its_handle(other: NDArray[np.float64], count: int) -> None:
     assert len(whole_things(_apart(HANDLE, other))) == count
     assert len(whole_things(_apart(other, HANDLE))) == count
 
@@ -181,7 +184,7 @@ def test_the_head_of_a_spoon_goes_on_in_its_handle(other: NDArray[np.float64], c
         (((0.002, 0.018), (0.01, 0.002)), 1),  # both come down to the table, from an arch
     ],
 )
-def test_two_pieces_in_a_line_are_one_where_they_can_lie_so_as_one(
+def test_two_pieces_in_a_line_join_if_their_heights_allow_it(
     heights: tuple[tuple[float, float], tuple[float, float]], count: int
 ) -> None:
     pieces = [_grid((0.0, 0.01), ends, 0.0) for ends in ((0.0, 0.12), (0.14, 0.24))]
@@ -195,7 +198,7 @@ def test_two_pieces_in_a_line_are_one_where_they_can_lie_so_as_one(
     ("normal", "top", "count"),
     [((1.0, 0.0, 0.1), 0.06, 1), ((0.0, 0.0, 1.0), 0.06, 2), ((1.0, 0.0, 0.1), 0.12, 2)],
 )
-def test_a_thin_upright_piece_is_the_side_of_what_is_as_high(
+def test_a_thin_upright_piece_joins_an_object_of_its_height(
     normal: tuple[float, float, float], top: float, count: int
 ) -> None:
     box = _grid((0.0, 0.08), (0.0, 0.08), 0.08)

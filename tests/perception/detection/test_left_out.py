@@ -1,4 +1,4 @@
-"""What is above a table and is not reported is said in notes; of what is in order nothing is said."""
+"""Notes on points above a table that are not reported, and no notes on an ordinary table."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ SHELF: Box = ((0.45, -0.2, -0.3), (0.6, 0.2, 0.3))
         ([CUBE, SHELF], 0.35, "beside the table"),
     ],
 )
-def test_what_is_not_reported_is_said(boxes_seen: Look, things: list[Box], half: float, said: str) -> None:
+def test_unreported_points_get_a_note(boxes_seen: Look, things: list[Box], half: float, said: str) -> None:
     notes = detect(boxes_seen(things, half=half), DetectionSettings(reach=0.2)).notes
     assert any(said in note for note in notes), notes
 
 
-def test_a_table_in_order_has_no_notes(boxes_seen: Look) -> None:
+def test_an_ordinary_table_has_no_notes(boxes_seen: Look) -> None:
     assert detect(boxes_seen([CUBE, ((0.1, 0.1, 0.0), (0.3, 0.14, 0.01))])).notes == ()
 
 
-def test_points_in_pieces_too_small_for_things_are_said(boxes_seen: Look) -> None:
+def test_points_in_very_small_pieces_get_a_note(boxes_seen: Look) -> None:
     rng = np.random.default_rng(0)
     specks = [((x, y, 0.0), (x + 0.012, y + 0.012, 0.03)) for x, y in rng.uniform(-0.3, 0.3, (40, 2)).tolist()]
     strict = DetectionSettings(least_length=0.05)
     assert any("too small or too low" in note for note in detect(boxes_seen([CUBE, *specks]), strict).notes)
 
 
-def test_a_hole_in_the_depth_of_a_table_is_said(boxes_seen: Look) -> None:
+def test_a_hole_in_the_depth_of_a_table_gets_a_note(boxes_seen: Look) -> None:
     cloud = boxes_seen([CUBE])
     assert cloud.organised is not None
     points = cloud.points.copy().reshape(*cloud.organised, 3)
@@ -56,7 +56,7 @@ def test_a_hole_in_the_depth_of_a_table_is_said(boxes_seen: Look) -> None:
 
 
 @pytest.mark.parametrize(("axis", "name"), [(0, "rows"), (1, "columns")])
-def test_lines_without_depth_are_said(boxes_seen: Look, axis: int, name: str) -> None:
+def test_lines_without_depth_get_a_note(boxes_seen: Look, axis: int, name: str) -> None:
     cloud = boxes_seen([CUBE])
     assert cloud.organised is not None
     points = cloud.points.copy()
@@ -65,10 +65,10 @@ def test_lines_without_depth_are_said(boxes_seen: Look, axis: int, name: str) ->
     assert f"{name} of the image have no depth" in note
 
 
-def test_sizes_that_no_tableware_has_are_said() -> None:
+def test_sizes_unusual_for_tableware_get_a_note() -> None:
     usual, limits = np.array([0.2, 0.15, 0.05]), NoteSettings()
     assert odd_sizes(usual, limits) == ()
     for factor in (10.0, 0.1):
         (note,) = odd_sizes(factor * usual, limits)
-        assert note.endswith("is the unit another?")
-    assert odd_sizes(np.array([3.0]), limits) == ()  # of one thing nothing is known
+        assert note.endswith("check the unit")
+    assert odd_sizes(np.array([3.0]), limits) == ()  # one object shows nothing about the unit

@@ -1,4 +1,4 @@
-"""Boxes around points; what is round and partly hidden, and what only looks so."""
+"""Boxes around points, and partly hidden round objects."""
 
 from __future__ import annotations
 
@@ -49,20 +49,20 @@ def _disc(radius: float, step: float = 0.002) -> NDArray[np.float64]:
 
 
 def _crescent(below: float) -> NDArray[np.float64]:
-    """What is seen of a plate of 12 cm radius in front of what stands on it."""
+    """Return the visible part of a plate of 12 cm radius in front of an object on it."""
     disc = _disc(0.12)
     return disc[disc[:, 1] < below]
 
 
 @pytest.mark.parametrize("below", [-0.05, 0.0, 0.08])
-def test_the_rim_of_a_plate_goes_on_behind_what_stands_on_it(below: float) -> None:
+def test_the_rim_of_a_plate_continues_behind_an_object(below: float) -> None:
     rim = rim_of(_crescent(below) + np.array([0.3, 0.1]), NO_TABLE, LIMITS)
     assert rim is not None
     assert rim.centre == pytest.approx([0.3, 0.1], abs=0.003)
     assert rim.radius == pytest.approx(0.12, abs=0.003)
 
 
-def test_a_box_takes_in_the_hidden_part_of_a_rim_whichever_way_it_is_turned() -> None:
+def test_a_box_at_any_yaw_includes_the_hidden_part_of_a_rim() -> None:
     plan = _crescent(-0.03) + np.array([0.2, 0.3])
     points, rim = np.column_stack([plan, np.full(len(plan), 0.02)]), rim_of(plan, NO_TABLE, LIMITS)
     assert upright_box(points, LIMITS, rim)[:, :2] == pytest.approx(np.array([[0.08, 0.18], [0.32, 0.42]]), abs=0.004)
@@ -71,7 +71,7 @@ def test_a_box_takes_in_the_hidden_part_of_a_rim_whichever_way_it_is_turned() ->
     assert turned.extents[:2] == pytest.approx([0.24, 0.24], abs=0.006)
 
 
-def test_where_the_table_is_seen_no_rim_goes_on() -> None:
+def test_a_rim_does_not_continue_over_the_visible_table() -> None:
     crescent = _crescent(-0.03)
     behind = _disc(0.12)[_disc(0.12)[:, 1] > 0.02]
     assert rim_of(crescent, behind, LIMITS) is None
@@ -90,11 +90,11 @@ def test_where_the_table_is_seen_no_rim_goes_on() -> None:
     ],
     ids=["too little of an edge", "a spoon", "a strip of a plate", "a napkin", "points in a line", "a round table"],
 )
-def test_what_is_not_surely_round_has_no_rim(seen: NDArray[np.float64]) -> None:
+def test_a_doubtfully_round_object_has_no_rim(seen: NDArray[np.float64]) -> None:
     assert rim_of(seen, NO_TABLE, LIMITS) is None
 
 
-def test_a_circle_is_found_wherever_it_is_and_however_it_is_turned() -> None:
+def test_a_circle_is_found_at_any_place_and_yaw() -> None:
     rng, turn = np.random.default_rng(0), 0.7
     axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     plan = _disc(0.08) + rng.normal(size=2)

@@ -1,4 +1,4 @@
-"""Patches keep to edges; what parts two things is counted along their boundary."""
+"""Patches that respect edges, and evidence along the boundaries of regions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ EYE = np.array([0.06, 0.06, 0.8])
 
 
 def _folded(angle: float, paint: NDArray[np.uint8] | None = None) -> Surface:
-    """Two squares of 6 by 12 cm at an angle along the line x = 0.06, seen from above; above 0 they form a valley."""
+    """Return two rectangles of 6 by 12 cm at an angle along x = 0.06, seen from above; a positive angle is a valley."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 0.12, SIDE), np.linspace(0, 0.12, SIDE)))
     z = np.abs(x - 0.06) * np.tan(angle / 2) + 0.1
     points = np.stack([x, y, z], axis=1)
@@ -34,7 +34,7 @@ def _folded(angle: float, paint: NDArray[np.uint8] | None = None) -> Surface:
 
 
 @pytest.mark.parametrize(("angle", "count"), [(-1.6, 1), (-0.8, 1), (0.0, 1), (1.6, 2)])
-def test_surfaces_part_in_a_valley_and_not_on_a_ridge(angle: float, count: int) -> None:
+def test_surfaces_separate_in_a_valley_and_not_on_a_ridge(angle: float, count: int) -> None:
     found = segments(_folded(angle), DetectionSettings())
     assert found.max() + 1 == count
     left = np.tile(np.arange(SIDE) < SIDE // 2 - 4, SIDE)
@@ -42,7 +42,7 @@ def test_surfaces_part_in_a_valley_and_not_on_a_ridge(angle: float, count: int) 
     assert len(np.unique(found[left])) == 1 and len(np.unique(found[right])) == 1
 
 
-def test_only_the_valley_is_a_crease_and_no_deeper_than_it_is() -> None:
+def test_only_the_valley_is_a_crease_with_its_angle() -> None:
     surface = _folded(1.2)
     patches = supervoxels(surface, SupervoxelSettings())
     pairs = boundaries(surface, patches, DetectionSettings()).pairs
@@ -63,7 +63,7 @@ def test_patches_meet_where_the_colour_changes() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(2, 30), st.integers(0, 10**6))
-def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) -> None:
+def test_no_boundary_with_little_evidence_is_left(count: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     a, b = np.triu_indices(count, 1)
     chosen = rng.random(len(a)) < 0.3
@@ -82,7 +82,7 @@ def test_no_boundary_that_speaks_for_one_thing_is_left(count: int, seed: int) ->
 def merged_by_search(
     meeting: Boundaries, colours: NDArray[np.float64], weights: NDArray[np.float64], limits: BoundarySettings
 ) -> list[int]:
-    """The regions of agglomeration, each time by looking at all pairs anew."""
+    """Return the regions of agglomeration by a search of all pairs before each merge."""
     of = list(range(len(weights)))
     while True:
         edges: dict[tuple[int, int], tuple[float, float]] = {}
@@ -104,7 +104,7 @@ def merged_by_search(
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(2, 14), st.integers(0, 10**6))
-def test_agglomeration_merges_as_a_search_of_all_pairs_does(count: int, seed: int) -> None:
+def test_agglomeration_agrees_with_a_search_of_all_pairs(count: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     pairs = np.argwhere(np.triu(rng.random((count, count)) < 0.4, 1)).astype(np.int64)
     meeting = Boundaries(pairs, rng.integers(1, 9, len(pairs)).astype(float), rng.random(len(pairs)), np.zeros(0))
@@ -113,15 +113,15 @@ def test_agglomeration_merges_as_a_search_of_all_pairs_does(count: int, seed: in
 
 
 @pytest.mark.parametrize(("tint", "expected"), [(0.0, [0, 0, 1]), (20.0, [0, 1, 1])])
-def test_colour_decides_what_is_merged_first(tint: float, expected: list[int]) -> None:
-    """A knife that ends smoothly on one half of a rim, and hangs over the other: the rim is made whole first."""
+def test_colour_decides_the_order_of_merges(tint: float, expected: list[int]) -> None:
+    """Check that a rim is merged before the knife that ends smoothly on one half and hangs over the other."""
     knife, rim, other = (tint, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     pairs, evidence = np.array([[0, 1], [0, 2], [1, 2]]), np.array([0.0, 1.4, 0.1])
     meeting = Boundaries(pairs, np.array([4.0, 8.0, 4.0]), evidence, np.zeros(3))
     assert agglomerated(meeting, np.array([knife, rim, other]), np.ones(3), BoundarySettings()).tolist() == expected
 
 
-def test_what_is_of_two_colours_and_meets_smoothly_is_one() -> None:
+def test_a_smooth_surface_of_two_colours_is_one_object() -> None:
     meeting = Boundaries(np.array([[0, 1]]), np.ones(1), np.array([0.55]), np.zeros(1))
     assert agglomerated(
         meeting, np.array([[0.0, 0.0, 0.0], [90.0, 0.0, 0.0]]), np.ones(2), BoundarySettings()

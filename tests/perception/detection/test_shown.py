@@ -1,4 +1,4 @@
-"""What a cloud shows, and what that means for the frame of its things and for how they are compared."""
+"""Kinds of clouds, and their effect on the frame of the objects and on their comparison."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CUBE: Box = ((-0.04, -0.04, 0.0), (0.04, 0.04, 0.08))
 
 
 def shell(extents: tuple[float, float, float], spacing: float = 0.004) -> NDArray[np.float64]:
-    """Three sides of a box, as a camera above one of its corners sees them."""
+    """Return three sides of a box, as a camera above one of its corners sees them."""
     x, y, z = (np.arange(0.0, side, spacing) for side in extents)
     top, front, side = (np.stack(np.meshgrid(*pair), axis=-1).reshape(-1, 2) for pair in ((x, y), (x, z), (y, z)))
     return np.concatenate(
@@ -34,7 +34,7 @@ def shell(extents: tuple[float, float, float], spacing: float = 0.004) -> NDArra
 
 
 @pytest.mark.parametrize("extents", [(0.08, 0.08, 0.1), (0.45, 0.3, 0.3), (0.2, 0.06, 0.3), (0.6, 0.2, 0.2)])
-def test_one_object_is_one_object_however_large(extents: tuple[float, float, float]) -> None:
+def test_one_object_of_any_size_is_one_object(extents: tuple[float, float, float]) -> None:
     points = shell(extents)
     turn = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
     found = detect(PointCloud((points @ turn.T + (0.0, 0.0, 1.0)).astype(np.float32)))
@@ -42,7 +42,7 @@ def test_one_object_is_one_object_however_large(extents: tuple[float, float, flo
     assert (found.labels == 0).all()
 
 
-def test_what_a_cloud_shows_is_told(boxes_seen: Look) -> None:
+def test_the_kind_of_a_cloud_is_reported(boxes_seen: Look) -> None:
     assert detect(boxes_seen([CUBE])).shows == Shows.TABLE
     assert detect(boxes_seen([])).shows == Shows.TABLE
     other: Box = ((0.32, -0.2, -0.03), (0.67, 0.2, 0.0))
@@ -55,7 +55,7 @@ def test_what_a_cloud_shows_is_told(boxes_seen: Look) -> None:
     assert detect(PointCloud(sheet.astype(np.float32))).shows == Shows.TABLE
 
 
-def test_the_rim_of_a_tray_is_no_thing_on_a_table() -> None:
+def test_the_rim_of_a_tray_is_not_an_object_on_a_table() -> None:
     x, y = (axis.ravel() for axis in np.mgrid[-0.25:0.25:0.003, -0.16:0.16:0.003])
     edge = np.maximum(abs(x) - 0.2, abs(y) - 0.11)
     rim = np.where(edge > 0, edge, 0.0)  # rises at 45 degrees, all around
@@ -63,13 +63,13 @@ def test_the_rim_of_a_tray_is_no_thing_on_a_table() -> None:
     assert detect(PointCloud(tray.astype(np.float32))).shows == Shows.OBJECT
 
 
-def test_two_pieces_apart_are_no_single_object() -> None:
+def test_two_separate_pieces_are_not_one_object() -> None:
     one = shell((0.3, 0.1, 0.1))
     assert share_connected(one, 0.02) == 1.0
     assert share_connected(np.concatenate([one, one + np.array([0.6, 0.0, 0.0])]), 0.02) == pytest.approx(0.5, abs=0.05)
 
 
-def test_without_a_table_things_are_compared_in_no_frame() -> None:
+def test_without_a_table_objects_are_compared_without_a_frame() -> None:
     cloud = PointCloud(shell((0.08, 0.08, 0.1)).astype(np.float32))
     assert detect(cloud).scene().frame == "object"
     assert comparisons_in(detect(cloud).scene().frame) == ((SPIN_IMAGE_ROOTS, COLOUR), (SPIN_IMAGE_ROOTS,))

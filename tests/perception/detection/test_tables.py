@@ -1,4 +1,4 @@
-"""Several tables in one cloud: each is found, told of, and looked at alone."""
+"""Several tables in one cloud: each is found, mentioned in a note, and usable alone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CUBE, PLANK = ((-0.12, -0.1, 0.0), (-0.04, -0.02, 0.08)), ((0.02, -0.15, 0.0), (
 
 
 def beside(height: float) -> list[tuple[tuple[float, float, float], tuple[float, float, float]]]:
-    """Another table, so much higher than the first, and a cube on it."""
+    """Return another table, higher than the first by ``height``, and a cube on it."""
     table = ((0.32, -0.2, height - 0.03), (0.67, 0.2, height))
     return [table, ((0.4, -0.05, height), (0.47, 0.02, height + 0.07))]
 
@@ -30,10 +30,10 @@ def of_thing(found: Detection, cloud: PointCloud, number: int, truth: int) -> fl
 
 
 @pytest.mark.parametrize("height", [-0.15, 0.0, 0.1])
-def test_a_second_table_is_told_of_and_can_be_looked_at(boxes_seen: Look, height: float) -> None:
+def test_a_second_table_gets_a_note_and_can_be_used(boxes_seen: Look, height: float) -> None:
     cloud = boxes_seen([CUBE, PLANK, *beside(height)], half=0.2)
     first, second = (detect(cloud, DetectionSettings(table=number)) for number in (1, 2))
-    assert len(first.boxes) == 2 and first.notes[-1].endswith("perceive --table 2 looks at that one")
+    assert len(first.boxes) == 2 and first.notes[-1].endswith("use perceive --table 2 to detect them")
     assert min(of_thing(first, cloud, 0, 1), of_thing(first, cloud, 1, 2)) > 0.8
     assert len(second.boxes) == 1 and second.notes == ()
     assert of_thing(second, cloud, 0, 4) > 0.8
@@ -48,15 +48,15 @@ def test_a_second_table_is_told_of_and_can_be_looked_at(boxes_seen: Look, height
 
 
 @pytest.mark.parametrize("things", [[CUBE, PLANK], [CUBE, PLANK, beside(0.0)[0]], [CUBE, PLANK, *beside(-0.45)]])
-def test_what_is_bare_or_as_low_as_a_floor_is_no_second_table(boxes_seen: Look, things: list[object]) -> None:
+def test_an_empty_surface_or_a_floor_is_not_a_second_table(boxes_seen: Look, things: list[object]) -> None:
     cloud = boxes_seen(things, half=0.2)
     assert detect(cloud).notes == ()
     assert detect(cloud, DetectionSettings(table=2)).notes == ("there is no table 2: one table was found",)
 
 
 @pytest.mark.parametrize("covered", [True, False])
-def test_parts_of_a_table_are_one_if_a_pile_is_between_them(boxes_seen: Look, covered: bool) -> None:
-    """Two slabs at the same height, side by side, and a cube on each; between them boxes, or the floor."""
+def test_a_pile_does_not_divide_a_table(boxes_seen: Look, covered: bool) -> None:
+    """Check two slabs of one height side by side with a cube on each, and boxes or the floor between them."""
     slabs = [((-0.45, -0.3, -0.03), (-0.1, 0.3, 0.0)), ((0.1, -0.3, -0.03), (0.45, 0.3, 0.0))]
     cubes = [((-0.3, -0.05, 0.0), (-0.22, 0.03, 0.07)), ((0.22, -0.05, 0.0), (0.3, 0.03, 0.07))]
     pile = [((-0.11, y, -0.03), (0.11, y + 0.14, 0.05 + y / 5)) for y in (-0.35, -0.2, -0.05, 0.1, 0.25)]
@@ -67,7 +67,7 @@ def test_parts_of_a_table_are_one_if_a_pile_is_between_them(boxes_seen: Look, co
     assert sum(share > 0.8 for share in best) == 1 + covered
 
 
-def test_a_strip_of_a_wall_at_the_height_of_the_table_is_no_part_of_it(boxes_seen: Look) -> None:
+def test_a_strip_of_a_wall_is_not_a_part_of_the_table(boxes_seen: Look) -> None:
     tall = ((-0.1, 0.2, 0.0), (0.1, 0.26, 0.5))
     cloud = boxes_seen([CUBE, tall, ((-1.0, 0.9, -0.6), (1.0, 0.95, 1.0))], half=0.4)
     found = detect(cloud)
@@ -75,11 +75,11 @@ def test_a_strip_of_a_wall_at_the_height_of_the_table_is_no_part_of_it(boxes_see
 
 
 def test_tables_are_numbered_from_one() -> None:
-    with pytest.raises(CloudError, match="numbered from 1"):
+    with pytest.raises(CloudError, match="table must be a whole number of at least 1"):
         DetectionSettings(table=0)
 
 
-def test_where_there_is_no_table_there_is_no_second_one() -> None:
+def test_without_a_table_there_is_no_second_one() -> None:
     scattered = np.random.default_rng(0).uniform(-1, 1, (500, 3)).astype(np.float32)
     found = detect(PointCloud(scattered), DetectionSettings(table=2))
     assert found.table is None and found.notes[0].startswith("no table was found")

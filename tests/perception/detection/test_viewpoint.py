@@ -1,4 +1,4 @@
-"""Clouds that are no image: seen from a known place, from a place that the file does not tell, or from none."""
+"""Unorganised clouds with a known viewpoint, an unknown one, or none."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def no_image(cloud: PointCloud) -> PointCloud:
 
 
 def centres(found: Detection) -> NDArray[np.float64]:
-    """In the cloud's frame."""
+    """Return the centres of the detected objects in the frame of the cloud."""
     back = np.linalg.inv(found.frame)
     result: NDArray[np.float64] = found.boxes.mean(axis=1) @ back[:3, :3].T + back[:3, 3]
     return result
@@ -46,7 +46,7 @@ def test_neighbours_in_direction_are_the_pixels_around_a_pixel(boxes_seen: Look)
     assert (np.sort(found[inner], axis=1) == np.sort(pixels[inner], axis=1)).all()
 
 
-def test_without_its_order_an_image_shows_the_same_things(boxes_seen: Look) -> None:
+def test_an_image_without_its_order_gives_the_same_objects(boxes_seen: Look) -> None:
     cloud = boxes_seen([CUBE, PLANK, LOW, STACKED])
     order = np.random.default_rng(1).permutation(np.flatnonzero(cloud.finite))
     as_image, as_points = detect(cloud), detect(cloud.take(order))
@@ -57,7 +57,7 @@ def test_without_its_order_an_image_shows_the_same_things(boxes_seen: Look) -> N
     assert (whose[image + 1] == as_points.labels).mean() > 0.99
 
 
-def test_points_seen_from_elsewhere_have_neighbours_that_are_apart(boxes_seen: Look, to_table: ToTable) -> None:
+def test_neighbours_from_a_wrong_viewpoint_are_far_apart(boxes_seen: Look, to_table: ToTable) -> None:
     points = no_image(boxes_seen([CUBE, STACKED, LOW])).points.astype(np.float64)
     limits = ViewpointSettings()
     assert apart(points, np.zeros(3), limits) < limits.max_far_share / 2
@@ -66,7 +66,7 @@ def test_points_seen_from_elsewhere_have_neighbours_that_are_apart(boxes_seen: L
 
 @pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.8, 0.1, 0.75), (3.0, 2.0, 1.0)])
 @pytest.mark.parametrize("organised", [True, False])
-def test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis(
+def test_a_cloud_with_a_wrong_origin_keeps_its_own_y_axis(
     boxes_seen: Look, to_table: ToTable, shift: tuple[float, float, float], organised: bool
 ) -> None:
     cloud = boxes_seen([CUBE, PLANK])
@@ -77,7 +77,7 @@ def test_a_cloud_whose_origin_is_no_viewpoint_keeps_its_own_y_axis(
     assert (centres(found) - shift)[:, :2] == pytest.approx(np.array(CENTRES), abs=0.008)
 
 
-def test_an_image_that_was_moved_aside_shows_the_same_things(boxes_seen: Look) -> None:
+def test_an_image_that_was_moved_gives_the_same_objects(boxes_seen: Look) -> None:
     cloud = boxes_seen([CUBE, PLANK])
     one, other = detect(cloud), detect(replace(cloud, points=cloud.points + np.array([5, 0, 0], np.float32)))
     assert one.table is not None and other.table is not None
@@ -87,7 +87,7 @@ def test_an_image_that_was_moved_aside_shows_the_same_things(boxes_seen: Look) -
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.3])
-def test_the_right_of_a_picture_is_right_wherever_the_table_is_in_it(boxes_seen: Look, aside: float) -> None:
+def test_right_in_the_image_is_right_wherever_the_table_is(boxes_seen: Look, aside: float) -> None:
     cloud = boxes_seen([CUBE, PLANK], half=0.3)
     shown = cloud.points.reshape(*(cloud.organised or ()), 3).copy()
     shown[:, : int(aside * shown.shape[1])] = np.nan  # the table begins there
@@ -104,7 +104,7 @@ def test_a_camera_held_upside_down_sees_the_same_table(boxes_seen: Look) -> None
 
 
 @pytest.mark.parametrize("lost", ["rows", "columns", "two of three rows", "chequered", "half at random"])
-def test_a_table_is_seen_though_lines_of_the_image_are_missing(boxes_seen: Look, lost: str) -> None:
+def test_a_table_is_found_despite_missing_lines_of_the_image(boxes_seen: Look, lost: str) -> None:
     cloud = boxes_seen([CUBE, LOW, STACKED])
     assert cloud.organised is not None
     row, column = np.indices(cloud.organised)
@@ -123,7 +123,7 @@ def test_a_table_is_seen_though_lines_of_the_image_are_missing(boxes_seen: Look,
     assert ((found.labels >= 0) == (whole.labels >= 0))[kept].mean() > 0.99
 
 
-def test_noise_in_all_directions_hides_no_viewpoint(boxes_seen: Look) -> None:
+def test_the_viewpoint_is_found_despite_noise_in_all_directions(boxes_seen: Look) -> None:
     cloud = boxes_seen([CUBE, PLANK])
     noise = np.random.default_rng(0).normal(0, 1e-3, cloud.points.shape)
     noisy = replace(cloud, points=(cloud.points + noise).astype(np.float32))
@@ -131,13 +131,13 @@ def test_noise_in_all_directions_hides_no_viewpoint(boxes_seen: Look) -> None:
     assert detect(noisy).frame[0, :3] == pytest.approx([1, 0, 0], abs=0.01)
 
 
-def test_a_cloud_in_millimetres_is_refused_and_told_so(boxes_seen: Look) -> None:
+def test_a_cloud_in_millimetres_is_refused_with_the_reason(boxes_seen: Look) -> None:
     cloud = boxes_seen([CUBE])
     with pytest.raises(CloudError, match="millimetres"):
         detect(replace(cloud, points=cloud.points * np.float32(1000)))
 
 
-def test_points_beyond_all_others_are_no_other_unit(boxes_seen: Look) -> None:
+def test_a_few_distant_points_do_not_suggest_another_unit(boxes_seen: Look) -> None:
     cloud = no_image(boxes_seen([CUBE]))
     far = np.random.default_rng(0).uniform(100, 200, (200, 3)).astype(np.float32)
     assert len(detect(PointCloud(np.concatenate([cloud.points, far]))).boxes) == 1

@@ -1,4 +1,4 @@
-"""COCO and LabelMe files as scenes: golden cases by hand, y turned upwards."""
+"""COCO and LabelMe files as scenes with y upwards, compared with results by hand."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Box = tuple[float, float, float, float]
 
 
 def boxes(scene: Scene) -> dict[str, tuple[str | None, Box]]:
-    """Of each object its label, and x from and to, y from and to."""
+    """Return the label and the ranges of x and y of each object by id."""
     return {
         thing.id: (thing.label, (thing.minimum[0], thing.maximum[0], thing.minimum[1], thing.maximum[1]))
         for thing in scene.objects
@@ -71,7 +71,7 @@ def name_of(scene: Scene, one: str, other: str) -> set[str]:
     return {fact.relations[0].word for fact in graph.facts() if (fact.subject, fact.object) == (one, other)}
 
 
-def test_what_is_higher_in_the_image_is_at_the_top() -> None:
+def test_an_object_higher_in_the_image_is_at_the_top() -> None:
     scene = read_scene(COCO, 1)
     assert name_of(scene, "o3", "o1") == {"top"}
     assert name_of(scene, "o1", "o3") == {"bottom"}
@@ -97,7 +97,7 @@ def test_without_the_height_the_lowest_outline_is_the_ground() -> None:
     assert shift[..., 1].tolist() == [[8, 8]] * 5
 
 
-def test_a_mask_that_is_run_length_encoded_is_passed_over_where_a_box_is_given() -> None:
+def test_a_run_length_encoded_mask_is_skipped_if_a_box_is_given() -> None:
     encoded = {"counts": "abc", "size": [480, 640]}
     assert boxes(read_scene(coco(segmentation=encoded, bbox=[1, 2, 3, 4])))["o1"][1] == (1, 4, 474, 478)
 
@@ -107,7 +107,7 @@ def test_a_score_is_the_confidence_of_the_label() -> None:
     assert read_scene(coco(bbox=[1, 2, 3, 4], score=0.25, category_id=None))["o1"].confidence == 1
 
 
-def test_only_the_chosen_image_is_looked_at() -> None:
+def test_only_the_chosen_image_is_read() -> None:
     spoilt = copy.deepcopy(COCO)
     spoilt["annotations"][1]["bbox"] = "none"
     assert len(read_scene(spoilt, 1).objects) == 3
@@ -121,7 +121,7 @@ def test_an_image_with_crowds_alone_is_an_empty_scene() -> None:
 
 
 @pytest.mark.parametrize("data", [COCO, LABELME], ids=["coco", "labelme"])
-def test_an_annotated_image_comes_back_from_a_scene_file(data: Json, tmp_path: Path) -> None:
+def test_an_annotated_image_survives_a_scene_file(data: Json, tmp_path: Path) -> None:
     source, written = tmp_path / "annotated.json", tmp_path / "written.scene.json"
     source.write_text(json.dumps(data), encoding="utf-8")
     scene = read_scene(source, image="dinner.jpg")
@@ -134,7 +134,7 @@ def test_labels_can_be_hidden() -> None:
     assert {thing.label for thing in read_scene(LABELME).without_labels().objects} == {None}
 
 
-def test_a_format_is_told_by_its_content() -> None:
+def test_a_format_is_recognised_by_its_content() -> None:
     def reader(data: Any) -> str | None:
         found: Callable[..., Scene] | None = annotation_reader(data)
         return None if found is None else found.__name__

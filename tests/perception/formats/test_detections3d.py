@@ -1,4 +1,4 @@
-"""Test scenes from the fields of `vision_msgs/Detection3DArray`, and back."""
+"""Scenes from the fields of `vision_msgs/Detection3DArray`, and back."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def as_message(data: Any) -> Any:
 
 
 @given(st.lists(st.tuples(coordinates, coordinates, coordinates, lengths, lengths, lengths), max_size=4))
-def test_boxes_survive_the_way_there_and_back(boxes: list[tuple[float, ...]]) -> None:
+def test_boxes_survive_a_round_trip(boxes: list[tuple[float, ...]]) -> None:
     low = np.array([box[:3] for box in boxes]).reshape(-1, 3)
     scene = Scene.from_boxes(low, low + np.array([box[3:] for box in boxes]).reshape(-1, 3))
     message = json.loads(json.dumps(scene.to_detections3d()))
@@ -70,7 +70,7 @@ def test_the_best_hypothesis_is_the_label() -> None:
     assert (thing.label, thing.confidence, thing.candidates) == ("mug", 0.7, (("cup", 0.2), ("mug", 0.7)))
 
 
-def test_an_orientation_that_was_never_set_is_no_turn() -> None:
+def test_an_orientation_that_was_never_set_is_the_identity() -> None:
     zero = Scene.from_detections3d({"detections": [detection((0.0, 0.0, 0.0, 0.0))]})
     assert zero.boxes.tolist() == Scene.from_detections3d({"detections": [detection()]}).boxes.tolist()
 

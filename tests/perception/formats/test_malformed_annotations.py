@@ -1,4 +1,4 @@
-"""Malformed COCO and LabelMe files: a catalogue, and anything anywhere in a file."""
+"""Malformed COCO and LabelMe files: a catalogue, and arbitrary values at any place of a file."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def labelme(**changes: Any) -> Json:
 
 
 def without(data: Json, *path: Any) -> Json:
-    """The file without what lies at a path."""
+    """Return the file without the value at a path."""
     changed = copy.deepcopy(data)
     inner: Any = changed
     for step in path[:-1]:
@@ -34,7 +34,7 @@ def without(data: Json, *path: Any) -> Json:
 
 
 def changed(data: Json, value: Any, *path: Any) -> Json:
-    """The file with something else at a path."""
+    """Return the file with another value at a path."""
     result = copy.deepcopy(data)
     inner: Any = result
     for step in path[:-1]:
@@ -60,106 +60,106 @@ CATALOGUE: list[tuple[Json, str]] = [
         + ", ".join(f"'{i}.jpg' (id {i})" for i in range(1, 6))
         + ", …",
     ),
-    (changed(FORK, [], "images"), "'images' is empty, so there is no scene in this file"),
-    (changed(FORK, {}, "images"), "'images' must be a list, not an object"),
-    (changed(FORK, [3], "images"), "images[0]: an object {…} is expected here, not a number"),
+    (changed(FORK, [], "images"), "'images' must have at least one image, got none"),
+    (changed(FORK, {}, "images"), "'images' must be a list, got an object"),
+    (changed(FORK, [3], "images"), "images[0]: expected an object {…}, got a number"),
     (without(FORK, "images", 0, "id"), "images[0]: 'id' is missing"),
-    (changed(FORK, 1.5, "images", 0, "id"), "images[0]: 'id': an id is a whole number or a text, not a number"),
-    (changed(FORK, [1], "images", 0, "id"), "images[0]: 'id': an id is a whole number or a text, not a list"),
+    (changed(FORK, 1.5, "images", 0, "id"), "images[0]: 'id': an id must be a whole number or a text, got a number"),
+    (changed(FORK, [1], "images", 0, "id"), "images[0]: 'id': an id must be a whole number or a text, got a list"),
     (changed(FORK, 10**20, "images", 0, "id"), "images[0]: 'id': the number is too large"),
     (changed(FORK, COCO["images"][:1] * 2, "images"), "images[1]: the id 1 is used twice"),
-    (changed(FORK, 7, "images", 0, "file_name"), "images[0]: 'file_name': a text is expected, not a number"),
-    (changed(FORK, "tall", "images", 0, "height"), "images[0]: 'height': a number is expected, not a text"),
-    (changed(FORK, -480, "images", 0, "height"), "images[0]: 'height': an image measures some pixels, not -480"),
+    (changed(FORK, 7, "images", 0, "file_name"), "images[0]: 'file_name': expected a text, got a number"),
+    (changed(FORK, "tall", "images", 0, "height"), "images[0]: 'height': expected a number, got a text"),
+    (changed(FORK, -480, "images", 0, "height"), "images[0]: 'height': expected a number of pixels above 0, got -480"),
     (without(FORK, "categories"), "'categories' is missing"),
-    (changed(FORK, None, "categories"), "'categories' must be a list, not null"),
-    (changed(FORK, [None], "categories"), "categories[0]: an object {…} is expected here, not null"),
+    (changed(FORK, None, "categories"), "'categories' must be a list, got null"),
+    (changed(FORK, [None], "categories"), "categories[0]: expected an object {…}, got null"),
     (without(FORK, "categories", 1, "name"), "categories[1]: 'name' is missing"),
-    (changed(FORK, " ", "categories", 1, "name"), "categories[1]: 'name': a text is expected, and this one is blank"),
+    (changed(FORK, " ", "categories", 1, "name"), "categories[1]: 'name': expected a text, got a blank one"),
     (changed(FORK, 10, "categories", 1, "id"), "categories[1]: the id 10 is used twice"),
-    (changed(FORK, "none", "annotations"), "'annotations' must be a list, not a text"),
-    (changed(FORK, [[]], "annotations"), "annotations[0]: an object {…} is expected here, not a list"),
+    (changed(FORK, "none", "annotations"), "'annotations' must be a list, got a text"),
+    (changed(FORK, [[]], "annotations"), "annotations[0]: expected an object {…}, got a list"),
     (without(FORK, "annotations", 0, "image_id"), "annotations[0]: 'image_id' is missing"),
-    (coco(image_id=9), "annotations[0]: 'image_id' 9 is the id of no image in this file"),
-    (coco(image_id="x" * 900), f"annotations[0]: 'image_id' {'x' * 59}… is the id of no image in this file"),
+    (coco(image_id=9), "annotations[0]: 'image_id' 9 is not the id of an image in this file"),
+    (coco(image_id="x" * 900), f"annotations[0]: 'image_id' {'x' * 59}… is not the id of an image in this file"),
     (without(FORK, "annotations", 0, "category_id"), "annotations[0]: 'category_id' is missing"),
-    (coco(category_id=11), "annotations[0]: 'category_id' 11 is the id of no category in this file"),
-    (coco(category_id=True), "annotations[0]: 'category_id': an id is a whole number or a text, not true"),
-    (coco(), "annotations[0]: 'bbox' is missing, and so is 'segmentation'; an object needs one of them"),
+    (coco(category_id=11), "annotations[0]: 'category_id' 11 is not the id of a category in this file"),
+    (coco(category_id=True), "annotations[0]: 'category_id': an id must be a whole number or a text, got true"),
+    (coco(), "annotations[0]: 'bbox' and 'segmentation' are both missing; give one of them"),
     (coco(bbox=[1, 2, 3]), "annotations[0]: 'bbox' must have 4 numbers: x, y, width and height"),
     (coco(bbox={"x": 1}), "annotations[0]: 'bbox' must have 4 numbers: x, y, width and height"),
-    (coco(bbox=[1, 2, "3", 4]), "annotations[0]: 'bbox': a number is expected, not a text"),
-    (coco(bbox=[1, 2, 3, -4]), "annotations[0]: 'bbox': a width or height below 0"),
-    (coco(bbox=[1, 2, 0, 4]), "annotations[0]: 'bbox': the outline has no width; an object's box needs both"),
-    (coco(bbox=[1, 2, 3, 0]), "annotations[0]: 'bbox': the outline has no height; an object's box needs both"),
+    (coco(bbox=[1, 2, "3", 4]), "annotations[0]: 'bbox': expected a number, got a text"),
+    (coco(bbox=[1, 2, 3, -4]), "annotations[0]: 'bbox': width and height must be at least 0"),
+    (coco(bbox=[1, 2, 0, 4]), "annotations[0]: 'bbox': the outline must have a width above 0"),
+    (coco(bbox=[1, 2, 3, 0]), "annotations[0]: 'bbox': the outline must have a height above 0"),
     (coco(bbox=[1, 10**400, 3, 4]), "annotations[0]: 'bbox': the number is too large"),
     (coco(bbox=[1.7e308, 2, 1.7e308, 4]), "annotations[0]: 'bbox': a coordinate is not finite"),
     (
         coco(segmentation={"counts": [1, 2], "size": [3, 4]}),
-        "annotations[0]: 'segmentation' is run-length encoded, which is not read; give a 'bbox' beside it",
+        "annotations[0]: run-length encoded 'segmentation' cannot be read; add a 'bbox'",
     ),
-    (coco(segmentation=[]), "annotations[0]: 'segmentation' must be a list of polygons, with one at least"),
+    (coco(segmentation=[]), "annotations[0]: 'segmentation' must be a list of at least one polygon"),
     (
         coco(segmentation=[[1, 2, 3, 4, 5, 7], [1, 2, 3, 4, 5]]),
-        "annotations[0]: 'segmentation'[1] must be a list x1, y1, x2, y2, … of 3 corners or more",
+        "annotations[0]: 'segmentation'[1] must be a list x1, y1, x2, y2, … of at least 3 corners",
     ),
     (
         coco(segmentation=[[1, 2, 3, 4]]),
-        "annotations[0]: 'segmentation'[0] must be a list x1, y1, x2, y2, … of 3 corners or more",
+        "annotations[0]: 'segmentation'[0] must be a list x1, y1, x2, y2, … of at least 3 corners",
     ),
-    (coco(segmentation=[[1, 2, 3, 4, 5, None]]), "annotations[0]: 'segmentation'[0]: a number is expected, not null"),
+    (coco(segmentation=[[1, 2, 3, 4, 5, None]]), "annotations[0]: 'segmentation'[0]: expected a number, got null"),
     (
         coco(segmentation=[[1, 2, 1, 4, 1, 5]]),
-        "annotations[0]: 'segmentation': the outline has no width; an object's box needs both",
+        "annotations[0]: 'segmentation': the outline must have a width above 0",
     ),
-    (coco(bbox=[1, 2, 3, 4], iscrowd=2), "annotations[0]: 'iscrowd' must be 0 or 1"),
+    (coco(bbox=[1, 2, 3, 4], iscrowd=2), "annotations[0]: 'iscrowd' must be 0 or 1, got 2"),
     (
         coco(bbox=[1, 2, 3, 4], score=1.5),
-        "annotations[0]: 'score' is a confidence and lies between 0 and 1, not at 1.5",
+        "annotations[0]: 'score' must be from 0 to 1, got 1.5",
     ),
-    (changed(LABELME, {}, "shapes"), "'shapes' must be a list, not an object"),
-    (changed(LABELME, ["fork"], "shapes"), "shapes[0]: an object {…} is expected here, not a text"),
-    (changed(LABELME, "100", "imageHeight"), "'imageHeight': a number is expected, not a text"),
-    (changed(LABELME, 0, "imageHeight"), "'imageHeight': an image measures some pixels, not 0"),
+    (changed(LABELME, {}, "shapes"), "'shapes' must be a list, got an object"),
+    (changed(LABELME, ["fork"], "shapes"), "shapes[0]: expected an object {…}, got a text"),
+    (changed(LABELME, "100", "imageHeight"), "'imageHeight': expected a number, got a text"),
+    (changed(LABELME, 0, "imageHeight"), "'imageHeight': expected a number of pixels above 0, got 0"),
     (labelme(label="drop"), "shapes[1]: 'label' is missing"),
     (labelme(points="drop"), "shapes[1]: 'points' is missing"),
-    (labelme(label=3), "shapes[1]: 'label': a text is expected, not a number"),
-    (labelme(label=""), "shapes[1]: 'label': a text is expected, and this one is blank"),
-    (labelme(points=None), "shapes[1]: 'points' must be a list of points [x, y], not null"),
-    (labelme(points=[]), "shapes[1]: 'points': a polygon has 3 or more points, not 0"),
-    (labelme(points=[[1, 2], [3, 4]]), "shapes[1]: 'points': a polygon has 3 or more points, not 2"),
-    (labelme(shape_type="circle"), "shapes[1]: 'points': a circle has 2 points, not 3"),
+    (labelme(label=3), "shapes[1]: 'label': expected a text, got a number"),
+    (labelme(label=""), "shapes[1]: 'label': expected a text, got a blank one"),
+    (labelme(points=None), "shapes[1]: 'points' must be a list of points [x, y], got null"),
+    (labelme(points=[]), "shapes[1]: 'points': a polygon must have 3 or more points, got 0"),
+    (labelme(points=[[1, 2], [3, 4]]), "shapes[1]: 'points': a polygon must have 3 or more points, got 2"),
+    (labelme(shape_type="circle"), "shapes[1]: 'points': a circle must have 2 points, got 3"),
     (
         labelme(points=[[1, 2]], shape_type="rectangle"),
-        "shapes[1]: 'points': a rectangle has 2 to 4 points, not 1",
+        "shapes[1]: 'points': a rectangle must have 2 to 4 points, got 1",
     ),
     (labelme(points=[[1, 2], [3], [4, 5]]), "shapes[1]: 'points'[1] must have 2 numbers: x and y"),
-    (labelme(points=[[1, 2], [3, 4], [5, "6"]]), "shapes[1]: 'points'[2]: a number is expected, not a text"),
+    (labelme(points=[[1, 2], [3, 4], [5, "6"]]), "shapes[1]: 'points'[2]: expected a number, got a text"),
     (
         labelme(points=[[1, 2], [1, 2]], shape_type="circle"),
-        "shapes[1]: 'points': the outline has no width; an object's box needs both",
+        "shapes[1]: 'points': the outline must have a width above 0",
     ),
     (
         labelme(points=[[1, 2], [9, 2]], shape_type="line"),
-        "shapes[1]: 'points': the outline has no height; an object's box needs both",
+        "shapes[1]: 'points': the outline must have a height above 0",
     ),
     (
         labelme(points=[[1, 2]], shape_type="point"),
-        "shapes[1]: a point has no extent, and an object needs a box; outline it, or leave it out",
+        "shapes[1]: a point has no extent; outline the object, or leave it out",
     ),
     (
         labelme(shape_type="blob"),
-        "shapes[1]: the shape_type 'blob' is not known; use one of polygon, rectangle, circle, line, linestrip, "
+        "shapes[1]: unknown shape_type 'blob'; use one of polygon, rectangle, circle, line, linestrip, "
         "points, mask, oriented_rectangle",
     ),
-    (labelme(shape_type=7), "shapes[1]: 'shape_type': a text is expected, not a number"),
-    (labelme(group_id=[1]), "shapes[1]: 'group_id' is a whole number, a text or null, not a list"),
-    (labelme(score="sure"), "shapes[1]: 'score': a number is expected, not a text"),
+    (labelme(shape_type=7), "shapes[1]: 'shape_type': expected a text, got a number"),
+    (labelme(group_id=[1]), "shapes[1]: 'group_id' must be a whole number, a text or null, got a list"),
+    (labelme(score="sure"), "shapes[1]: 'score': expected a number, got a text"),
 ]
 
 
 @pytest.mark.parametrize(("data", "message"), CATALOGUE, ids=range(len(CATALOGUE)))
-def test_a_malformed_file_is_refused_with_the_place_and_the_reason(data: Json, message: str, tmp_path: Path) -> None:
+def test_a_malformed_file_is_refused_with_place_and_reason(data: Json, message: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.json"
     path.write_text(json.dumps(data), encoding="utf-8")
     with pytest.raises(SceneError) as caught:
@@ -176,19 +176,19 @@ def test_a_malformed_file_is_refused_with_the_place_and_the_reason(data: Json, m
         (
             changed(COCO, "dinner.jpg", "images", 0, "file_name"),
             "dinner.jpg",
-            "2 images are called 'dinner.jpg'; choose one by its id: 'dinner.jpg' (id 1), 'dinner.jpg' (id 2)",
+            "2 images are called 'dinner.jpg'; choose one by id: 'dinner.jpg' (id 1), 'dinner.jpg' (id 2)",
         ),
         (
             without(COCO, "images", 1, "file_name"),
             "dinner.jpg",
             "there is no image 'dinner.jpg' in this file; it has 'breakfast.jpg' (id 1), 2",
         ),
-        (LABELME, "tea.jpg", "this file is about the image 'photos/dinner.jpg' alone, not 'tea.jpg'"),
-        (without(LABELME, "imagePath"), "tea.jpg", "this file is about the image '' alone, not 'tea.jpg'"),
-        ({"objects": []}, "tea.jpg", "an image ('tea.jpg') is chosen in annotation files, and this is a scene"),
+        (LABELME, "tea.jpg", "the only image of this file is 'photos/dinner.jpg', got 'tea.jpg'"),
+        (without(LABELME, "imagePath"), "tea.jpg", "the only image of this file is '', got 'tea.jpg'"),
+        ({"objects": []}, "tea.jpg", "an image ('tea.jpg') can be chosen in annotation files only; leave it out"),
     ],
 )
-def test_an_image_that_a_file_has_not_is_refused(data: Json, wanted: str | int, message: str) -> None:
+def test_an_image_that_the_file_lacks_is_refused(data: Json, wanted: str | int, message: str) -> None:
     with pytest.raises(SceneError) as caught:
         read_scene(data, wanted)
     assert str(caught.value) == f"<scene>: {message}"
@@ -205,14 +205,14 @@ values = st.recursive(
 
 
 def paths(data: Any, *above: Any) -> list[tuple[Any, ...]]:
-    """The paths to everything in a file."""
+    """Return the paths to all values of a file."""
     children = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
     return [path for key, value in children for path in ((*above, key), *paths(value, *above, key))]
 
 
 @settings(max_examples=200, deadline=None)
 @given(data=st.data(), original=st.sampled_from([COCO, LABELME]), value=values, image=st.none() | st.just(1))
-def test_a_file_with_anything_anywhere_gives_a_scene_or_a_scene_error(
+def test_a_changed_file_gives_a_scene_or_a_scene_error(
     data: st.DataObject, original: Json, value: Any, image: int | None
 ) -> None:
     spoilt = changed(original, value, *data.draw(st.sampled_from(paths(original))))
@@ -221,7 +221,7 @@ def test_a_file_with_anything_anywhere_gives_a_scene_or_a_scene_error(
 
 @settings(max_examples=100, deadline=None)
 @given(st.dictionaries(st.sampled_from(["images", "annotations", "categories", "shapes", "version"]), values))
-def test_a_file_of_anything_gives_a_scene_or_a_scene_error(data: Json) -> None:
+def test_an_arbitrary_file_gives_a_scene_or_a_scene_error(data: Json) -> None:
     refused_or_read(data, None)
 
 
@@ -269,7 +269,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_the_command_says_in_one_line_what_is_wrong_with_a_scene(name: str, tmp_path: Path) -> None:
+def test_the_command_reports_a_bad_scene_in_one_line(name: str, tmp_path: Path) -> None:
     file = tmp_path / "hostile.json"
     file.write_text(HOSTILE[name], encoding="utf-8")
     started = time.process_time()

@@ -1,4 +1,4 @@
-"""Scene files: what is written comes back, units, and a catalogue of malformed scenes with their exact messages."""
+"""Scene files: reading back written scenes, units, and malformed scenes with their exact messages."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ def scenes(draw: st.DrawFn) -> Scene:
 
 @settings(max_examples=60, deadline=None)
 @given(scenes())
-def test_a_scene_comes_back_from_its_dictionary(scene: Scene) -> None:
+def test_a_scene_is_read_back_from_its_dictionary(scene: Scene) -> None:
     assert read_scene(json.loads(json.dumps(scene_to_dict(scene)))) == scene
 
 
 @settings(max_examples=40, deadline=None)
 @given(scene=scenes())
-def test_a_scene_comes_back_from_its_file(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_a_scene_is_read_back_from_its_file(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> None:
     path = tmp_path_factory.getbasetemp() / "written.scene.json"
     path.write_text(scene_text(scene), encoding="utf-8")
     assert read_scene(path) == scene
@@ -84,25 +84,25 @@ def test_a_written_scene_has_a_line_for_every_object() -> None:
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("m", 20.0), ("cm", 0.2), ("mm", 0.02), ("px", 20.0)])
-def test_coordinates_are_taken_to_metres_and_pixels_stay(unit: str, metres: float) -> None:
+def test_coordinates_become_metres_and_pixels_stay(unit: str, metres: float) -> None:
     scene = read_scene({"unit": unit, "objects": [{"id": "o1", "min": [0, 0, 0], "max": [20, 1, 2]}]})
     assert scene.objects[0].maximum[0] == pytest.approx(metres)
     assert scene.unit == ("px" if unit == "px" else "m")
 
 
-def test_what_is_not_given_is_the_usual() -> None:
+def test_missing_keys_have_defaults() -> None:
     scene = read_scene({"objects": [BOX]})
     assert (scene.frame, scene.viewpoint, scene.unit, scene.file) == ("table", "chair", "m", "<scene>")
     assert scene.objects == (PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0)),)
 
 
-def test_null_stands_for_what_is_not_given() -> None:
+def test_null_counts_as_a_missing_value() -> None:
     assert read_scene({"objects": [{**BOX, "label": None, "confidence": None, "cloud": None}]}) == read_scene(
         {"objects": [BOX]}
     )
 
 
-def test_integer_ids_and_arrays_are_taken() -> None:
+def test_integer_ids_and_arrays_are_accepted() -> None:
     scene = read_scene({"objects": [{"id": np.int64(4), "min": np.zeros(2), "max": np.ones(2)}, {**BOX, "id": 12}]})
     assert scene.ids == ("4", "12")
 
@@ -143,8 +143,8 @@ def test_a_colour_is_a_word_or_hexadecimal_or_three_numbers(given_as: Any, rgb: 
 
 
 @pytest.mark.parametrize("colour", [(0, 0), (0, 0, 256), (-1, 0, 0), (0.0, float("nan"), 0.0)])
-def test_an_object_made_in_python_has_a_colour_or_is_refused(colour: Any) -> None:
-    with pytest.raises(SceneError, match="object 'o1': a colour is red, green and blue, each from 0 to 255"):
+def test_an_invalid_colour_in_python_is_refused(colour: Any) -> None:
+    with pytest.raises(SceneError, match="object 'o1': a colour must be red, green and blue, each from 0 to 255"):
         Scene((PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0), colour=colour),))
 
 
@@ -160,65 +160,65 @@ def test_an_oriented_box_is_in_the_unit_of_its_scene() -> None:
 @pytest.mark.parametrize(
     ("oriented", "said"),
     [
-        ([], "'oriented': an object {…} is expected here"),
+        ([], "'oriented': expected an object {…}"),
         ({}, "'oriented': 'centre' is missing"),
-        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, 1, 1], "roll": 0}, "'roll' is no key here"),
+        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, 1, 1], "roll": 0}, "'roll' is not a key here"),
         ({"centre": [0, 0], "yaw": 0, "extents": [1, 1, 1]}, "'centre' must be a list of 3 numbers"),
-        ({"centre": [0, 0, 0], "yaw": "east", "extents": [1, 1, 1]}, "'yaw': a number is expected"),
-        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, -1, 1]}, "extents are 0 or more"),
+        ({"centre": [0, 0, 0], "yaw": "east", "extents": [1, 1, 1]}, "'yaw': expected a number"),
+        ({"centre": [0, 0, 0], "yaw": 0, "extents": [1, -1, 1]}, "extents must be at least 0"),
         ({"centre": [0, 0, 2e9], "yaw": 0, "extents": [1, 1, 1]}, "beyond 1e\\+09"),
     ],
 )
-def test_an_oriented_box_that_is_none_is_refused(oriented: Any, said: str) -> None:
+def test_an_invalid_oriented_box_is_refused(oriented: Any, said: str) -> None:
     with pytest.raises(SceneError, match=said):
         read_scene({"objects": [{"id": "o1", "min": [0, 0, 0], "max": [1, 1, 1], "oriented": oriented}]})
 
 
-def test_a_flat_box_has_no_oriented_one() -> None:
+def test_a_2d_box_cannot_have_an_oriented_one() -> None:
     oriented = {"centre": [0, 0, 0], "yaw": 0, "extents": [1, 1, 1]}
-    with pytest.raises(SceneError, match="'min' and 'max' have none; give them 3 coordinates"):
+    with pytest.raises(SceneError, match="give 'min' and 'max' 3 coordinates"):
         read_scene(one(oriented=oriented))
 
 
 KEYS = "candidates, cloud, colour, confidence, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
-    ([], "an object {…} is expected here, not a list"),
-    (None, "an object {…} is expected here, not null"),
-    (3, "an object {…} is expected here, not a number"),
-    ("scene", "an object {…} is expected here, not a text"),
-    (True, "an object {…} is expected here, not true"),
-    ({}, "'objects' is missing: the list of what was seen"),
+    ([], "expected an object {…}, got a list"),
+    (None, "expected an object {…}, got null"),
+    (3, "expected an object {…}, got a number"),
+    ("scene", "expected an object {…}, got a text"),
+    (True, "expected an object {…}, got true"),
+    ({}, "'objects' is missing; add the list of the objects"),
     ({"objects": None}, "'objects' must be a list"),
     ({"objects": {}}, "'objects' must be a list"),
-    ({"object": []}, "'object' is no key here; the keys are frame, objects, shows, unit, viewpoint"),
-    ({"objects": [], "Frame": "x"}, "'Frame' is no key here; the keys are frame, objects, shows, unit, viewpoint"),
-    ({"objects": [], "unit": "inch"}, "the unit 'inch' is not known; use one of m, cm, mm, px"),
-    ({"objects": [], "unit": 1}, "'unit': a text is expected, not a number"),
-    ({"objects": [], "unit": None}, "'unit': a text is expected, not null"),
-    ({"objects": [], "frame": ["table"]}, "'frame': a text is expected, not a list"),
-    ({"objects": [], "frame": "  "}, "'frame': a text is expected, and this one is blank"),
-    ({"objects": [], "viewpoint": {}}, "'viewpoint': a text is expected, not an object"),
-    ({"objects": [BOX, 7]}, "objects[1]: an object {…} is expected here, not a number"),
-    ({"objects": [None]}, "objects[0]: an object {…} is expected here, not null"),
+    ({"object": []}, "'object' is not a key here; the keys are frame, objects, shows, unit, viewpoint"),
+    ({"objects": [], "Frame": "x"}, "'Frame' is not a key here; the keys are frame, objects, shows, unit, viewpoint"),
+    ({"objects": [], "unit": "inch"}, "unknown unit 'inch'; use one of m, cm, mm, px"),
+    ({"objects": [], "unit": 1}, "'unit': expected a text, got a number"),
+    ({"objects": [], "unit": None}, "'unit': expected a text, got null"),
+    ({"objects": [], "frame": ["table"]}, "'frame': expected a text, got a list"),
+    ({"objects": [], "frame": "  "}, "'frame': expected a text, got a blank one"),
+    ({"objects": [], "viewpoint": {}}, "'viewpoint': expected a text, got an object"),
+    ({"objects": [BOX, 7]}, "objects[1]: expected an object {…}, got a number"),
+    ({"objects": [None]}, "objects[0]: expected an object {…}, got null"),
     (without("id"), "objects[0]: 'id' is missing"),
     (without("min"), "objects[0]: 'min' is missing"),
     (without("max"), "objects[0]: 'max' is missing"),
-    (one(lable="fork"), f"objects[0]: 'lable' is no key here; the keys are {KEYS}"),
-    (one(id=5.5), "objects[0]: 'id': a text is expected, not a number"),
-    (one(id=""), "objects[0]: 'id': a text is expected, and this one is blank"),
-    (one(id="\ud800"), "objects[0]: 'id': the text has half a character in it, and cannot be written"),
-    (one(label=False), "objects[0]: 'label': a text is expected, not false"),
-    (one(label=" "), "objects[0]: 'label': a text is expected, and this one is blank"),
-    (one(cloud=1.5), "objects[0]: 'cloud': a text is expected, not a number"),
+    (one(lable="fork"), f"objects[0]: 'lable' is not a key here; the keys are {KEYS}"),
+    (one(id=5.5), "objects[0]: 'id': expected a text, got a number"),
+    (one(id=""), "objects[0]: 'id': expected a text, got a blank one"),
+    (one(id="\ud800"), "objects[0]: 'id': the text contains half of a surrogate pair; correct it"),
+    (one(label=False), "objects[0]: 'label': expected a text, got false"),
+    (one(label=" "), "objects[0]: 'label': expected a text, got a blank one"),
+    (one(cloud=1.5), "objects[0]: 'cloud': expected a text, got a number"),
     (one(min=[0]), "objects[0]: 'min' must be a list of 2 or 3 numbers"),
     (one(min=[0, 0, 0, 0]), "objects[0]: 'min' must be a list of 2 or 3 numbers"),
     (one(max="1, 1"), "objects[0]: 'max' must be a list of 2 or 3 numbers"),
     (one(max={"x": 1, "y": 1}), "objects[0]: 'max' must be a list of 2 or 3 numbers"),
-    (one(max=[1, "1"]), "objects[0]: 'max': a number is expected, not a text"),
-    (one(max=[1, None]), "objects[0]: 'max': a number is expected, not null"),
-    (one(max=[1, True]), "objects[0]: 'max': a number is expected, not true"),
-    (one(max=[1, [1]]), "objects[0]: 'max': a number is expected, not a list"),
+    (one(max=[1, "1"]), "objects[0]: 'max': expected a number, got a text"),
+    (one(max=[1, None]), "objects[0]: 'max': expected a number, got null"),
+    (one(max=[1, True]), "objects[0]: 'max': expected a number, got true"),
+    (one(max=[1, [1]]), "objects[0]: 'max': expected a number, got a list"),
     (one(max=[1, 10**400]), "objects[0]: 'max': the number is too large"),
     (one(max=[1, 1, 1]), "object 'o1': 'min' and 'max' must both have 2 coordinates, or both 3"),
     (one(min=[2, 0]), "object 'o1': on x its min 2 is above its max 1; swap them"),
@@ -227,40 +227,40 @@ CATALOGUE: list[tuple[Any, str]] = [
         one(min=[0, 0, 2], max=[1, 1, 1]),
         "object 'o1': on z its min 2 is above its max 1; swap them",
     ),
-    (one(label="fork", confidence=1.5), "object 'o1': a confidence lies between 0 and 1, not at 1.5"),
-    (one(label="fork", confidence=-0.1), "object 'o1': a confidence lies between 0 and 1, not at -0.1"),
+    (one(label="fork", confidence=1.5), "object 'o1': the confidence must be from 0 to 1, got 1.5"),
+    (one(label="fork", confidence=-0.1), "object 'o1': the confidence must be from 0 to 1, got -0.1"),
     (
         one(candidates={"fork": 0.7, "cup": 0.5}),
-        "object 'o1': the probabilities of 'candidates' are 0 or more, and 1 together at most",
+        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1",
     ),
     (
         one(candidates={"fork": -0.1}),
-        "object 'o1': the probabilities of 'candidates' are 0 or more, and 1 together at most",
+        "object 'o1': the probabilities of 'candidates' must be at least 0, and their sum at most 1",
     ),
-    (one(candidates={"fork": "sure"}), "objects[0]: 'candidates': 'fork': a number is expected, not a text"),
-    (one(label="fork", confidence="sure"), "objects[0]: 'confidence': a number is expected, not a text"),
+    (one(candidates={"fork": "sure"}), "objects[0]: 'candidates': 'fork': expected a number, got a text"),
+    (one(label="fork", confidence="sure"), "objects[0]: 'confidence': expected a number, got a text"),
     (one(colour="rde"), "objects[0]: 'colour': there is no colour 'rde'; did you mean 'red'?"),
     (
         one(colour="transparent"),
-        "objects[0]: 'colour': there is no colour 'transparent'; say one of black, blue, brown, green, grey, orange, "
+        "objects[0]: 'colour': there is no colour 'transparent'; use one of black, blue, brown, green, grey, orange, "
         "pink, purple, red, white, yellow, or #rrggbb",
     ),
-    (one(colour="#f80"), "objects[0]: 'colour': '#f80' is no colour; write #rrggbb in hexadecimal digits"),
-    (one(colour=[0, 0]), "objects[0]: 'colour' as a list is red, green and blue, each from 0 to 255"),
-    (one(colour=[0, 0, 256]), "objects[0]: 'colour' as a list is red, green and blue, each from 0 to 255"),
-    (one(colour=[0, 0, "9"]), "objects[0]: 'colour': a number is expected, not a text"),
-    (one(colour=7), "objects[0]: 'colour' is a word such as red, #rrggbb, or [red, green, blue], not a number"),
-    (one(colour=""), "objects[0]: 'colour': a text is expected, and this one is blank"),
-    ({"objects": [BOX, BOX]}, "the id 'o1' is used twice; give every object an id of its own"),
+    (one(colour="#f80"), "objects[0]: 'colour': '#f80' is not a colour; write #rrggbb in hexadecimal digits"),
+    (one(colour=[0, 0]), "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255"),
+    (one(colour=[0, 0, 256]), "objects[0]: 'colour' as a list must be red, green and blue, each from 0 to 255"),
+    (one(colour=[0, 0, "9"]), "objects[0]: 'colour': expected a number, got a text"),
+    (one(colour=7), "objects[0]: 'colour' must be a word such as red, #rrggbb, or [red, green, blue], got a number"),
+    (one(colour=""), "objects[0]: 'colour': expected a text, got a blank one"),
+    ({"objects": [BOX, BOX]}, "the id 'o1' is used twice; give each object its own id"),
     (
         {"objects": [BOX, {"id": "o2", "min": [0, 0, 0], "max": [1, 1, 1]}]},
-        "some boxes have heights and some have none; give all of them 2 or 3 axes",
+        "some boxes have heights and others do not; give all of them 2 or 3 axes",
     ),
 ]
 
 
 @pytest.mark.parametrize(("data", "message"), CATALOGUE, ids=range(len(CATALOGUE)))
-def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, message: str, tmp_path: Path) -> None:
+def test_a_malformed_scene_is_refused_with_place_and_reason(data: Any, message: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.scene.json"
     path.write_text(json.dumps(data), encoding="utf-8")
     with pytest.raises(SceneError) as caught:
@@ -279,11 +279,26 @@ def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, m
         ('{\n  "objects": [}\n', ":2:15: this is not valid JSON: Expecting value"),
         ('{"objects": []} x', ":1:17: this is not valid JSON: Extra data"),
         ("{'objects': []}", ":1:2: this is not valid JSON: "),
-        ('{"objects": [{"id": "o1", "min": [0, NaN], "max": [1, 1]}]}', ": objects[0]: 'min': NaN is no number"),
-        ('{"objects": [{"id": "o1", "min": [0, 0], "max": [Infinity, 1]}]}', "'max': Infinity is no number"),
-        ('{"objects": [{"id": "o1", "min": [-Infinity, 0], "max": [1, 1]}]}', "'min': -Infinity is no number"),
-        ('{"objects": [{"id": "o1", "min": [0, 0], "max": [1e999, 1]}]}', "'max': Infinity is no number"),
-        ('{"objects": [{"id": "o1", "min": [-1e999, 0], "max": [1, 1]}]}', "'min': -Infinity is no number"),
+        (
+            '{"objects": [{"id": "o1", "min": [0, NaN], "max": [1, 1]}]}',
+            ": objects[0]: 'min': expected a finite number, got NaN",
+        ),
+        (
+            '{"objects": [{"id": "o1", "min": [0, 0], "max": [Infinity, 1]}]}',
+            "'max': expected a finite number, got Infinity",
+        ),
+        (
+            '{"objects": [{"id": "o1", "min": [-Infinity, 0], "max": [1, 1]}]}',
+            "'min': expected a finite number, got -Infinity",
+        ),
+        (
+            '{"objects": [{"id": "o1", "min": [0, 0], "max": [1e999, 1]}]}',
+            "'max': expected a finite number, got Infinity",
+        ),
+        (
+            '{"objects": [{"id": "o1", "min": [-1e999, 0], "max": [1, 1]}]}',
+            "'min': expected a finite number, got -Infinity",
+        ),
         ('{"objects": [{"id": "o1", "min": [0, 0], "max": [' + "9" * 5000 + ", 1]}]}", ": "),
         ("[" * 200_000, ": "),
         ('{"objects": ' * 100_000, ": "),
@@ -291,7 +306,7 @@ def test_a_malformed_scene_is_refused_with_the_place_and_the_reason(data: Any, m
     ],
     ids=range(15),
 )
-def test_a_text_that_is_no_scene_is_refused_with_its_file(text: str, message: str, tmp_path: Path) -> None:
+def test_a_text_that_is_not_a_scene_is_refused_with_its_file(text: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.scene.json"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SceneError) as caught:
@@ -308,8 +323,8 @@ def test_a_file_that_is_not_utf_8_is_refused_with_the_byte(tmp_path: Path) -> No
         read_scene(path)
 
 
-def test_a_folder_a_missing_file_and_a_name_that_can_be_none_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match=r"this is a folder, and a scene is a \.scene\.json file"):
+def test_a_folder_a_missing_file_and_a_bad_name_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"this is a folder; give a \.scene\.json file"):
         read_scene(tmp_path)
     with pytest.raises(SceneError, match=r"none\.scene\.json: cannot be read: No such file"):
         read_scene(tmp_path / "none.scene.json")
@@ -325,14 +340,14 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, m
         read_scene(path)
 
 
-def test_a_parsed_scene_is_called_scene_in_messages() -> None:
+def test_messages_call_a_parsed_scene_scene() -> None:
     with pytest.raises(SceneError, match=r"^<scene>: objects\[0\]: 'id' is missing$"):
         read_scene(without("id"))
 
 
-def test_keys_that_are_no_texts_are_unknown_ones() -> None:
+def test_keys_that_are_not_texts_are_unknown() -> None:
     keys: Any = {1: "x", "objects": [], "zzz": 2}
-    with pytest.raises(SceneError, match="is no key here"):
+    with pytest.raises(SceneError, match="is not a key here"):
         read_scene(keys)
 
 
@@ -344,7 +359,7 @@ def test_keys_that_are_no_texts_are_unknown_ones() -> None:
         ('{"objects": ' + "9" * 5000 + "}", "a number of 5000 digits is too large"),
     ],
 )
-def test_json_that_python_would_take_or_choke_on_is_refused(content: str, message: str, tmp_path: Path) -> None:
+def test_json_that_python_misreads_is_refused(content: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "x.scene.json"
     path.write_text(content, encoding="utf-8")
     with pytest.raises(SceneError, match=message):
@@ -353,5 +368,5 @@ def test_json_that_python_would_take_or_choke_on_is_refused(content: str, messag
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="there is no /dev/zero")
 def test_a_device_is_not_read() -> None:
-    with pytest.raises(SceneError, match="no regular file"):
+    with pytest.raises(SceneError, match="not a regular file"):
         read_scene("/dev/zero")
