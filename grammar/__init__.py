@@ -1,5 +1,5 @@
-"""From text to a relation graph: the layout language, and everything that reads or writes it.
+"""The layout language: scripts are read into a tree, and written from it.
 
-:mod:`deixis.grammar.parser` reads a script, :mod:`deixis.grammar.script` is what it reads it into,
-:mod:`deixis.grammar.format` writes it again, :mod:`deixis.grammar.errors` is what can go wrong.
+:mod:`deixis.grammar.parser` reads a script into the tree of :mod:`deixis.grammar.script`, and
+:mod:`deixis.grammar.format` writes the tree as text. :mod:`deixis.grammar.errors` holds the errors.
 """

@@ -1,4 +1,4 @@
-"""What is wrong with a script: each problem with its place, the line and a caret under it."""
+"""Errors in a script: each problem with its place, its line and carets under the part in question."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LINE_WINDOW = 100  # characters of a long line that are shown
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One thing that is wrong, at one place.
+    """One problem at one place in a file; as text, with the line, carets and a hint.
 
     >>> print(Diagnostic(Source("t.layout", 1, 6, 1, 9), "what is this?", "fork lft plate", "did you mean 'left'?"))
     t.layout:1:6: what is this?
@@ -35,7 +35,7 @@ class Diagnostic:
 
 
 def _line_with_carets(line: str, source: Source) -> tuple[str, str]:
-    """Return the line, cut to a window where it is long, and carets under what is meant."""
+    """Return the line, cut to ``LINE_WINDOW`` characters, and carets under the span of ``source``."""
     start = source.column - 1
     end = source.end_column - 1 if source.end_line == source.line else len(line)
     left = 0 if len(line) <= LINE_WINDOW else max(0, min(start - LINE_WINDOW // 2, len(line) - LINE_WINDOW))
@@ -48,7 +48,7 @@ def _line_with_carets(line: str, source: Source) -> tuple[str, str]:
 
 
 def _width(text: str) -> int:
-    """Return the columns that a text takes in a terminal."""
+    """Return the number of columns that a text takes in a terminal."""
     if text.isascii():
         return len(text)
     wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
@@ -56,7 +56,7 @@ def _width(text: str) -> int:
 
 
 class ScriptError(DeixisError, ValueError):
-    """A script that cannot be read as it stands; ``problems`` are all that is wrong with it, in order."""
+    """A script with errors; ``problems`` holds all of them, in order."""
 
     several_lines = True
 
@@ -72,15 +72,15 @@ class ScriptError(DeixisError, ValueError):
 
 
 class ScriptTimeError(DeixisError, TimeoutError):
-    """The time limit passed before a script was read."""
+    """The time limit was reached before a script was read."""
 
 
 class ScriptFileError(DeixisError, OSError):
-    """A script file that cannot be read: missing, no file, too large, or no UTF-8; one line that names it."""
+    """A script file that cannot be read: missing, not a regular file, too large, or not UTF-8."""
 
 
-class Refusal(Exception):
-    """Raised while a statement is read: it ends with this problem, and reading goes on at the next one."""
+class StatementError(Exception):
+    """A problem that ends one statement; reading goes on at the next statement."""
 
     def __init__(self, source: Source, message: str, hint: str | None = None) -> None:
         super().__init__(message)
@@ -90,5 +90,5 @@ class Refusal(Exception):
 
 
 def shortened(name: str, limit: int = 60) -> str:
-    """Return a name or phrase as messages show it."""
+    """Return a name or phrase for a message, cut to ``limit`` characters."""
     return name if len(name) <= limit else name[: limit - 1] + "…"

@@ -1,4 +1,4 @@
-"""Reading script files, and finding the ones that a script includes: bounded, and never outside its folder."""
+"""Read script files, and find the files that a script includes, within limits and never outside its folder."""
 
 from __future__ import annotations
 
@@ -7,25 +7,37 @@ import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from deixis.grammar.errors import Refusal, ScriptFileError, shortened
+from deixis.grammar.errors import ScriptFileError, StatementError, shortened
 from deixis.ontology.facts import Source
 
-MAX_FILE_BYTES = 64 * 1024 * 1024  # bytes of one file
-MAX_INCLUDE_DEPTH = 32  # includes within includes
-MAX_INCLUDED_FILES = 1_000  # included by one script
+MAX_FILE_BYTES = 64 * 1024 * 1024  # maximum size of a file
+MAX_INCLUDE_DEPTH = 32  # maximum depth of nested includes
+MAX_INCLUDED_FILES = 1_000  # maximum number of files that one script includes
 
 
 def read_text(path: Path, shown: str, lenient: bool = False) -> str:
-    """Return the text of a file; raises ScriptFileError, which names it as ``shown``, where it cannot be read.
+    """Return the text of a file, decoded from UTF-8.
 
-    ``lenient`` reads what is not UTF-8 as the replacement character instead of refusing it.
+    Parameters
+    ----------
+    path
+        The file to read.
+    shown
+        Name of the file in error messages.
+    lenient
+        Decode bytes that are not UTF-8 as the replacement character instead of raising an error.
+
+    Raises
+    ------
+    ScriptFileError
+        If the file is missing, not a regular file, larger than ``MAX_FILE_BYTES``, unreadable or not UTF-8.
     """
     try:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
             raise ScriptFileError(f"{shown}: this is a directory, not a layout script")
         if not stat.S_ISREG(status.st_mode):
-            raise ScriptFileError(f"{shown}: this is no regular file")
+            raise ScriptFileError(f"{shown}: this is not a regular file")
         with path.open("rb") as file:
             data = file.read(MAX_FILE_BYTES + 1)
     except FileNotFoundError:
@@ -48,34 +60,35 @@ def read_text(path: Path, shown: str, lenient: bool = False) -> str:
 
 @dataclass
 class Includes:
-    """The files that were included so far, and those that are open right now."""
+    """Files that were included so far, and files that are being read."""
 
     folder: Path  # real path of the outermost script's folder
     open: list[Path]  # real paths, the outermost script first
     seen: set[Path] = field(default_factory=set)
 
     def find(self, path: str, beside: Path, source: Source) -> Path | None:
-        """The real path of an included file, None where it was read before; raises Refusal where it is out of bounds.
+        """Return the real path of an included file, or None if it was read before.
 
-        ``beside`` is the folder of the including file.
+        ``beside`` is the folder of the including file. Raises StatementError for a path outside the script's folder,
+        a file that includes itself, and more or deeper includes than the limits allow.
         """
         if not path.strip():
-            raise Refusal(source, "an include needs the name of a file")
+            raise StatementError(source, "an include needs a file name")
         try:
             real = (beside / path).resolve()
         except (OSError, ValueError, RuntimeError):
-            raise Refusal(source, f"'{shortened(path)}' cannot be a file's name") from None
+            raise StatementError(source, f"'{shortened(path)}' is not a valid file name") from None
         if not real.is_relative_to(self.folder):
-            raise Refusal(source, f"'{shortened(path)}' is outside the folder of the script")
+            raise StatementError(source, f"'{shortened(path)}' is outside the folder of the script")
         if real in self.open:
             names = [path.name for path in self.open[self.open.index(real) :]]
             cycle = " includes ".join([*names, real.name]) if len(names) > 1 else None
-            raise Refusal(source, f"'{shortened(path)}' includes itself", cycle)
+            raise StatementError(source, f"'{shortened(path)}' includes itself", cycle)
         if real in self.seen:
             return None
         if len(self.open) > MAX_INCLUDE_DEPTH:
-            raise Refusal(source, f"includes are nested deeper than {MAX_INCLUDE_DEPTH}")
+            raise StatementError(source, f"includes are nested deeper than {MAX_INCLUDE_DEPTH}")
         if len(self.seen) >= MAX_INCLUDED_FILES:
-            raise Refusal(source, f"more than {MAX_INCLUDED_FILES:,} files are included")
+            raise StatementError(source, f"more than {MAX_INCLUDED_FILES:,} files are included")
         self.seen.add(real)
         return real

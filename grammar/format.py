@@ -1,4 +1,4 @@
-"""Writes scripts: the canonical form of a script, and a learned layout as a script again."""
+"""Write scripts: the canonical form of a script, and a learned layout as a script."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ from deixis.ontology.tbox import Ontology
 
 
 def format_script(script: Script) -> str:
-    """Return the script's own statements in canonical form; formatting what this returns changes nothing.
+    """Return the script's own statements in canonical form, without those of included files.
+
+    Formatting the result again changes nothing.
 
     >>> from deixis.grammar.parser import parse_script
     >>> print(format_script(parse_script("left(salad fork, the plate); not on(napkin, plate)  # never")), end="")
@@ -48,7 +50,7 @@ def format_script(script: Script) -> str:
 
 @dataclass(slots=True)
 class _Block:
-    """A statement with the comments inside it and the one behind it, or a comment that stands alone."""
+    """A statement with the comments inside it and the comment behind it, or a comment that stands alone."""
 
     above: list[Comment]
     statement: Statement | None
@@ -60,8 +62,8 @@ class _Block:
 def _blocks(script: Script) -> Iterator[_Block]:
     """Yield the script cut into blocks, in order.
 
-    A comment inside a statement goes above it. One behind a statement, on the line where it ends, stays there, unless
-    a second statement follows on that line: then it belongs to that one.
+    A comment inside a statement moves above it. A comment behind a statement, on the line where the statement ends,
+    stays there, unless another statement follows on that line: then the comment belongs to that statement.
     """
     comments = list(reversed(script.comments))
     for i, statement in enumerate(script.statements):
@@ -90,17 +92,17 @@ def _comment(comment: Comment) -> str:
 
 
 class StatementWriter:
-    """Writes statements in the words of an ontology, and quotes the names that need it."""
+    """Writer of statements in the words of an ontology; it quotes the names that need it."""
 
     def __init__(self, ontology: Ontology) -> None:
-        from deixis.grammar.language import language_of  # here, so that only who formats waits for lark
+        from deixis.grammar.language import language_of  # here, so that only formatting loads lark
 
         self._ontology = ontology
         self._language = language_of(ontology)
         self._written: dict[str, str] = {}
 
     def write(self, statement: Statement) -> str:
-        """Return the statement on one line, without its end."""
+        """Return the statement on one line, without a line end."""
         match statement:
             case Header(name, title, viewpoint):
                 view = f"seen from {self.name(viewpoint)}" if viewpoint else None
@@ -120,7 +122,7 @@ class StatementWriter:
                 return f"{_front(modifiers)}{self._list(subjects)} {said} {self._list(objects)}"
 
     def name(self, name: str) -> str:
-        """Return the name, quoted where it would not be read back as it is."""
+        """Return the name, quoted if it would not be read back unchanged."""
         written = self._written.get(name)
         if written is None:
             written = name if self._language.reads_as_name(name) else f'"{name}"'
@@ -135,7 +137,7 @@ class StatementWriter:
         return counted + self.name(mention.name)
 
     def _is(self, subjects: tuple[Mention, ...], kind: Kind | None, colour: Colour | None) -> str:
-        # The first words that are read back as they are meant.
+        # The first phrase that is read back as the same kind and colour.
         shades = colour.words if colour else ("",)
         things = (kind.name, *kind.words) if kind else ("",)
         phrases = [f"{shade} {thing}".strip() for shade in shades for thing in things]
@@ -153,7 +155,10 @@ def _front(modifiers: Modifiers) -> str:
 
 
 def layout_script(layout: LayoutConcept, ontology: Ontology) -> str:
-    """The layout as a script in canonical form, a fact a line; reading it gives the same facts, kinds and header."""
+    """Return a layout as a script in canonical form, one fact per line.
+
+    Reading the script gives the same facts, kinds, colours and header.
+    """
     lines = _Lines()
     statements = tuple(_statements(layout, ontology, lines))
     script = Script(f"<{layout.name}>", layout.name, layout.title, layout.viewpoint, statements, (), ontology)
@@ -161,7 +166,7 @@ def layout_script(layout: LayoutConcept, ontology: Ontology) -> str:
 
 
 class _Lines:
-    """Places for statements that were never written: one line each, and an empty one after a gap."""
+    """Sources for statements that are in no file: one line each, and an empty line before a gap."""
 
     def __init__(self) -> None:
         self._line = 0
@@ -177,7 +182,7 @@ def _statements(layout: LayoutConcept, ontology: Ontology, lines: _Lines) -> Ite
     related = {name for fact in layout.facts for name in (fact.subject, fact.object)}
     for role in layout.roles:
         kind = ontology.kinds[role.kind] if role.declared and role.kind is not None else None
-        # The colour is not declared where the name says it already and a fact bears the name.
+        # The colour needs no declaration if a fact mentions the name and the name begins with the colour.
         colour = ontology.colours[role.colour] if role.colour is not None else None
         if role.name in related and colour is ontology.of_name(role.name)[1]:
             colour = None
@@ -200,6 +205,6 @@ def _mention(name: str, source: Source) -> Mention:
 
 
 def _hedge(weight: float, ontology: Ontology) -> str:
-    """Return the first word whose weight is nearest."""
+    """Return the hedge whose weight is nearest; the first one of equals."""
     words: Sequence[str] = list(ontology.hedges)
     return min(words, key=lambda word: abs(ontology.hedges[word] - weight))

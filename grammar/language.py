@@ -17,38 +17,40 @@ from deixis.grammar.words import chains, phrase_pattern
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
 
-NOTHING = "(?!)"  # the pattern of a terminal for which the ontology has no word
+NOTHING = "(?!)"  # pattern that matches nothing: a terminal for which the ontology has no word
 
 
 class NoLexer(Lexer):
-    """Stands for lark's lexer: the parser is fed with the tokens of a :class:`Scanner`, and no pattern is compiled."""
+    """Placeholder for lark's lexer: a :class:`Scanner` feeds the parser, so that lark compiles no patterns."""
 
     def __init__(self, conf: Any) -> None:
         pass
 
     def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
+        """Raise NotImplementedError: lark never calls it."""
         raise NotImplementedError("tokens come from the scanner")
 
 
 class KeepUnusedTerminals(PostLex):
-    """Keeps lark from dropping the terminals that no rule uses."""
+    """Postprocessor that keeps lark from dropping the terminals that no rule uses."""
 
     always_accept = TERMINALS_WITHOUT_RULE
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        """Return the tokens unchanged."""
         return stream
 
 
 @dataclass(frozen=True)
 class Language:
-    """The lexer and the parser for the words of one ontology."""
+    """Lexer and parser for the words of one ontology."""
 
     lark: Lark
     scanner: Scanner
-    phrase_starts: frozenset[str]  # words with which a longer relation phrase begins: 'upper', 'to', 'in front'
+    phrase_starts: frozenset[str]  # words that begin a longer relation phrase: 'upper', 'to', 'in front'
 
     def reads_as_name(self, text: str) -> bool:
-        """Return whether the text, unquoted, is read as a name that is spelled just so, also before a relation."""
+        """Return True if the unquoted text is read as a name of exactly this spelling, also before a relation."""
         if plain_phrase(text) in self.phrase_starts:
             return False
         found = list(self.scanner.tokens(text))
@@ -56,7 +58,7 @@ class Language:
 
 
 def language_of(ontology: Ontology) -> Language:
-    """Return the language with the words of this ontology; built once for the same words."""
+    """Return the language with the words of an ontology; it is cached by these words."""
     return _build(
         tuple(ontology.relations.by_word),
         tuple(plain_phrase(hedge) for hedge in ontology.hedges),
@@ -84,7 +86,7 @@ def _build(
 
 @cache
 def _parser() -> Lark:
-    """Return the parser of ``layout.lark``, the same for all ontologies."""
+    """Return the parser of ``layout.lark``, which all ontologies share."""
     return Lark.open(
         "layout.lark",
         rel_to=__file__,

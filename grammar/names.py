@@ -1,4 +1,4 @@
-"""Names of objects in a script: spelling, counted and quoted names, and the words that are reserved."""
+"""Names of objects in a script: spelling, counted names, quoted names and reserved words."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import unicodedata
 
 from lark import Token
 
-from deixis.grammar.errors import Refusal, shortened
+from deixis.grammar.errors import StatementError, shortened
 from deixis.grammar.script import Mention
 from deixis.grammar.words import NOUNS_TOO
 from deixis.ontology.facts import Source
 
 RESERVED_FOR = {
-    "FUNCTION": "is kept for sentences",
+    "FUNCTION": "is a reserved word",
     "RELATION": "is a word for a relation",
     "HEDGE": "says how sure a fact is",
     "IS": "is a verb",
@@ -26,18 +26,18 @@ RESERVED_FOR = {
     "_FROM": "belongs to a header",
     "_INCLUDE": "begins an include",
 }
-"""What the terminals are for that are words, and no names."""
+"""Uses of the reserved words, by terminal; messages put the word in front."""
 
 RELATING_TERMINALS = frozenset({"RELATION", "IS", "VERB"})
 
 
 def is_also_noun(token: Token) -> bool:
-    """Return whether a word that makes sentences is the name of a thing as well: a watering can."""
+    """Return True for a function word that can also name a thing: a watering can."""
     return token.type == "FUNCTION" and token.casefold() in NOUNS_TOO
 
 
 def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
-    """Return whether the word number ``at`` is reserved, and no relation that the statement needs."""
+    """Return True if word number ``at`` is reserved, unless it is the only word that can relate the others."""
     others = (token.type for number, token in enumerate(tokens) if number != at)
     return tokens[at].type in RESERVED_FOR and (
         tokens[at].type != "RELATION" or not RELATING_TERMINALS.isdisjoint(others)
@@ -45,7 +45,7 @@ def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
 
 
 def naming_hint(tokens: list[Token], at: int) -> str:
-    """Return how a name is written to which the reserved word number ``at`` belongs, with the words around it."""
+    """Return a hint on how to write a name that contains the reserved word number ``at``."""
     word = tokens[at]
     parts = [str(t) for t in tokens[max(at - 1, 0) : at + 2] if t is word or t.type == "NAME"]
     joined = "_".join("_".join(parts).split())
@@ -55,14 +55,14 @@ def naming_hint(tokens: list[Token], at: int) -> str:
     return f"{kept}; if it belongs to a name, write {shortened(joined)} or quote the name"
 
 
-MAX_NAME = 1_000  # characters of a name or a title
-MAX_OBJECTS = 1_000_000  # of one script with all that it includes
-BLANKS = "\t\u00a0\u2002\u2003\u2009\u202f\u3000"  # the space is printable as it is
+MAX_NAME = 1_000  # maximum length in characters of a name or a title
+MAX_OBJECTS = 1_000_000  # maximum number of objects in a script, its includes counted
+BLANKS = "\t\u00a0\u2002\u2003\u2009\u202f\u3000"  # without the space, which is printable
 JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scripts of India
 
 
 def key_of(name: str) -> str:
-    """Return what two spellings of one name have in common.
+    """Return the key by which names are compared: casefolded, and in Unicode normal form C.
 
     >>> key_of("Dinner_Plate") == key_of("dinner_plate")
     True
@@ -71,25 +71,28 @@ def key_of(name: str) -> str:
 
 
 def unquote(text: str, source: Source) -> str:
-    """Return the name that a quoted text stands for, blanks as underscores; raises Refusal where it is none."""
+    """Return the name that a quoted text stands for, with blanks as underscores.
+
+    Raises StatementError for an empty name or a control character.
+    """
     for i, character in enumerate(text):
         if not (character.isprintable() or character in BLANKS or character in JOINERS):
             place = Source(source.file, source.line, source.column + 1 + i, source.line, source.column + 2 + i)
-            raise Refusal(place, f"a control character (U+{ord(character):04X}) cannot be in a name")
+            raise StatementError(place, f"a control character (U+{ord(character):04X}) cannot be in a name")
     name = "_".join(unicodedata.normalize("NFC", text).split())
     if not name:
-        raise Refusal(source, "a name must not be empty")
+        raise StatementError(source, "a name must not be empty")
     return name
 
 
 def require_short(name: str, source: Source) -> None:
-    """Raise Refusal for a name or a title that is too long to be one."""
+    """Raise StatementError for a name or a title of more than ``MAX_NAME`` characters."""
     if len(name) > MAX_NAME:
-        raise Refusal(source, f"a name has at most {MAX_NAME:,} characters, and this one has {len(name):,}")
+        raise StatementError(source, f"a name must have at most {MAX_NAME:,} characters, got {len(name):,}")
 
 
 class NameTable:
-    """The names that were mentioned so far, in a script and in what it includes."""
+    """Names that were mentioned so far, in a script and in the files that it includes."""
 
     def __init__(self) -> None:
         self._spelling: dict[str, str] = {}
@@ -97,17 +100,19 @@ class NameTable:
         self._names: dict[str, tuple[str, ...]] = {}
 
     def mention(self, name: str, count: int | None, source: Source) -> Mention:
-        """Return the object or objects that a name means here; raises Refusal where it does not fit earlier ones."""
+        """Return the object or objects that a name means; raise StatementError if it contradicts earlier mentions."""
         require_short(name, source)
         key = key_of(name)
         if count is not None:
             known = self._counts.get(key)
             if known is None and key in self._spelling:
-                hint = "a name is either counted wherever it stands, or nowhere"
-                raise Refusal(source, f"'{shortened(name)}' was one object before, and is {count} now", hint)
+                hint = "give the count with every mention of a name, or with none"
+                raise StatementError(
+                    source, f"'{shortened(name)}' named one object before, and {count} objects here", hint
+                )
             if known is not None and known != count:
                 message = f"there are {known} of '{shortened(name)}', not {count}"
-                raise Refusal(source, message, f"say `{known} {shortened(name)}`")
+                raise StatementError(source, message, f"say `{known} {shortened(name)}`")
             if known is None:
                 self._make_room(count, source)
                 self._counts[key] = count
@@ -120,7 +125,7 @@ class NameTable:
             each = [f"{shown}_{number}" for number in range(1, known + 1)]
             listed = ", ".join(each if known <= 3 else [each[0], "…", each[-1]])
             hint = f"there are {known}: say {listed} or `{known} {shown}`"
-            raise Refusal(source, f"'{shortened(name)}' alone does not say which", hint)
+            raise StatementError(source, f"'{shortened(name)}' alone does not say which one is meant", hint)
         spelled = self._spelling.get(key)
         if spelled is None:
             self._make_room(1, source)
@@ -129,4 +134,6 @@ class NameTable:
 
     def _make_room(self, more: int, source: Source) -> None:
         if len(self._spelling) + more > MAX_OBJECTS:
-            raise Refusal(source, f"a script names at most {MAX_OBJECTS:,} objects, and here it names more")
+            raise StatementError(
+                source, f"a script must name at most {MAX_OBJECTS:,} objects; this statement exceeds that"
+            )

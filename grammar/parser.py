@@ -1,8 +1,7 @@
-"""Reads layout scripts: text to tree, statement by statement, with all that is wrong told at once."""
+"""Read layout scripts: parse a text into a tree, statement by statement, and report all errors at once."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -16,10 +15,10 @@ from deixis.grammar.draft import Draft, Place, place
 from deixis.grammar.errors import (
     MAX_PROBLEMS_SHOWN,
     Diagnostic,
-    Refusal,
     ScriptError,
     ScriptFileError,
     ScriptTimeError,
+    StatementError,
 )
 from deixis.grammar.files import Includes, read_text
 from deixis.grammar.language import Language, language_of
@@ -36,11 +35,32 @@ STATEMENTS_PER_CLOCK_CHECK = 200
 def parse_script(
     text: str, file: str = "<text>", ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
 ) -> Script:
-    """Return the script that a text is; ``file`` is what its places are called.
+    """Parse the text of a layout script.
 
-    Raises ScriptError with all problems of the text; an include is one, since a text lies in no folder. Raises
-    ScriptTimeError at the ``deadline``.
+    Parameters
+    ----------
+    text
+        The script; docs/reference/language.md describes the language.
+    file
+        Name of the text in error messages and sources.
+    ontology
+        Words that the script may use: relations, hedges, kinds and colours. By default :func:`default_ontology`.
+    deadline
+        Time limit.
 
+    Returns
+    -------
+    The script with its statements and comments.
+
+    Raises
+    ------
+    ScriptError
+        If the text has errors; it holds all of them. An include is one, since a text is in no folder.
+    ScriptTimeError
+        If the time limit is reached.
+
+    Examples
+    --------
     >>> [str(fact) for fact in parse_script("the fork is to the left of the plate").facts]
     ['left(fork, plate)']
     >>> parse_script("fork lft of plate")
@@ -56,15 +76,36 @@ def parse_script(
 
 
 def read_script(path: str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()) -> Script:
-    """Return the script in a file, with the files that it includes.
+    """Read the layout script in a file, with the files that it includes.
 
-    Raises ScriptFileError where the file cannot be read, ScriptError with all problems of it and of what it includes,
-    ScriptTimeError at the ``deadline``.
+    Parameters
+    ----------
+    path
+        The script file, in UTF-8. Included files must be in its folder or below.
+    ontology
+        Words that the script may use: relations, hedges, kinds and colours. By default :func:`default_ontology`.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    The script with its statements and comments.
+
+    Raises
+    ------
+    ScriptFileError
+        If the file cannot be read.
+    ScriptError
+        If the script has errors; it holds all of them, those of included files too.
+    ScriptTimeError
+        If the time limit is reached.
     """
     ontology = ontology or default_ontology()
     text = read_text(Path(path), str(path))
     if text.lstrip("\ufeff \t\r\n").startswith("{"):
-        raise ScriptFileError(f"{path}:1:1: this is JSON, and no layout script; is it a scene? The script comes first")
+        raise ScriptFileError(
+            f"{path}:1:1: this is JSON, not a layout script; if it is a scene, give it after the script"
+        )
     real = Path(path).resolve()
     includes = Includes(real.parent, [real])
     return _script(FileReader(text, str(path), Draft(ontology), language_of(ontology), includes), deadline)
@@ -75,7 +116,7 @@ def _script(reader: FileReader, deadline: Deadline) -> Script:
     for statement in reader.read():
         statements.append(statement)
         if len(statements) % STATEMENTS_PER_CLOCK_CHECK == 0 and deadline.passed:
-            raise ScriptTimeError(f"{reader.file}: the time limit passed after {len(statements)} statements were read")
+            raise ScriptTimeError(f"{reader.file}: time limit reached after {len(statements)} statements were read")
     if reader.draft.problems:
         raise ScriptError(tuple(reader.draft.problems))
     first = statements[0] if statements else None
@@ -93,13 +134,13 @@ def _script(reader: FileReader, deadline: Deadline) -> Script:
 
 @dataclass
 class FileReader:
-    """Reads one file of a script: the outermost one, or one that it includes."""
+    """Reader of one file of a script: the outermost file, or an included one."""
 
     text: str
     file: str
     draft: Draft
     language: Language
-    includes: Includes | None = None  # None where there is no folder to include from
+    includes: Includes | None = None  # None for a text, which has no folder to include from
     comments: list[Comment] = field(default_factory=list)
     _lines: list[str] | None = None
 
@@ -107,7 +148,7 @@ class FileReader:
         self.text = self.text.removeprefix("\ufeff").replace("\r\n", "\n")
 
     def read(self) -> Iterator[Statement]:
-        """Yield the statements that make sense; the problems of the others go to the draft."""
+        """Yield the statements without errors; add the errors of the others to the draft."""
         here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
         statement: Statement | None
         first = True
@@ -116,7 +157,7 @@ class FileReader:
             try:
                 here.statement = span_of(tokens)
                 statement = self._resolve(self._parse(tokens), first)
-            except Refusal as refusal:
+            except StatementError as refusal:
                 if self._lines is None:
                     self._lines = self.text.split("\n")
                 line = self._lines[refusal.source.line - 1]
@@ -129,9 +170,9 @@ class FileReader:
             first = False
 
     def _statements(self) -> Iterator[list[Token]]:
-        """The tokens of each statement; comments are set aside, and a comma at a line's end joins the next line."""
+        """Yield the tokens of each statement, and collect the comments; a comma at a line's end joins the next line."""
         statement: list[Token] = []
-        line = 0  # of the last token that is no comment
+        line = 0  # of the last token that is not a comment
         for token in self.language.scanner.tokens(self.text):
             if token.type == "COMMENT":
                 assert token.line is not None
@@ -166,7 +207,7 @@ class FileReader:
             at = len(tokens)
             statement: Statement = state.feed_token(Token.new_borrow_pos("$END", "", tokens[-1]), True)
         except UnexpectedToken as error:
-            many = len(self.draft.problems) >= MAX_PROBLEMS_SHOWN  # then what comes near enough will do
+            many = len(self.draft.problems) >= MAX_PROBLEMS_SHOWN  # then the approximate set is good enough
             accepts = error.expected if many else parser.accepts()  # type: ignore[no-untyped-call]
             raise unexpected(tokens, at, set(accepts), self.draft) from None
         return statement
@@ -175,32 +216,33 @@ class FileReader:
         """Check the place and the viewpoint of a header; add the content of an included file."""
         if isinstance(statement, Header):
             if not first:
-                raise Refusal(statement.source, "the header must be the first statement, and there is only one")
+                raise StatementError(statement.source, "the header must be the first statement, and occur only once")
             seen_from = self.draft.viewpoint
             if statement.viewpoint is not None:
                 if self.includes is None or len(self.includes.open) == 1:
                     self.draft.viewpoint = statement.viewpoint
                 elif seen_from is not None and key_of(seen_from) != key_of(statement.viewpoint):
                     message = (
-                        f"this is seen from '{statement.viewpoint}', but included where all is seen from '{seen_from}'"
+                        f"this file is seen from '{statement.viewpoint}',"
+                        f" but the script that includes it from '{seen_from}'"
                     )
-                    raise Refusal(statement.source, message)
+                    raise StatementError(statement.source, message)
         if isinstance(statement, Include):
             return replace(statement, statements=tuple(self._read_included(statement)))
         return statement
 
     def _read_included(self, include: Include) -> Iterator[Statement]:
         if self.includes is None:
-            raise Refusal(include.source, "a text has no folder to include from; read the script from a file")
+            raise StatementError(include.source, "a text has no folder to include from; read the script from a file")
         beside = self.includes.open[-1].parent
         real = self.includes.find(include.path, beside, include.source)
         if real is None:
             return
-        shown = os.path.join(os.path.dirname(self.file), include.path)
+        shown = str(Path(self.file).parent / include.path)
         try:
             text = read_text(real, shown)
         except ScriptFileError as error:
-            raise Refusal(include.source, str(error)) from None
+            raise StatementError(include.source, str(error)) from None
         self.includes.open.append(real)
         yield from FileReader(text, shown, self.draft, self.language, self.includes).read()
         self.includes.open.pop()

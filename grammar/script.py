@@ -1,4 +1,4 @@
-"""The tree of a layout script: what was stated, by whom it was named, and where it was written."""
+"""The tree of a layout script: its statements, the objects that they mention, and their places in the file."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mention:
-    """An object, or with a ``count`` as many objects, named in a statement.
+    """A name in a statement: one object, or ``count`` objects.
 
-    ``names`` are the objects that are meant: ``("wine_glass_1", "wine_glass_2")`` for ``2 wine_glass``.
+    ``names`` are the objects: ``("wine_glass_1", "wine_glass_2")`` for ``2 wine_glass``.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Mention:
 
 @dataclass(frozen=True, slots=True)
 class Modifiers:
-    """What qualifies a statement: denied, optional, or hedged by a word and so weighing less than 1."""
+    """Qualifiers of a statement: denied, optional, or hedged by a word, whose weight is less than 1."""
 
     positive: bool = True
     optional: bool = False
@@ -44,7 +44,7 @@ class Modifiers:
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment, ``text`` without its ``#``; ``own_line`` where nothing but blanks stands before it."""
+    """A comment: ``text`` without its ``#``; ``own_line`` is True if only blanks precede it on its line."""
 
     text: str
     source: Source
@@ -53,7 +53,7 @@ class Comment:
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """``layout NAME "Title" seen from VIEWPOINT``."""
+    """A header, ``layout NAME "Title" seen from VIEWPOINT``."""
 
     name: str | None
     title: str | None
@@ -63,7 +63,7 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class Include:
-    """``include "other.layout"``, with the statements that it stands for (none where they were included before)."""
+    """An include, ``include "other.layout"``, with the file's statements; empty if the file was included before."""
 
     path: str
     source: Source
@@ -72,7 +72,7 @@ class Include:
 
 @dataclass(frozen=True, slots=True)
 class Declaration:
-    """``soup_spoon is a Spoon``, ``napkin is red`` or ``cup is a blue mug``: a kind, a colour, or both."""
+    """A declared kind, colour or both: ``soup_spoon is a Spoon``, ``napkin is red``, ``cup is a blue mug``."""
 
     subjects: tuple[Mention, ...]
     kind: Kind | None
@@ -82,7 +82,7 @@ class Declaration:
 
 @dataclass(frozen=True, slots=True)
 class RelationStatement:
-    """Every subject stands in one of the relations to every object: ``fork left of plate``, ``left(fork, plate)``."""
+    """One of the relations between every subject and every object: ``fork left of plate``, ``left(fork, plate)``."""
 
     subjects: tuple[Mention, ...]
     relations: tuple[Relation, ...]
@@ -91,14 +91,14 @@ class RelationStatement:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Yield each subject with each object, in the order of writing."""
+        """Yield a fact for each subject and object, in the order of writing."""
         for subject, thing in product(_names(self.subjects), _names(self.objects)):
             yield _fact(subject, self.relations, thing, self)
 
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """``left to right: a, b, c``: each object stands in the relation to the next one."""
+    """A relation between each object and the next one: ``left to right: a, b, c``."""
 
     relation: Relation
     objects: tuple[Mention, ...]
@@ -106,7 +106,7 @@ class Chain:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Yield each object with its neighbour, in the order of writing."""
+        """Yield a fact for each pair of neighbours, in the order of writing."""
         relations = (self.relation,)
         for subject, thing in pairwise(_names(self.objects)):
             yield _fact(subject, relations, thing, self)
@@ -126,7 +126,7 @@ def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: 
 
 @dataclass(frozen=True, repr=False)
 class Script(Answer):
-    """A layout script that was read: its statements, and what follows from them without any inference.
+    """A layout script: its statements, and the objects, facts, kinds and colours that they state.
 
     >>> from deixis.grammar.parser import parse_script
     >>> script = parse_script("soup_spoon is a Spoon; soup spoon right of the plate")
@@ -145,17 +145,17 @@ class Script(Answer):
     ontology: Ontology = field(repr=False, compare=False)
 
     def summary(self) -> str:
-        """Return the file, and how many objects and facts there are."""
+        """Return one line with the file, the title, and the numbers of objects and facts."""
         title = f" {self.title or self.name!r}" if self.title or self.name else ""
         return f"{self.file}{title}: {count(len(self.objects), 'object')}, {count(len(self.facts), 'fact')}"
 
     def all_statements(self) -> Iterator[Statement]:
-        """Return the statements in order, those of included files in the place of their include."""
+        """Return the statements in order; those of an included file follow its include."""
         return _flat(self.statements)
 
     @cached_property
     def objects(self) -> tuple[str, ...]:
-        """The objects in order of first mention, spelled as they were then."""
+        """Objects in the order and the spelling of their first mention."""
         found: dict[str, None] = {}
         for statement in self.all_statements():
             for mention in _mentions(statement):
@@ -164,13 +164,13 @@ class Script(Answer):
 
     @cached_property
     def facts(self) -> tuple[Fact, ...]:
-        """All stated facts in order, each with its source."""
+        """Stated facts in order, each with its source."""
         stating = (s for s in self.all_statements() if isinstance(s, RelationStatement | Chain))
         return tuple(chain.from_iterable(statement.facts() for statement in stating))
 
     @cached_property
     def kinds(self) -> dict[str, Kind]:
-        """The declared kind of each object that has one; of several declared kinds the narrowest."""
+        """Declared kinds by object; the narrowest if several are declared."""
         found: dict[str, Kind] = {}
         for statement in self.all_statements():
             if isinstance(statement, Declaration) and statement.kind is not None:
@@ -181,7 +181,7 @@ class Script(Answer):
 
     @cached_property
     def colours(self) -> dict[str, Colour]:
-        """The colour of each object that has one: the declared one, else the one with which its name begins.
+        """Colours by object: the declared colour, or else the colour word at the start of the object's name.
 
         >>> from deixis.grammar.parser import parse_script
         >>> script = parse_script("the red mug left of the plate; plate is white")
@@ -196,7 +196,9 @@ class Script(Answer):
         return found
 
     def graph(self) -> RelationGraph:
-        """The stated facts as a relation graph; a node's kind is the declared one, else the one its name stands for.
+        """Return the stated facts as a relation graph.
+
+        The kind of a node is the declared kind of the object, or else the kind that its name stands for, or None.
 
         >>> from deixis.grammar.parser import parse_script
         >>> graph = parse_script("2 wine_glass right of the red thingummy").graph()
@@ -209,7 +211,7 @@ class Script(Answer):
 
     @cached_property
     def _graph(self) -> RelationGraph:
-        from deixis.ontology.graph import RelationGraph  # imports numpy, which the facts alone do without
+        from deixis.ontology.graph import RelationGraph  # imports numpy, which the facts do not need
 
         known = [self.kinds.get(name) or self.ontology.of_name(name)[0] for name in self.objects]
         kinds = [kind.iri if kind else None for kind in known]

@@ -1,6 +1,6 @@
-"""From characters to tokens: finds the terminals of ``layout.lark``, joins the words of a name, drops articles.
+"""Cut a text into tokens: find the terminals of ``layout.lark``, join the words of a name, and drop articles.
 
-Lark's own lexer would do for the first part; this one is three times as fast, and stops at nothing.
+Lark's own lexer could find the terminals; this one is three times as fast, and makes tokens of errors too.
 """
 
 from __future__ import annotations
@@ -17,13 +17,18 @@ from deixis.ontology.relation import ARTICLES
 
 NOUN_PHRASE_TERMINALS = frozenset({"COUNT", "STRING", "COMPOUND"})
 TERMINALS_WITHOUT_RULE = ("END", "COMMENT", "COMPOUND", "NUMBER", "OPEN_STRING", "UNKNOWN")
-"""Terminals that no rule uses: those that part statements, and those that are wrong in every statement."""
+"""Terminals that no rule uses: separators of statements, and errors in any statement."""
 
 
 class Scanner:
-    """Cuts a text into tokens; there is no text that it cannot cut.
+    """Lexer that cuts any text into tokens.
 
-    ``patterns`` stand for those of the terminals of the same names.
+    Parameters
+    ----------
+    terminals
+        Terminals of ``layout.lark``.
+    patterns
+        Regular expressions by terminal name, which replace those of ``layout.lark``.
     """
 
     def __init__(self, terminals: Iterable[TerminalDef], patterns: Mapping[str, str]) -> None:
@@ -32,9 +37,9 @@ class Scanner:
         self._next = re.compile(union).finditer
 
     def tokens(self, text: str) -> Iterator[Token]:
-        """Yield the tokens of a text, names joined.
+        """Yield the tokens of a text, with the words of each name joined.
 
-        No rule of the grammar takes FUNCTION, ARTICLE and TERMINALS_WITHOUT_RULE.
+        No rule of the grammar accepts FUNCTION, ARTICLE or ``TERMINALS_WITHOUT_RULE``.
         """
         run: list[Token] = []
         for token in self._terminals(text):
@@ -67,9 +72,9 @@ class Scanner:
 
 
 def join(run: list[Token], following: str) -> Iterator[Token]:
-    """Yield the names in a run of words: an article before a word starts a new name, and is dropped.
+    """Yield the names in a run of words: an article before a word starts a new name and is dropped.
 
-    ``a`` is a name where no word follows it, so that ``left(a, b)`` and ``a is a plate`` mean an object called a.
+    ``a`` is a name if no word follows it, so that ``left(a, b)`` and ``a is a plate`` mean an object called a.
     """
     words: list[Token] = []
     last = len(run) - 1
@@ -88,7 +93,7 @@ def join(run: list[Token], following: str) -> Iterator[Token]:
 
 
 def _name(words: list[Token], text: str) -> Token:
-    """Join words into one NAME token, or return UNKNOWN at the first character that no name may hold."""
+    """Join words into one NAME token, or return UNKNOWN at the first character that names may not contain."""
     for word in words:
         for i, character in enumerate("" if word.isascii() else word):
             if character != "-" and not (character if i == 0 else "x" + character).isidentifier():

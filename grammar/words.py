@@ -1,6 +1,6 @@
-"""The words and phrases of the layout language: closed classes, and the pattern that finds the longest phrase.
+"""Words of the layout language: closed classes, and the pattern that finds the longest phrase.
 
-Relation words, hedges, kinds of things and colours are not here: they come from the ontology.
+Relation words, hedges, kinds of things and colours come from the ontology.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ NUMBERS = {
     )
 }
 
-# Words that carry no name of a thing. One of them inside an unquoted name means that the sentence was not understood,
-# so they are refused there instead of becoming part of an object called "spoon to the".
+# Words that never occur in the name of a thing. One of them inside an unquoted name means that the sentence was not
+# understood, so it is an error instead of an object called "spoon to the".
 _FUNCTION_WORDS = """
 about across after against all almost along although am among any approximately around as aside at because
 been before being beside besides between both but by can close closer could diagonally did directly do does
@@ -39,7 +39,7 @@ though through throughout till to together too toward towards until up us very v
 whereas whether which while who whom whose why will with without would yet you your
 """
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
-NOUNS_TOO = frozenset({"can", "mine", "till"})  # a watering can, and others that things may be called
+NOUNS_TOO = frozenset({"can", "mine", "till"})  # function words that can also name a thing: a watering can
 
 KEYWORDS: dict[str, str] = {
     **dict.fromkeys(FUNCTION_WORDS, "FUNCTION"),
@@ -56,17 +56,18 @@ KEYWORDS: dict[str, str] = {
     "optional": "OPTIONAL",
     "optionally": "OPTIONAL",
 }
-"""The terminal of each word that is no part of a name."""
+"""Terminals of the words that cannot be part of an unquoted name."""
 
 
-_BETWEEN = r"[ \t_]+(?:(?:the|an|a)[ \t_]+)*"  # what may stand between the words of a phrase
-_BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"  # the end of a word, as the terminal NAME has it
+_BETWEEN = r"[ \t_]+(?:(?:the|an|a)[ \t_]+)*"  # separator between the words of a phrase: blanks and articles
+_BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"  # end of a word, as in the terminal NAME
 
 
 def phrase_pattern(phrases: Iterable[str]) -> str:
-    """Return a regular expression for the longest of these phrases, words parted by blanks, underscores and articles.
+    """Return a regular expression that matches the longest of the phrases.
 
-    It is a prefix tree, so that a word costs one branch a letter and not one a phrase, and nothing is tried twice.
+    Blanks, underscores and articles may separate the words of a phrase. The expression is a prefix tree: matching
+    costs one branch per letter instead of one per phrase, and tries nothing twice.
 
     >>> pattern = re.compile(phrase_pattern(["left", "to left of"]), re.IGNORECASE)
     >>> [pattern.match(text) is not None for text in ("to the left_of", "left", "left_glass", "lefty")]
@@ -92,7 +93,7 @@ def _alternatives(tree: dict[str, Any]) -> str:
 
 
 def chains(ontology: Ontology) -> dict[str, Relation]:
-    """Return what may head a chain, without its colon: from one side to the opposite one, for every direction.
+    """Return the relation of each chain head, without its colon: from one side to the opposite, for each direction.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> found = chains(default_ontology())
@@ -100,7 +101,7 @@ def chains(ontology: Ontology) -> dict[str, Relation]:
     ('left', 'top_left', 'top')
     """
     wide = ontology.relations.of_reading(Reading.WIDE)
-    directions = [relation for relation in wide if relation.z_atoms == 0]  # on and under lie in no direction
+    directions = [relation for relation in wide if relation.z_atoms == 0]  # on and under have no direction
     found: dict[str, Relation] = {}
     for relation in directions:
         inverse = ontology.relations[relation.inverse]

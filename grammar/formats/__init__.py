@@ -1,1 +1,1 @@
-"""File formats that are not scripts: constraint networks and fluents."""
+"""File formats other than scripts: calculi, constraint networks and fluents."""

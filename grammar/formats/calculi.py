@@ -1,19 +1,20 @@
-"""Calculi as text, in the three files of GQR (Gantner, Westphal and Wölfl 2008).
+"""Read qualitative calculi from the three text files of GQR (Gantner, Westphal and Wölfl 2008).
 
-The specification names the others, and is what a user names:
+A user names the specification, which names the other two files:
 
     comp_table_file rcc5/rcc5.comp
     converse_file rcc5/rcc5.conv
     identity EQ
     calculus_size 5
 
-The converse file has a line ``PP :: PPI`` for each atom, the composition file a line ``PO : PP :: ( PO PP )`` for each
-two. Empty lines, and lines that begin with ``#``, are passed over; so are other keys of the specification, such as
-GQR's ``weights``.
+The converse file has a line ``PP :: PPI`` for each atom, and the composition file a line ``PO : PP :: ( PO PP )`` for
+each pair of atoms. Empty lines, lines that begin with ``#``, and other keys of the specification, such as GQR's
+``weights``, are ignored.
 
-What these files do not say is whether closure decides. One key of ours says it, and GQR passes it over:
-``closure_decides atoms``, that closed networks of atoms are consistent, or ``closure_decides FILE``, that closed
-networks of the relations in the file are, one relation a line, ``( PO PP )``, as in GQR's files of subclasses.
+These files do not say whether closure decides consistency. The key ``closure_decides``, which GQR ignores, does:
+``closure_decides atoms`` states that closed networks of atoms are consistent, and ``closure_decides FILE`` that closed
+networks of the relations in the file are. The file has one relation per line, ``( PO PP )``, as in GQR's files of
+subclasses.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ from deixis.reasoning.qualitative.calculi.laws import Violation, lawful
 from deixis.reasoning.qualitative.calculi.registry import with_same_tables
 from deixis.reasoning.qualitative.calculi.words import words_with
 
-MAX_SUBCLASS_ATOMS = 16  # of a calculus whose tractable relations are listed
+MAX_SUBCLASS_ATOMS = 16  # maximum number of atoms of a calculus whose tractable relations are listed
 KEYS = ("comp_table_file", "converse_file", "identity", "calculus_size")
 DECIDES = "closure_decides"
 CONVERSE = re.compile(r"\s*(\S+)\s*::\s*(\S+)\s*$")
@@ -45,7 +46,7 @@ RELATION = re.compile(r"\s*\(([^()]*)\)\s*$")
 
 
 class CalculusFileError(DeixisError, ValueError):
-    """Files that are no calculus; ``problems`` are the first that are wrong with them, in order."""
+    """Files of a calculus with errors; ``problems`` holds the first of them, in order."""
 
     def __init__(self, problems: tuple[Diagnostic, ...]) -> None:
         super().__init__(problems)
@@ -57,7 +58,7 @@ class CalculusFileError(DeixisError, ValueError):
 
 @dataclass(frozen=True)
 class CalculusText:
-    """A calculus that was read, and what its reader should know of it, in words."""
+    """A calculus that was read, and notes on it for the user, such as laws that its tables break."""
 
     calculus: Calculus
     notes: tuple[str, ...]
@@ -70,7 +71,7 @@ class _Line:
     text: str
 
     def problem(self, message: str, part: str = "", hint: str | None = None) -> Diagnostic:
-        """Return what is wrong with a part of the line, or with the whole."""
+        """Return a diagnostic for a part of the line, or for the whole line."""
         start = self.text.find(part) if part else len(self.text) - len(self.text.lstrip())
         end = start + len(part) if part else len(self.text.rstrip())
         return Diagnostic(Source(self.file, self.number, start + 1, self.number, end + 1), message, self.text, hint)
@@ -90,29 +91,31 @@ def read_calculus(path: str | Path) -> CalculusText:
     Returns
     -------
     CalculusText
-        The calculus, under the name of the file. One that has the atoms and tables of a calculus of
-        :mod:`deixis.reasoning.qualitative.calculi.registry` is that calculus, with all that is known of it.
+        The calculus, named after the file. If a calculus of :mod:`deixis.reasoning.qualitative.calculi.registry` has
+        the same atoms and tables, that calculus is returned, with its tractable subclasses.
 
     Raises
     ------
     CalculusFileError
-        Where the files are no calculus, with file, line and column of every place.
+        If the files do not describe a calculus, with the file, line and column of each error.
     ScriptFileError
-        Where a file cannot be read.
+        If a file cannot be read.
     """
     path = Path(path)
     if path.is_dir():
         found = sorted(path.glob("*.spec"))
         if len(found) != 1:
             names = ", ".join(each.name for each in found[:8])
-            raise DeixisError(f"{path}: name one of the specifications in this folder ({names or 'it has none'})")
+            raise DeixisError(
+                f"{path}: name one of the specifications in this folder ({names or 'it has no specification'})"
+            )
         path = found[0]
     lines = _lines(path)
     entries = _specification(path, lines)
     atoms, converses = _converses(_beside(path, entries["converse_file"]), entries["calculus_size"])
     identity_line, identity_name = entries["identity"]
     if identity_name not in atoms:
-        raise identity_line.refuse(f"'{shortened(identity_name)}' is no atom of the converse file", identity_name)
+        raise identity_line.refuse(f"'{shortened(identity_name)}' is not an atom of the converse file", identity_name)
     composition_path = _beside(path, entries["comp_table_file"])
     composition = _compositions(composition_path, atoms)
     identity = atoms[identity_name]
@@ -137,7 +140,7 @@ def read_calculus(path: str | Path) -> CalculusText:
 
 
 def _lines(path: Path) -> list[_Line]:
-    """Return the lines that say something; comments may be in any encoding."""
+    """Return the lines that are neither empty nor comments; comments may be in any encoding."""
     text = read_text(path, str(path), lenient=True).removeprefix("\ufeff")
     numbered = (_Line(str(path), number, line) for number, line in enumerate(text.splitlines(), start=1))
     return [line for line in numbered if line.text.strip() and not line.text.lstrip().startswith("#")]
@@ -161,19 +164,19 @@ def _specification(path: Path, lines: list[_Line]) -> dict[str, tuple[_Line, str
     for line in lines:
         key, value = [*line.text.split(maxsplit=1), ""][:2]
         if key in entries:
-            raise line.refuse(f"'{shortened(key)}' is said twice", key)
+            raise line.refuse(f"'{shortened(key)}' is given twice", key)
         entries[key] = line, value.strip()
     for key in KEYS:
         if not entries.get(key, (None, ""))[1]:
             hint = nearest(key, [other for other in entries if other not in KEYS])
             last = lines[-1] if lines else _Line(str(path), 1, "")
-            advice = f"is '{hint}' meant to be it?" if hint else f"a specification has {', '.join(KEYS)}"
+            advice = f"is '{hint}' a misspelling of it?" if hint else f"a specification has {', '.join(KEYS)}"
             raise last.refuse(f"the specification ends without '{key}'", hint=advice)
     line, size = entries["calculus_size"]
     if not size.isdecimal() or not size.isascii() or not 1 <= len(size) <= 6 or int(size) < 1:
         raise line.refuse(f"calculus_size must be a number of atoms, got '{shortened(size)}'", size)
     if int(size) > MAX_TABLE_ATOMS:
-        raise line.refuse(f"calculus_size is {int(size)}; calculi of up to {MAX_TABLE_ATOMS} atoms can be closed", size)
+        raise line.refuse(f"calculus_size must be at most {MAX_TABLE_ATOMS}, got {int(size)}", size)
     return entries
 
 
@@ -191,12 +194,12 @@ def _converses(path: Path, size: tuple[_Line, str]) -> tuple[dict[str, int], NDA
         _stop(problems)
     for other, line in stated.values():
         if other not in stated:
-            problems.append(line.problem(f"'{shortened(other)}' has no converse of its own", other))
+            problems.append(line.problem(f"no line states the converse of '{shortened(other)}'", other))
             _stop(problems)
     if problems:
         raise CalculusFileError(tuple(problems))
     if len(stated) != int(size[1]):
-        raise size[0].refuse(f"calculus_size is {int(size[1])}, and {path.name} has {len(stated)} atoms", size[1])
+        raise size[0].refuse(f"calculus_size is {int(size[1])}, but {path.name} has {len(stated)} atoms", size[1])
     atoms = {atom: code for code, atom in enumerate(stated)}
     return atoms, np.array([atoms[other] for other, _ in stated.values()], dtype=np.int64)
 
@@ -208,7 +211,7 @@ def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
     for line in lines:
         match = COMPOSITION.match(line.text)
         if match is None:
-            hint = "write two atoms and what they compose to, as in 'PO : PP :: ( PO PP )'"
+            hint = "write two atoms and their composition, as in 'PO : PP :: ( PO PP )'"
             problems.append(line.problem("expected a composition", hint=hint))
         else:
             names = [match[1], match[2], *match[3].split()]
@@ -226,7 +229,7 @@ def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
         first, second = np.argwhere(~stated)[0]
         names = list(atoms)
         pair = f"{shortened(names[first])} and {shortened(names[second])}"
-        missing = f"{int((~stated).sum())} compositions are missing, that of {pair} first"
+        missing = f"{int((~stated).sum())} compositions are missing; the first is that of {pair}"
         problems.append((lines[-1] if lines else _Line(str(path), 1, "")).problem(missing))
     if problems:
         raise CalculusFileError(tuple(problems))
@@ -237,21 +240,23 @@ def _compositions(path: Path, atoms: dict[str, int]) -> NDArray[np.uint64]:
 def _unknown(line: _Line, name: str, atoms: dict[str, int]) -> Diagnostic:
     near = nearest(name, atoms)
     hint = f"did you mean '{near}'?" if near else None
-    return line.problem(f"'{shortened(name)}' is no atom of the converse file", name, hint)
+    return line.problem(f"'{shortened(name)}' is not an atom of the converse file", name, hint)
 
 
 def _stop(problems: list[Diagnostic]) -> None:
-    """Raise where so many problems were found that more would not be shown."""
+    """Raise CalculusFileError when as many problems were found as are shown."""
     if len(problems) >= MAX_PROBLEMS_SHOWN:
         raise CalculusFileError(tuple(problems))
 
 
 def _subclass(path: Path, calculus: TableCalculus) -> Subclass:
-    """Return the relations of a file, which must hold all atoms, and be closed under converse and intersection."""
+    """Return the relations of a file; they must include all atoms, and be closed under converse and intersection."""
     lines, atoms = _lines(path), {atom: code for code, atom in enumerate(calculus.atoms)}
     first = lines[0] if lines else _Line(str(path), 1, "")
     if len(atoms) > MAX_SUBCLASS_ATOMS:
-        raise first.refuse(f"relations can be listed for calculi of up to {MAX_SUBCLASS_ATOMS} atoms, not {len(atoms)}")
+        raise first.refuse(
+            f"a calculus with listed relations must have at most {MAX_SUBCLASS_ATOMS} atoms, got {len(atoms)}"
+        )
     members, problems = {0, calculus.universal}, []
     for line in lines:
         match = RELATION.match(line.text)
@@ -291,6 +296,6 @@ def _note(violation: Violation, calculus: TableCalculus, file: str) -> str:
     first, second = (calculus.atoms[code] for code in violation.first)
     entries = f"{violation.entries:,} of {len(calculus.atoms) ** 2:,} entries"
     if violation.law == "identity":
-        return f"{file}: {calculus.atoms[calculus.identity]} is not neutral ({first} : {second} first)"
-    mended = "a triangle must be possible in every reading of it"
-    return f"{file}: {entries} break the law '{violation.law}', {first} : {second} first; {mended}"
+        return f"{file}: {calculus.atoms[calculus.identity]} is not neutral in composition, first in {first} : {second}"
+    mended = "atoms that only some orders of the three objects allow were removed"
+    return f"{file}: {entries} break the law '{violation.law}', first {first} : {second}; {mended}"

@@ -1,7 +1,7 @@
-"""Fluents as files: ``.fluents.json``, read with an error that names the place, and written.
+"""Read and write files of fluents, ``.fluents.json``; errors name the place in the file.
 
 A file holds the origin from which times are counted, fluents with bounds on their starts and finishes, and relations
-between them: Allen's, or bounds on the time from one point to another. ``docs/reference/time.md`` describes it.
+between them: Allen's, or bounds on the time from one point to another. ``docs/reference/time.md`` describes the format.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ from deixis.reasoning.temporal.fluent import (
 )
 
 UNITS = {"s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0}
-"""Accepted units, and how many seconds one is."""
+"""Lengths of the accepted units, in seconds."""
 
 _ALLEN = {relation.name.lower(): relation for relation in Allen} | dict(zip(SYMBOLS, Allen, strict=True))
 _BOUNDS_KEYS = ("lower", "upper", "lower_open", "upper_open")
 
 
 class FluentFileError(DeixisError, ValueError):
-    """A file of fluents that cannot be read as it stands; the message names the file and the place in it."""
+    """A file of fluents with an error; the message names the file and the place in it."""
 
 
 @dataclass(frozen=True)
 class FluentFile:
-    """Fluents and relations between them, with times in seconds since ``origin``, which is told in words."""
+    """Fluents and relations between them, with times in seconds since ``origin``, a description in words."""
 
     origin: str
     fluents: tuple[Fluent, ...]
@@ -54,7 +54,7 @@ class FluentFile:
 def read_fluents(path: str | Path) -> FluentFile:
     """Read a file of fluents.
 
-    Raises FluentFileError, with the place in it, where it is no such file; ScriptFileError where it cannot be read.
+    Raises FluentFileError, with the place, for a file with an error, and ScriptFileError for one that cannot be read.
     """
     if Path(path).is_dir():
         raise FluentFileError(f"{path}: this is a directory, not a file of fluents")
@@ -62,26 +62,28 @@ def read_fluents(path: str | Path) -> FluentFile:
 
 
 def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
-    """Read the text of a file of fluents; ``file`` is how messages and explanations call it.
+    """Read the text of a file of fluents; ``file`` is its name in messages and explanations.
 
     >>> cup = '{"id": "f", "statement": ["cup", "full"], "start": [0, 2]}'
     >>> parsed = parse_fluents(f'{{"origin": "noon", "fluents": [{cup}]}}')
     >>> str(parsed.fluents[0])
     'f: full(cup) from [0, 2] to (-∞, ∞)'
 
-    Raises FluentFileError, with line and column where the text is no JSON, else with the path to the place.
+    Raises FluentFileError: with line and column if the text is not JSON, or else with the path to the place.
     """
-    parsed = parse_json(text, file, FluentFileError, "is no time; write null for a bound that is not known")
+    parsed = parse_json(text, file, FluentFileError, "is not a time; write null for an unknown bound")
     data = _object(parsed, file, ("origin", "unit", "fluents", "relations"), ("origin", "fluents"))
     origin = _text(data["origin"], f"{file}: origin")
     unit = _text(data.get("unit", "s"), f"{file}: unit")
     if unit not in UNITS:
-        raise FluentFileError(f"{file}: unit: '{shortened(unit)}' is not known; use one of {', '.join(UNITS)}")
+        raise FluentFileError(f"{file}: unit: must be one of {', '.join(UNITS)}, got '{shortened(unit)}'")
     fluents: dict[str, Fluent] = {}
     for position, entry in enumerate(_list(data["fluents"], f"{file}: fluents")):
         fluent = _fluent(entry, f"{file}: fluents[{position}]", UNITS[unit])
         if fluent.id in fluents:
-            raise FluentFileError(f"{fluent.source}.id: '{shortened(fluent.id)}' is used twice; give each its own")
+            raise FluentFileError(
+                f"{fluent.source}.id: '{shortened(fluent.id)}' is used twice; give each fluent its own id"
+            )
         fluents[fluent.id] = fluent
     points = dict.fromkeys([ORIGIN, *(point for fluent in fluents.values() for point in fluent.points)])
     relations = tuple(
@@ -96,7 +98,9 @@ def _fluent(data: Any, where: str, scale: float) -> Fluent:
     name = _text(entry["id"], f"{where}.id")
     words = _list(entry["statement"], f"{where}.statement")
     if len(words) not in (2, 3):
-        raise FluentFileError(f"{where}.statement: subject, predicate and, if there is one, object are expected")
+        raise FluentFileError(
+            f"{where}.statement: must be a subject, a predicate and optionally an object, got {len(words)} words"
+        )
     statement = Statement(*(_text(word, f"{where}.statement[{position}]") for position, word in enumerate(words)))
     start = _bounds(entry.get("start"), f"{where}.start", scale)
     finish = _bounds(entry.get("finish"), f"{where}.finish", scale)
@@ -111,7 +115,7 @@ def _relation(
         a, b = (_known(entry[end], f"{where}.{end}", fluents, "fluent") for end in "ab")
         names = _list(entry["allen"], f"{where}.allen")
         if not names:
-            raise FluentFileError(f'{where}.allen: at least one relation is expected, such as "before"')
+            raise FluentFileError(f'{where}.allen: must have at least one relation, such as "before"')
         relations = [_ALLEN[_known(n, f"{where}.allen[{k}]", _ALLEN, "relation")] for k, n in enumerate(names)]
         return AllenStatement(a, allen_mask(relations), b, where)
     entry = _object(data, where, ("from", "to", "bounds"), ("from", "to", "bounds"))
@@ -120,7 +124,7 @@ def _relation(
 
 
 def _bounds(data: Any, where: str, scale: float) -> Bounds:
-    """``[lower, upper]``, or an object that also says which ends are open; null is unknown."""
+    """Return the bounds in ``[lower, upper]``, or in an object that also says which ends are open; null is unknown."""
     if data is None:
         return UNKNOWN
     flags = (False, False)
@@ -130,7 +134,9 @@ def _bounds(data: Any, where: str, scale: float) -> Bounds:
         data = [entry["lower"], entry["upper"]]
     ends = _list(data, where)
     if len(ends) != 2:
-        raise FluentFileError(f"{where}: two bounds are expected, [lower, upper], either of which may be null")
+        raise FluentFileError(
+            f"{where}: must be two bounds, [lower, upper], each of which may be null, got {len(ends)}"
+        )
     lower = -math.inf if ends[0] is None else _number(ends[0], f"{where}[0]", scale)
     upper = math.inf if ends[1] is None else _number(ends[1], f"{where}[1]", scale)
     try:
@@ -141,25 +147,25 @@ def _bounds(data: Any, where: str, scale: float) -> Bounds:
 
 def _flag(entry: dict[str, Any], key: str, where: str) -> bool:
     if not isinstance(entry.get(key, False), bool):
-        raise FluentFileError(f"{where}.{key}: true or false is expected, not {_kind(entry[key])}")
+        raise FluentFileError(f"{where}.{key}: must be true or false, got {_kind(entry[key])}")
     return bool(entry.get(key, False))
 
 
 def _number(data: Any, where: str, scale: float) -> float:
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise FluentFileError(f"{where}: a number or null is expected, not {_kind(data)}")
+        raise FluentFileError(f"{where}: must be a number or null, got {_kind(data)}")
     if not abs(data) <= MAX_SECONDS / scale:
-        raise FluentFileError(f"{where}: the time is beyond {MAX_SECONDS:g} s; is the unit or the origin right?")
+        raise FluentFileError(f"{where}: must be at most {MAX_SECONDS:g} s from zero; check the unit and the origin")
     return data * scale
 
 
 def _object(data: Any, where: str, known: Sequence[str], needed: Sequence[str]) -> dict[str, Any]:
     if not isinstance(data, dict):
-        raise FluentFileError(f"{where}: an object {{…}} is expected here, not {_kind(data)}")
+        raise FluentFileError(f"{where}: must be an object {{…}}, got {_kind(data)}")
     for key in data:
         if key not in known:
             hint = _suggestion(key, known)
-            raise FluentFileError(f"{where}: '{shortened(key)}' is no key here; {hint}the keys are {', '.join(known)}")
+            raise FluentFileError(f"{where}: unknown key '{shortened(key)}'; {hint}the keys are {', '.join(known)}")
     for key in needed:
         if key not in data:
             raise FluentFileError(f"{where}: '{key}' is missing")
@@ -168,20 +174,22 @@ def _object(data: Any, where: str, known: Sequence[str], needed: Sequence[str]) 
 
 def _list(data: Any, where: str) -> list[Any]:
     if not isinstance(data, list):
-        raise FluentFileError(f"{where}: a list is expected, not {_kind(data)}")
+        raise FluentFileError(f"{where}: must be a list, got {_kind(data)}")
     return data
 
 
 def _text(data: Any, where: str) -> str:
     if not isinstance(data, str):
-        raise FluentFileError(f"{where}: a text is expected, not {_kind(data)}")
+        raise FluentFileError(f"{where}: must be a string, got {_kind(data)}")
     if not data.strip() or not data.isprintable():
-        raise FluentFileError(f"{where}: a text in one line is expected, that is not blank and can be printed")
+        raise FluentFileError(
+            f"{where}: must be one line of printable text that is not blank, got {shortened(ascii(data))}"
+        )
     return data
 
 
 def _known(data: Any, where: str, names: Collection[str], kind: str) -> str:
-    """One of the names that there are."""
+    """Return the name in ``data``; raise FluentFileError if it is not among ``names``."""
     name = _text(data, where)
     if name not in names:
         hint = _suggestion(name, names).removesuffix("; ")
@@ -197,12 +205,12 @@ def _suggestion(name: str, names: Collection[str]) -> str:
 def _kind(data: Any) -> str:
     if data is None or isinstance(data, bool):
         return {None: "null", True: "true", False: "false"}[data]
-    kinds = {str: "a text", int: "a number", float: "a number", list: "a list"}
+    kinds = {str: "a string", int: "a number", float: "a number", list: "a list"}
     return kinds.get(type(data), "an object")
 
 
 def format_fluents(content: FluentFile) -> str:
-    """Return the text of a file of fluents, a fluent or a relation a line; reading it gives the same again."""
+    """Return the text of a file of fluents, one fluent or relation per line; reading it gives the same content."""
     head = f'{{\n  "origin": {_json(content.origin)},\n  "unit": "s",\n'
     fluents = _lines([_fluent_to_dict(fluent) for fluent in content.fluents])
     relations = _lines([_relation_to_dict(relation) for relation in content.relations])
@@ -210,7 +218,7 @@ def format_fluents(content: FluentFile) -> str:
 
 
 def bounds_to_json(bounds: Bounds) -> Any:
-    """Bounds as a file has them: ``[lower, upper]``, unless an end is open.
+    """Return bounds as a file writes them: ``[lower, upper]``, or an object if an end is open.
 
     >>> bounds_to_json(Bounds(0, 5)), bounds_to_json(Bounds(2.5))
     ([0, 5], [2.5, None])

@@ -1,13 +1,13 @@
-"""Constraint networks as text, in the format of GQR (Gantner, Westphal and Wölfl 2008).
+"""Read and write constraint networks in the text format of GQR (Gantner, Westphal and Wölfl 2008).
 
     3 # the largest index, and a comment
     0 1 ( < m )
     1 3 ( = )
     .
 
-A file may hold several networks, each ended by a line with a dot; empty lines, and lines that begin with ``#``, are
-passed over. Atoms of a product calculus are written ``<,m`` or ``(<,m)``. In a file over several calculi every line
-names its own: ``0 1 ( rcc8:EC rcc8:DC )``.
+A file may hold several networks; a line with a dot ends each. Empty lines, and lines that begin with ``#``, are
+ignored. Atoms of a product calculus are written ``<,m`` or ``(<,m)``. In a file over several calculi every line names
+its calculus: ``0 1 ( rcc8:EC rcc8:DC )``.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from deixis.reasoning.errors import NetworkError, UnknownAtomError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
 
-MAX_INDEX_DIGITS = 15  # of an index
+MAX_INDEX_DIGITS = 15  # maximum number of digits of an index
 HEADER = re.compile(r"\s*(\d+)\s*(?:#\s*(.*?)|(\S.*?)?)\s*$")
 LINE = re.compile(r"\s*(\d+)\s+(\d+)\s*\((.*?)\)\s*(?:#.*)?$")
 ATOM = re.compile(r"[^\s()]*\([^()]*\)|[^\s()]+")
 
 
 class NetworkFileError(DeixisError, ValueError):
-    """A network file that cannot be read as it stands; ``problems`` are the first that are wrong with it, in order."""
+    """A network file with errors; ``problems`` holds the first of them, in order."""
 
     several_lines = True
 
@@ -46,7 +46,7 @@ class NetworkFileError(DeixisError, ValueError):
 
 @dataclass(frozen=True, eq=False)
 class NetworkText:
-    """One network of a file: for each calculus the constraints in it, all over the same things."""
+    """One network of a file: a network per calculus, all over the same things."""
 
     networks: tuple[Network, ...]
     comment: str
@@ -54,23 +54,42 @@ class NetworkText:
 
     @property
     def network(self) -> Network:
-        """The network, where the file is over one calculus."""
+        """The network of a file over one calculus."""
         return self.networks[0]
 
 
 def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[NetworkText, ...]:
-    """The networks of a file; raises NetworkFileError, with every place, or ScriptFileError where it is unreadable."""
+    """Read the networks of a file.
+
+    Parameters
+    ----------
+    path
+        The file, in UTF-8.
+    calculi
+        Calculi that the constraints are over; if there are several, each line names its own.
+
+    Returns
+    -------
+    The networks in order, each with its comment and the line of its header.
+
+    Raises
+    ------
+    NetworkFileError
+        If the file has errors, with the line and column of each.
+    ScriptFileError
+        If the file cannot be read.
+    """
     if Path(path).is_dir():
         raise IsADirectoryError(21, "this is a directory, not a network file", str(path))
     return parse_networks(read_text(Path(path), str(path)), calculi, str(path))
 
 
 def parse_networks(text: str, calculi: Sequence[Calculus], file: str = "<text>") -> tuple[NetworkText, ...]:
-    """Return the networks in a text; raises NetworkFileError with file, line and column of what is wrong.
+    r"""Return the networks in a text; raise NetworkFileError with the file, line and column of each error.
 
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> point = calculus("point")
-    >>> found = parse_networks("2 # three things\\n0 1 ( < )\\n1 2 (< =)\\n.", [point])
+    >>> found = parse_networks("2 # three things\n0 1 ( < )\n1 2 (< =)\n.", [point])
     >>> found[0].comment, [(c.first, c.second, point.members(c.relation)) for c in found[0].network.constraints]
     ('three things', [(0, 1, ('<',)), (1, 2, ('<', '='))])
     """
@@ -111,7 +130,7 @@ class _Reader:
             self._unended(header[0])
         if not found and not self._problems:
             self._wrong(
-                1, "", 0, 0, "here is no network", "the first line is the largest index, as in '9 # ten things'"
+                1, "", 0, 0, "there is no network here", "the first line is the largest index, as in '9 # ten things'"
             )
         if self._problems:
             raise NetworkFileError(tuple(self._problems))
@@ -133,7 +152,7 @@ class _Reader:
             return
         outside = [group for group in (1, 2) if len(match[group]) > MAX_INDEX_DIGITS or int(match[group]) > largest]
         for group in outside:
-            message = f"there is no thing {shortened(match[group])}; the largest index of this network is {largest}"
+            message = f"an index must be at most {largest}, the largest of this network, got {shortened(match[group])}"
             self._wrong(number, line, match.start(group), match.end(group), message)
         relation = self._known.get(match[3]) or self._relation(number, line, match)
         if relation is not None and not outside:
@@ -141,11 +160,11 @@ class _Reader:
             constraints[relation[0]].append(Constraint(int(match[1]), int(match[2]), relation[1], source))
 
     def _unended(self, header: int) -> None:
-        """A network without its dot may be the beginning of one that was cut off."""
+        """Report a network without its dot: the file may have been cut off."""
         number = max(k for k, line in enumerate(self._lines, start=1) if line.strip())
         line = self._lines[number - 1]
-        message = f"this is the last line, and the network of line {header} has not ended"
-        hint = "a line with a dot ends a network: add it if the file is all there, else get the rest of the file"
+        message = f"the file ends here, but the network of line {header} has not ended"
+        hint = "a line with a dot ends a network: add it if the file is complete, or else restore the missing lines"
         self._wrong(number, line, 0, len(line), message, hint)
 
     def _relation(self, number: int, line: str, match: re.Match[str]) -> tuple[str, int] | None:
@@ -160,7 +179,7 @@ class _Reader:
             start = match.start(3) + atom.start()
             name, sign = self._split(atom[0])
             if name is None:
-                message = f"which calculus is '{shortened(atom[0])}' of?"
+                message = f"'{shortened(atom[0])}' does not name its calculus"
                 self._wrong(number, line, start, start + len(atom[0]), message, f"write {next(iter(self._calculi))}:…")
                 return None
             try:
@@ -170,18 +189,18 @@ class _Reader:
                 well = False
             names.add(name)
         if len(names) > 1:
-            message = "the relations of one line must be of one calculus"
+            message = "the atoms of one line must belong to one calculus"
             self._wrong(number, line, match.start(3), match.end(3), message)
         if len(names) > 1 or not well:
             return None
         if not names and len(self._calculi) > 1:
-            self._wrong(number, line, match.start(3), match.end(3), "which calculus is the empty relation of?")
+            self._wrong(number, line, match.start(3), match.end(3), "the empty relation does not name its calculus")
             return None
         self._known[match[3]] = names.pop() if names else next(iter(self._calculi)), mask
         return self._known[match[3]]
 
     def _split(self, atom: str) -> tuple[str | None, str]:
-        """Return the calculus of an atom, where it can be told, and its sign there."""
+        """Return the name of an atom's calculus, or None if it is ambiguous, and the atom's sign there."""
         name, colon, sign = atom.partition(":")
         if colon and name in self._calculi:
             return name, sign
@@ -193,18 +212,18 @@ class _Reader:
 
 
 def write_networks(networks: Iterable[tuple[Network, str]]) -> str:
-    """Networks with their comments in the same format, each ended by a dot; what is read again is the same.
+    """Return networks with their comments as text; reading the text gives the same networks.
 
-    Raises NetworkError for a network without things, which the format cannot say.
+    Raises NetworkError for a network without things, which the format cannot express.
     """
     return "".join(f"{line}\n" for network, comment in networks for line in network_lines((network,), comment))
 
 
 def network_lines(networks: Sequence[Network], comment: str = "") -> Iterator[str]:
-    """Yield the lines of one network, in several calculi where there are several, each then named on every line."""
+    """Yield the lines of one network; if it is over several calculi, every line names its own."""
     size = networks[0].size
     if size < 1:
-        raise NetworkError("a network file has at least one thing")
+        raise NetworkError("a network must have at least one thing to be written, got none")
     yield f"{size - 1} # {' '.join(comment.split())}".rstrip()
     width = len(str(size - 1))
     for network in networks:

@@ -1,1 +1,1 @@
-"""What describes the shape of a seen object: keypoints, normals, and descriptors behind one protocol."""
+"""Descriptors of a seen object: keypoints, normals, and descriptors of shape and colour behind one protocol."""

@@ -1,8 +1,8 @@
-"""Compiled work on many places at once, shared out among threads.
+"""Share compiled work on many items among threads.
 
-The kernels release the interpreter's lock, so plain threads run them side by side. numba's own parallel loops are not
-used: whichever of their thread pools is at hand, the process may not fork (OpenMP), or may not call them from two
-threads of its own (workqueue), or it is aborted.
+The kernels release the interpreter's lock, so that plain threads run them in parallel. numba's own parallel loops are
+not used: with the thread pool OpenMP a process that forks is aborted, and with workqueue one that calls them from two
+threads.
 """
 
 from __future__ import annotations
@@ -13,24 +13,26 @@ from collections.abc import Callable
 from deixis.perception.errors import CloudError
 
 MIN_BLOCK = 32
-"""Places handed to a thread at a time, at least: fewer are done before they are handed over."""
+"""Minimum number of items handed to a thread: the work on fewer takes less time than handing them over."""
 
 BLOCKS_PER_THREAD = 4
-"""Blocks for each thread: enough that none waits long for the last one."""
+"""Number of blocks per thread: enough that no thread waits long for the last block."""
 
 
 def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None = None) -> None:
-    """Call ``job(start, stop)`` until 0 to ``count`` are covered; ``threads`` are all the process may use if None.
+    """Call ``job(start, stop)`` until the range from 0 to ``count`` is covered.
+
+    ``threads`` is the number of threads; None means one for each processor that the process may use.
 
     >>> covered = []
     >>> in_blocks(lambda start, stop: covered.append((start, stop)), 40, threads=1)
     >>> covered
     [(0, 40)]
 
-    Raises CloudError where ``threads`` is below 1.
+    Raises CloudError if ``threads`` is below 1.
     """
     if threads is not None and threads < 1:
-        raise CloudError(f"work is shared among 1 thread or more, not {threads}")
+        raise CloudError(f"`threads` must be at least 1, got {threads}")
     workers = min(threads or available(), count // MIN_BLOCK)
     if workers <= 1:
         job(0, count)

@@ -1,9 +1,9 @@
-"""The colours of a view as one histogram of chromaticities, in which shade and exposure count little.
+"""Colour descriptor: a histogram of chromaticities, which shade and exposure hardly change.
 
-A lamp that is twice as bright, a shadow and the turn of a surface multiply red, green and blue by one number. Their
-ratios stay, so that a point counts by the logarithms of red and of blue over green (the log-chromaticity of Finlayson
-and Hordley: Color constancy at a pixel, Journal of the Optical Society of America A 18(2), 2001). Each point is shared
-out among the four nearest cells, so that a small change of the lamp's colour moves the histogram a little.
+A brighter lamp, a shadow or a tilted surface multiplies red, green and blue by the same factor, and keeps their ratios.
+A point therefore counts by the logarithms of red and of blue over green (the log-chromaticity of Finlayson and Hordley:
+Color constancy at a pixel, Journal of the Optical Society of America A 18(2), 2001). Each point is shared among the
+four nearest cells, so that a small change of the lamp's colour changes the histogram only a little.
 """
 
 from __future__ import annotations
@@ -16,35 +16,39 @@ from numpy.typing import NDArray
 from deixis.perception.clouds.cloud import PointCloud
 
 DARK = 16.0
-"""Added to red, green and blue (0 to 255) before their ratio is taken: that of dark points is mostly noise."""
+"""Offset added to red, green and blue (0 to 255) before their ratio: that of dark points is mostly noise."""
 
 LARGEST_RATIO = 0.8
-"""Logarithm of the ratio at the middle of the outermost cells, which also hold what lies beyond."""
+"""Logarithm of the ratio at the centre of the outermost cells, which also hold all larger ratios."""
 
 
 @dataclass(frozen=True)
 class ColourDescriber:
-    """One vector for a view: the roots of the shares of its points in a grid of ``cells`` by ``cells`` chromaticities.
+    """Colour descriptor: square roots of the shares of a view's points in ``cells`` by ``cells`` chromaticities.
 
-    The Euclidean distance of two such vectors is Hellinger's. A cloud without colours has no descriptor.
+    The Euclidean distance between two such vectors is the Hellinger distance. A cloud without colours has no
+    descriptor.
     """
 
     cells: int = 8
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "colour"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return self.cells * self.cells
 
     @property
     def local(self) -> bool:
+        """False: there is one descriptor for the view."""
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptor (1, size), rows by red over green; (0, size) of a cloud without colours or points.
+        """Return the descriptor (1, size), rows by red over green; (0, size) for a cloud without colours or points.
 
         >>> red = np.full((9, 3), (200, 20, 20), np.uint8)
         >>> bright, dim = (PointCloud(np.zeros((9, 3), np.float32), each) for each in (red, red // 2))

@@ -1,7 +1,7 @@
-"""A plain description of a view: how far apart its points lie, and how long, wide and thick it is.
+"""D2 descriptor: a histogram of distances between points, with length, width and thickness.
 
 D2 is the histogram of distances between random pairs of points of R. Osada, T. Funkhouser, B. Chazelle, D. Dobkin:
-Shape distributions, ACM Transactions on Graphics 21(4), 2002. It is the baseline that other descriptors are held to.
+Shape distributions, ACM Transactions on Graphics 21(4), 2002. It is the baseline for the other descriptors.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from deixis.perception.features.keypoints import voxel_keypoints
 
 @dataclass(frozen=True)
 class D2ExtentsDescriber:
-    """A histogram of distances, summing to 1, and three extents; needs two points that do not lie in one place.
+    """Global descriptor: a histogram of distances that sums to 1, and three extents; needs two distinct points.
 
-    Distances are those of ``pairs`` pairs, drawn with ``seed`` from one point of each voxel of ``voxel`` metres, so
-    that neither density nor the order of points counts; bins go from 0 to the longest distance drawn. Extents are
-    those along the principal axes, in metres times ``weight``, longest first: size counts, pose does not.
+    The distances are those of ``pairs`` pairs, drawn with ``seed`` from one point per voxel of ``voxel`` metres, so
+    that neither the density nor the order of points matters. Bins go from 0 to the longest distance drawn. The extents
+    are those along the principal axes, longest first, in metres times ``weight``: size matters, pose does not.
     """
 
     bins: int = 32
@@ -33,14 +33,17 @@ class D2ExtentsDescriber:
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "d2_extents"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return self.bins + 3
 
     @property
     def local(self) -> bool:
+        """False: there is one descriptor for the view."""
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:

@@ -1,10 +1,10 @@
-"""The form of a view as one vector: where its surfaces face, how it is hollow, how it widens, and what it leaves open.
+"""Form descriptor: one vector for the directions of a view's surfaces, its hollows, widths and gaps.
 
-What a thing is for shows in its form: a vessel has walls that face its own axis, a bottle narrows upward, a blade is
+The use of a thing shows in its form: a vessel has walls that face its own axis, a bottle narrows upward, a blade is
 flat and long, a handle leaves a gap between itself and the body, a spoon is wide at one end. Each part of the vector
-describes one such side of the form, in numbers that depend little on the size of the thing. The parts are listed in
-:data:`PARTS`. The axis of a thing is where the normals of its sides meet in plan: of a thing that is round about the
-vertical, this is its axis, also where only the front is seen.
+(:data:`PARTS`) describes one such aspect, in numbers that depend little on the size of the thing. The axis of a thing
+is the place in plan where the normals of its sides meet: for a thing that is round about the vertical, this is its axis
+of revolution, even if only its front is seen.
 """
 
 from __future__ import annotations
@@ -29,42 +29,42 @@ from deixis.perception.features.upright import (
 )
 
 MIN_POINTS = 3
-"""Points with a normal that a form is described from, at least."""
+"""Minimum number of points with a normal."""
 
 NORMAL_RADIUS = 0.015
-"""Metres around a point in which its normal is estimated."""
+"""Radius in metres of the neighbourhood from which a normal is estimated."""
 
 AXIS_TOLERANCE = 0.006
-"""Metres by which the line of a normal may miss the axis before it counts half."""
+"""Distance in metres between the axis and the line of a normal at which the normal has half its weight."""
 
 AXIS_ROUNDS = 4
 """Rounds of reweighted least squares for the axis."""
 
 AXIS_PRIOR = 0.002
-"""Weight of the middle in plan as a guess of the axis, for each point: it decides where the normals say nothing."""
+"""Weight per point of the centre in plan as a prior for the axis; it decides where normals carry no information."""
 
 BENDING_RADII = (0.012, 0.025, 0.05)
-"""Metres around a place in which the bending of the surface is measured."""
+"""Radii in metres of the neighbourhoods in which the curvature of the surface is measured."""
 
 BENDING_SPACING = 0.01
-"""Metres between the places at which it is measured."""
+"""Distance in metres between the places at which curvature is measured."""
 
 STATIONS = 10
-"""Parts of the length of a thing, along which its width and its height are measured."""
+"""Number of stations along the length of a thing at which its width and height are measured."""
 
 LEVELS = 8
-"""Parts of the height, in which the radius is measured."""
+"""Number of levels of the height at which the radius is measured."""
 
 MIN_LENGTH = 0.02
-"""Metres to which widths and heights are relative at least, so that noise does not make a form of a crumb."""
+"""Minimum length in metres by which widths and heights are divided, so that the noise of tiny things does not count."""
 
 CELL_SHARE, MIN_CELL = 1 / 40, 0.006
-"""Cells in which an area is counted: a share of the longest side, but at least so many metres."""
+"""Edge of the cells in which an area is counted: a share of the longest side, and a minimum in metres."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the vector: its length, the usual distance of unlike things, which it is divided by, and what it is."""
+    """A part of the vector: its length, its scale (the usual distance between unlike things), and its meaning."""
 
     size: int
     scale: float
@@ -79,22 +79,24 @@ PARTS: Mapping[str, Part] = MappingProxyType(
         "radii": Part(2 * LEVELS, 0.661, "inner and outer radius at each level of the height"),
         "widths": Part(STATIONS, 1.013, "widths along the longest side in plan, the wider half first"),
         "heights": Part(STATIONS, 2.569, "heights along it, in the same order"),
-        "filling": Part(4, 0.478, "how much of its hull and of its rectangle a thing fills, in plan and as it is seen"),
+        "filling": Part(
+            4, 0.478, "shares of its hull and of its rectangle that a thing fills, in plan and as seen by the camera"
+        ),
         "bending": Part(
             20 * len(BENDING_RADII), 1.593, "root shares of places by flatness and roundness, at each radius"
         ),
     }
 )
-"""In the order of the vector. The scales are medians over views of unlike simulated tableware
-(``benchmarks/bench_recognition.py --constants``), so that all parts weigh alike in a Euclidean distance."""
+"""Parts in the order of the vector. The scales are medians over views of unlike simulated tableware
+(``benchmarks/bench_recognition.py --constants``), so that all parts have equal weight in a Euclidean distance."""
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Points (n, 3) of a view, their normals (n, 3) and heights (n,) from 0 to 1; ``height`` is that of all in metres.
+    """Surface of a view: points (n, 3), normals (n, 3), and heights (n,) as shares of the total ``height`` in metres.
 
-    ``axis`` is where the axis of the thing stands in plan, ``radii`` (n,) the distances from it, and ``outward`` (n,)
-    the part of the normals that points away from it.
+    ``axis`` (2,) is the place of the thing's axis in plan, ``radii`` (n,) are the distances from it in metres, and
+    ``outward`` (n,) the components of the normals that point away from it.
     """
 
     points: NDArray[np.float64]
@@ -107,16 +109,16 @@ class Surface:
 
 
 def form_parts(cloud: PointCloud) -> dict[str, NDArray[np.float64]] | None:
-    """Return the parts of the form of a view, by the names of :data:`PARTS`, before they are divided by their scales.
+    """Compute the parts of the form of a view, by the names of :data:`PARTS`, before the division by their scales.
 
     Parameters
     ----------
     cloud
-        The points of one thing, in metres in the table's frame, z up; its origin is where the camera stands.
+        The points of one thing, in metres in the table's frame, z up; its origin is the position of the camera.
 
     Returns
     -------
-    The parts; None of a view with fewer than ``MIN_POINTS`` points that have a normal.
+    The parts; None for a view with fewer than ``MIN_POINTS`` points that have a normal.
     """
     points = finite_points(cloud)
     points = points[voxel_keypoints(points, SPACING)]
@@ -164,9 +166,10 @@ def _surface(points: NDArray[np.float64], normals: NDArray[np.float64]) -> Surfa
 
 
 def _axis(plan: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the place in plan (2,) that the lines of the normals (n, 2) pass nearest to, by robust least squares.
+    """Return the place in plan (2,) nearest to the lines of the normals (n, 2), by robust least squares.
 
-    A level surface has no line in plan and counts nothing. Where the normals say little, it is the middle in plan.
+    A level surface has no line in plan and no weight. If the normals carry little information, it is the centre in
+    plan.
     """
     middle: NDArray[np.float64] = (plan.min(axis=0) + plan.max(axis=0)) / 2
     across = np.column_stack([-normals[:, 1], normals[:, 0]])
@@ -182,14 +185,14 @@ def _axis(plan: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np
 def _shares(
     values: tuple[NDArray[np.float64], ...], bins: tuple[int, ...], ranges: tuple[tuple[float, float], ...]
 ) -> NDArray[np.float64]:
-    """Return the roots of the shares of points in the bins of a histogram; the outermost hold what lies beyond."""
+    """Return square roots of the shares of points in the bins of a histogram; outermost bins hold all values beyond."""
     within = np.stack([np.clip(each, *limits) for each, limits in zip(values, ranges, strict=True)], axis=1)
     counts, _ = np.histogramdd(within, bins=bins, range=ranges)
     return np.sqrt(counts.ravel() / len(within))
 
 
 def _radii(surface: Surface) -> NDArray[np.float64]:
-    """Return inner and outer radius (2 LEVELS,) at each level, relative to the size; interpolated where it is empty."""
+    """Return inner and outer radius (2 LEVELS,) at each level, relative to the size; empty levels are interpolated."""
     size = max(surface.height, 2 * float(np.percentile(surface.radii, 98)))
     level = np.minimum((surface.heights * LEVELS).astype(int), LEVELS - 1)
     found = np.full((LEVELS, 2), np.nan)
@@ -221,7 +224,7 @@ def _stations(
 
 
 def _silhouette(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the points (n, 2) as the camera sees them, to the right and upward, in metres."""
+    """Return the points (n, 2) in the plane of the image, to the right and upward, in metres."""
     toward = eye - points.mean(axis=0)
     toward /= max(float(np.linalg.norm(toward)), 1e-9)
     right = np.cross((0.0, 0.0, 1.0), toward)
@@ -232,13 +235,13 @@ def _silhouette(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArra
 
 
 def _filling(plane: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the shares (2,) that points of a plane (n, 2) fill of their convex hull, and of their rectangle."""
+    """Return the shares (2,) of their convex hull and of their rectangle that points of a plane (n, 2) fill."""
     from scipy.spatial import ConvexHull, QhullError
 
     sides = np.ptp(plane, axis=0)
     cell = max(MIN_CELL, CELL_SHARE * float(sides.max()))
     filled = len(np.unique(np.floor(plane / cell), axis=0)) * cell**2
-    border = cell * float(sides.sum())  # cells at the border reach beyond what they cover
+    border = cell * float(sides.sum())  # cells at the border reach beyond the points
     try:
         hull = float(ConvexHull(plane).volume)
     except QhullError:  # all points in a line
@@ -247,9 +250,9 @@ def _filling(plane: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _bending(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return root shares (20,) of places by how flat and how round their neighbourhood is, for each radius.
+    """Return square roots of the shares of places by the flatness and roundness of their surroundings, 20 per radius.
 
-    Flatness is the root of the share that the least spread has of all, roundness that of the second of the first.
+    With eigenvalues a >= b >= c of the covariance, flatness is sqrt(c / (a + b + c)) and roundness sqrt(b / a).
     """
     places = points[voxel_keypoints(points, BENDING_SPACING)]
     found = []
@@ -268,23 +271,26 @@ def _bending(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class FormDescriber:
-    """One vector for a view in the table's frame: the parts of its form, each divided by its scale.
+    """Global descriptor of a view in the table's frame: the parts of its form, each divided by its scale.
 
-    The Euclidean distance between two such vectors is about 1 times the root of the number of parts for unlike things,
-    and each part weighs alike in it. Neither where a thing stands nor how it is turned about the vertical counts, and
-    its size only through what is too small to be seen.
+    The Euclidean distance between the vectors of unlike things is about the square root of the number of parts, and
+    all parts have equal weight in it. The position of a thing and its turn about the vertical do not matter, and its
+    size only through details that are too small to be measured.
     """
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "form"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return sum(part.size for part in PARTS.values())
 
     @property
     def local(self) -> bool:
+        """False: there is one descriptor for the view."""
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:

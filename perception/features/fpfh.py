@@ -1,4 +1,4 @@
-"""Fast point feature histograms, by Open3D.
+"""Fast point feature histograms (FPFH), computed by Open3D.
 
 R. B. Rusu, N. Blodow, M. Beetz: Fast point feature histograms (FPFH) for 3D registration, ICRA 2009.
 """
@@ -17,15 +17,15 @@ from deixis.perception.features.normals import estimate_normals
 from deixis.perception.open3d import open3d
 
 NEIGHBOURS = 100
-"""Neighbours that a histogram looks at, at most; the nearest, where more lie within the radius."""
+"""Maximum number of neighbours in a histogram; the nearest, if more lie within the radius."""
 
 
 @dataclass(frozen=True)
 class FpfhDescriber:
-    """A histogram of angles between normals (33 bins) at each voxel's keypoint that has a normal; lengths in metres.
+    """Local descriptor: histograms of angles between normals (33 bins) at voxel keypoints; lengths in metres.
 
-    Three angles in 11 bins each, each summing to 200; all 0 where a keypoint has no neighbour with a normal. The cloud
-    is thinned out first, to a point for each voxel of ``spacing``, so that how near the camera was hardly counts.
+    Each of three angles has 11 bins, which sum to 200, or are all 0 if no neighbour of the keypoint has a normal. The
+    cloud is first thinned to one point per voxel of ``spacing``, so that the distance of the camera hardly matters.
     """
 
     radius: float = 0.03
@@ -35,14 +35,17 @@ class FpfhDescriber:
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "fpfh"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return 33
 
     @property
     def local(self) -> bool:
+        """True: there is a descriptor for each keypoint."""
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:

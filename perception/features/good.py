@@ -1,4 +1,4 @@
-"""GOOD, the global orthographic object descriptor: three projections of an object along its own axes.
+"""GOOD, the global orthographic object descriptor: three projections of an object along its principal axes.
 
 S. H. Kasaei, A. M. Tomé, L. Seabra Lopes, M. Oliveira: GOOD: a global orthographic object descriptor for 3D object
 recognition and manipulation, Pattern Recognition Letters 83, 2016.
@@ -15,19 +15,19 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
 
 PLANES = ((1, 2), (0, 2), (0, 1))
-"""The axes that span the planes YoZ, XoZ and XoY."""
+"""Pairs of axes that span the planes YoZ, XoZ and XoY."""
 
 
 @dataclass(frozen=True)
 class GoodDescriber:
-    """Three histograms of ``bins`` x ``bins``, each summing to 1; needs three points that do not lie in one place.
+    """Global descriptor: three histograms of ``bins`` x ``bins``, which sum to 1 each; needs three distinct points.
 
-    The frame is that of the principal axes at the centroid, the first where the object is longest; each histogram
-    covers a square with the side of the object's longest extent about the centroid, so that scale does not count;
-    what lies outside is left out. The projection of largest entropy comes first, the other two follow by increasing
-    variance. An axis points to where more points lie farther than ``threshold`` metres off the centre. The paper
-    multiplies the signs of two axes and turns both by the product, which leaves the result to the signs that a solver
-    returns; here each is turned by its own, and where counts are equal by the sum of cubes.
+    The frame has its origin in the centroid and follows the principal axes, the longest first. Each histogram covers a
+    square about the centroid whose side is the object's longest extent, so that scale does not matter; points outside
+    are ignored. The projection with the largest entropy comes first; the other two follow by increasing variance. An
+    axis points to the side with more points farther than ``threshold`` metres from the centre. The paper multiplies the
+    signs of two axes and applies the product to both, so that the result depends on the signs that a solver returns;
+    here each axis has its own sign, which follows the sum of cubes if the counts are equal.
     """
 
     bins: int = 15
@@ -35,14 +35,17 @@ class GoodDescriber:
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "good"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return 3 * self.bins * self.bins
 
     @property
     def local(self) -> bool:
+        """False: there is one descriptor for the view."""
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
@@ -77,7 +80,7 @@ def _entropy(view: NDArray[np.float64]) -> float:
 
 
 def _variance(view: NDArray[np.float64]) -> float:
-    """Return the variance of the number of the bin, counted row by row."""
+    """Return the variance of the bin number; bins are numbered row by row."""
     numbers = np.arange(1, len(view) + 1)
     mean = float(numbers @ view)
     return float((numbers - mean) ** 2 @ view)

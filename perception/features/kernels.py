@@ -1,9 +1,8 @@
-"""Compiled work on the points of a cloud within reach of a place: runs of cells, spreads and spin images.
+"""Compiled kernels on the neighbourhoods of a cloud's points: covariances for normals, and spin images.
 
-Points are sorted into cubic cells by a counting sort, which puts the points of a cell, and of the cells of a row, side
-by side. Rows follow the axis on which the cloud is longest, so that they are few and long: what lies near a place is
-then a few runs of neighbouring memory. From these runs come the spread of what is around a place, for normals, and spin
-images.
+A counting sort puts the points into cubic cells, so that the points of a cell, and of the cells of a row, are adjacent
+in memory. Rows follow the axis along which the cloud is longest, so that they are few and long: the neighbourhood of a
+place is then a few runs of contiguous memory.
 
 Points near a keypoint are placed in the bins of its spin image a buffer at a time, without branches, so that the
 compiler turns it into vector instructions; points outside the support go to a bin that is thrown away. A point adds
@@ -23,16 +22,16 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 CELLS_PER_POINT = 2
-"""At most so many cells for each point (and 4,096): a far outlier makes cells larger, never memory run out."""
+"""Maximum number of cells per point (plus 4,096): a far outlier makes cells larger instead of exhausting memory."""
 
 
 class CellGrid(NamedTuple):
-    """n points in the order of their cells; the axes are permuted, the longest last."""
+    """Grid of n points in the order of their cells; the axes are permuted, the longest last."""
 
     x: NDArray[np.float64]  # (n,)
     y: NDArray[np.float64]
     z: NDArray[np.float64]
-    order: NDArray[np.int64]  # (n,): where each point stood before
+    order: NDArray[np.int64]  # (n,): original index of each point
     starts: NDArray[np.int64]  # (cells + 1,): the points of cell c are starts[c]:starts[c + 1]
     low: NDArray[np.float64]  # (3,): the least coordinates
     shape: NDArray[np.int64]  # (3,): cells along each axis
@@ -41,8 +40,7 @@ class CellGrid(NamedTuple):
 
 
 def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
-    """Return the points (n, 3), n > 0 and all finite, in cells of about the given edge; larger ones where they are too
-    many.
+    """Return the grid of points (n, 3), n > 0 and all finite, with cells of the given edge, or larger if too many.
 
     >>> grid = cell_grid(np.array([[0.0, 0, 9], [5, 0, 0], [0, 0, 0]]), 1.0)
     >>> grid.shape.tolist(), grid.order.tolist(), grid.axes.tolist()
@@ -63,7 +61,7 @@ def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
 
 
 def in_axes_of(grid: CellGrid, vectors: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Return vectors (m, 3) in the grid's axes, as the kernels take them."""
+    """Return vectors (m, 3) in the permuted axes of the grid, as the kernels need them."""
     return np.ascontiguousarray(vectors[:, grid.axes], dtype=np.float64)
 
 
@@ -85,14 +83,13 @@ def _sort(x, y, z, low, shape, cell, starts, order):  # type: ignore[no-untyped-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def most_runs(grid):  # type: ignore[no-untyped-def]
-    """Return how many runs there can be at most."""
+    """Return the maximum number of runs."""
     return grid.shape[0] * grid.shape[1]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def ball_runs(grid, place, radius, runs):  # type: ignore[no-untyped-def]
-    """Return runs of points that hold all within ``radius`` of ``place`` (3,), in ``runs`` (any, 2); returns their
-    number."""
+    """Fill ``runs`` (any, 2) with the runs that hold the points within ``radius`` of ``place``; return their number."""
     count = 0
     reach = radius + 1e-6 * (radius + grid.cell)
     diagonal = math.sqrt(0.5) * grid.cell
@@ -110,8 +107,10 @@ def ball_runs(grid, place, radius, runs):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def cylinder_runs(grid, place, axis, radius, runs):  # type: ignore[no-untyped-def]
-    """Return the same for a cylinder about ``place`` along the unit vector ``axis`` (3,), ``radius`` high to either
-    side."""
+    """Fill ``runs`` (any, 2) with runs that hold all points of a cylinder; return their number.
+
+    The cylinder is about ``place`` (3,) along the unit vector ``axis`` (3,), and extends by ``radius`` to either side.
+    """
     count = 0
     reach = radius + 1e-6 * (radius + grid.cell)
     first, last = _window(grid, place, reach * _breadth(axis[0]), 0)
@@ -128,8 +127,7 @@ def cylinder_runs(grid, place, axis, radius, runs):  # type: ignore[no-untyped-d
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _interval(dx, dy, axis, reach, half):  # type: ignore[no-untyped-def]
-    """Return where a row, centred ``dx`` and ``dy`` off and ``half`` a cell wide to each side, may meet the
-    cylinder."""
+    """Return the interval in which a row, centred ``dx`` and ``dy`` off and ``half`` wide to each side, may meet it."""
     low, high = -np.inf, np.inf
     along = dx * axis[0] + dy * axis[1]
     slope = axis[2]
@@ -150,14 +148,16 @@ def _interval(dx, dy, axis, reach, half):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _breadth(component):  # type: ignore[no-untyped-def]
-    """Return half the extent, along an axis, of the cylinder of radius 1 and half height 1 whose axis has this
-    component."""
+    """Return half the extent along a coordinate axis of a cylinder of radius 1 and half height 1.
+
+    ``component`` is that of the cylinder's axis along the coordinate axis.
+    """
     return abs(component) + math.sqrt(max(0.0, 1.0 - component * component))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _window(grid, place, reach, axis):  # type: ignore[no-untyped-def]
-    """Return the cells along an axis within reach, as a range."""
+    """Return the range of cells along an axis within reach."""
     first = math.floor((place[axis] - reach - grid.low[axis]) / grid.cell)
     last = math.floor((place[axis] + reach - grid.low[axis]) / grid.cell)
     return max(0, first), min(grid.shape[axis], last + 1)
@@ -165,13 +165,13 @@ def _window(grid, place, reach, axis):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _offset(grid, place, index, axis):  # type: ignore[no-untyped-def]
-    """Return from the place to the middle of a cell, along an axis."""
+    """Return the distance along an axis from the place to the centre of a cell."""
     return grid.low[axis] + (index + 0.5) * grid.cell - place[axis]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _append(grid, i, j, low, high, runs, count):  # type: ignore[no-untyped-def]
-    """Return one more run: the cells of row (i, j) that meet the interval from low to high, if they hold a point."""
+    """Add the run of the cells of row (i, j) in the interval, if they hold a point; return the number of runs."""
     base = (i * grid.shape[1] + j) * grid.shape[2]
     first = max(0, math.floor((low - grid.low[2]) / grid.cell))
     last = min(grid.shape[2], math.floor((high - grid.low[2]) / grid.cell) + 1)
@@ -183,7 +183,7 @@ def _append(grid, i, j, low, high, runs, count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def spreads(grid, places, radius, counts, covariances):  # type: ignore[no-untyped-def]
-    """For places (m, 3): how many points lie within ``radius``, border included, and their covariance (m, 3, 3)."""
+    """Fill the counts (m,) and covariances (m, 3, 3) of the points within ``radius``, border included, of places."""
     runs = np.empty((most_runs(grid), 2), np.int64)
     for m in range(len(places)):
         place = places[m]
@@ -208,7 +208,7 @@ def spreads(grid, places, radius, counts, covariances):  # type: ignore[no-untyp
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def tally(grid, places, radius, counts):  # type: ignore[no-untyped-def]
-    """For places (m, 3): how many points lie nearer than ``radius``."""
+    """Fill the counts (m,) of the points nearer than ``radius`` to the places (m, 3)."""
     runs = np.empty((most_runs(grid), 2), np.int64)
     for m in range(len(places)):
         place = places[m]
@@ -219,15 +219,15 @@ def tally(grid, places, radius, counts):  # type: ignore[no-untyped-def]
 
 
 BUFFER = 512
-"""Points placed at a time; three buffers of them stay in the fastest cache."""
+"""Number of points placed at a time; three buffers of this length fit into the fastest cache."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def images(grid, normals, places, axes, width, support, cosine, radial, angular, out):  # type: ignore[no-untyped-def]
     """Fill ``out`` (k, bins) with the images of keypoints at ``places`` (k, 3) about ``axes`` (k, 3).
 
-    ``normals`` (n, 3) are those of the grid's points, in its order and axes; none (0, 3) where neither a support
-    angle (``cosine`` > 0) nor ``angular`` asks for them.
+    ``normals`` (n, 3) are those of the grid's points, in its order and axes; they may be empty (0, 3) unless a support
+    angle (``cosine`` > 0) or ``angular`` needs them.
     """
     a, b, bins = np.empty(BUFFER), np.empty(BUFFER), np.empty(BUFFER, np.int32)
     angles = np.zeros(BUFFER)
@@ -264,7 +264,7 @@ def images(grid, normals, places, axes, width, support, cosine, radial, angular,
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def discarded(width):  # type: ignore[no-untyped-def]
-    """Return the bin for what lies outside."""
+    """Return the bin for points outside."""
     return 2 * width * width
 
 
@@ -302,7 +302,7 @@ def _place_in_ball(x, y, z, place, axis, width, support, a, b, bins):  # type: i
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _turn(normals, axis, cosine, outside, bins, angles):  # type: ignore[no-untyped-def]
-    """The angles between normals and axis, a right one at most; what turns too far, or has no normal, is outside."""
+    """Fill in the angles between normals and axis, up to a right angle; larger or missing ones go to ``outside``."""
     for i in range(len(normals)):
         turn = abs(normals[i, 0] * axis[0] + normals[i, 1] * axis[1] + normals[i, 2] * axis[2])
         if not turn >= cosine:  # not '<': without a normal the comparison is false
@@ -313,7 +313,7 @@ def _turn(normals, axis, cosine, outside, bins, angles):  # type: ignore[no-unty
 
 @intrinsic
 def _add_four(typing, sums, at, a, b):  # type: ignore[no-untyped-def]
-    """Add (1, a, b, a b) to the four numbers at a position, in one vector addition."""
+    """Add (1, a, b, a b) to the four numbers at a position by one vector addition."""
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         _, position, a_value, b_value = arguments
@@ -331,7 +331,7 @@ def _add_four(typing, sums, at, a, b):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _add(a, b, bins, count, sums):  # type: ignore[no-untyped-def]
-    """Add to two sets of sums by turns: neighbours in a run often share a bin, and need not wait for each other."""
+    """Add alternately to two sets of sums: neighbours in a run often share a bin, and then need not wait."""
     flat, half = sums.reshape(-1), count // 2
     other = sums.shape[1]
     for i in range(half):
@@ -343,7 +343,7 @@ def _add(a, b, bins, count, sums):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _to_corners(sums, image):  # type: ignore[no-untyped-def]
-    """Add to the image (width + 1, 2 width + 1) the shares that the sums stand for; return the number of points.
+    """Add the shares in the sums to the image (width + 1, 2 width + 1); return the number of points.
 
     Sums are read one by one: a view of an array per bin costs as much as all the points of a small cloud.
     """
@@ -368,7 +368,7 @@ def _to_corners(sums, image):  # type: ignore[no-untyped-def]
 def _add_angles(a, b, bins, angles, count, image, turned):  # type: ignore[no-untyped-def]
     """Add each point's shares to the image, and its angle times its shares to ``turned``.
 
-    An average divides by shares however small, so these are added one by one, not got as differences of sums.
+    An average divides by shares, however small; they are therefore added one by one, not computed as differences.
     """
     columns = image.shape[1] - 1
     for i in range(count):

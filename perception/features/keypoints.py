@@ -1,7 +1,7 @@
-"""Keypoints: one point for every occupied voxel, whatever the order in which the points come.
+"""Keypoints: one measured point for each occupied voxel, whatever the order of the points.
 
-Kasaei et al. thin a view out by an octree, or voxel, filter and keep the measured points nearest to what it gives; so
-does this. All leaves of an octree of one depth are a grid of voxels, so no tree is built.
+Kasaei et al. thin a view by an octree (voxel) filter, and keep the measured points nearest to its output; so does this
+module. The leaves of an octree of one depth are a grid of voxels, so that no tree is built.
 """
 
 from __future__ import annotations
@@ -13,26 +13,42 @@ from deixis.perception.errors import CloudError
 from deixis.perception.features.describer import require_length, require_points
 
 MAX_VOXELS_ALONG_AXIS = 2**40
-"""Voxels along an axis at most: beyond, coordinates in double precision no longer tell them apart."""
+"""Maximum number of voxels along an axis; coordinates in double precision cannot distinguish more."""
 
 SUBVOXELS = float(2**24)
-"""Positions in a voxel are whole numbers of its edge / 2**24: their sums do not depend on order, and ties are exact."""
+"""Steps per edge of a voxel, in which positions are whole numbers: sums do not depend on order, and ties are exact."""
 
 
 def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int64]:
-    """Return indices (k,) of the point nearest to the centroid of each occupied voxel; points that are not finite are
-    ignored.
+    """Return the indices of the points nearest to the centroids of the occupied voxels.
 
-    Voxels are cubes of edge ``size`` in metres, laid from the least finite coordinates, and the result is in the order
-    of voxels (x, then y, then z). So neither moving the cloud nor shuffling its points changes which points are chosen
-    (but for rounding at the borders of voxels); turning it does. Of points equally near, that with the least
-    coordinates is taken, and of points in one place the first. Nothing finite, no keypoints.
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3) in metres; those that are not finite are ignored.
+    size
+        Edge of the voxels in metres.
 
+    Returns
+    -------
+    Indices of shape (k,), in the order of voxels (x, then y, then z); none if no point is finite.
+
+    Raises
+    ------
+    CloudError
+        If the shape is wrong, or ``size`` is not a length above 0 or too small for the extent of the cloud.
+
+    Notes
+    -----
+    The grid of voxels begins at the least finite coordinates. Neither moving the cloud nor shuffling its points changes
+    the chosen points, except for rounding at the borders of voxels; turning the cloud does. Of equally near points the
+    one with the least coordinates is taken, and of points at the same place the first. Source: Potmesil 1987 (octrees);
+    Kasaei et al., Interactive Open-Ended Learning for 3D Object Recognition, 2015.
+
+    Examples
+    --------
     >>> voxel_keypoints(np.array([[0.0, 0, 0], [0.4, 0, 0], [0.5, 0, 0], [1.2, 0, 0], [np.nan, 0, 0]]), 1.0)
     array([1, 3])
-
-    Raises CloudError where the shape is wrong or ``size`` is not a length, or too small for the cloud's extent.
-    Source: Potmesil 1987 (octrees); Kasaei et al., Interactive Open-Ended Learning for 3D Object Recognition, 2015.
     """
     require_points(points)
     require_length(size, "a voxel's edge")
@@ -43,7 +59,7 @@ def voxel_keypoints(points: NDArray[np.floating], size: float) -> NDArray[np.int
     inside = places - places.min(axis=0)
     inside /= size
     if inside.max() > MAX_VOXELS_ALONG_AXIS:
-        raise CloudError(f"a voxel of {size:g} m is too small for a cloud of {inside.max() * size:g} m")
+        raise CloudError(f"a voxel's edge of {size:g} m is too small for a cloud of {inside.max() * size:g} m")
     voxels = np.floor(inside)
     inside -= voxels
     order = np.lexsort(voxels.T[::-1])

@@ -1,6 +1,6 @@
-"""Normals of a cloud, from the plane through each point's neighbourhood, turned toward the sensor.
+"""Estimate the normals of a cloud, from the plane through each point's neighbourhood, oriented towards the sensor.
 
-The normal is the direction in which a neighbourhood spreads least: the eigenvector of the smallest eigenvalue of its
+The normal is the direction of least variance in a neighbourhood: the eigenvector of the smallest eigenvalue of its
 covariance (Hoppe et al. 1992).
 """
 
@@ -16,10 +16,10 @@ from deixis.perception.features.blocks import in_blocks
 from deixis.perception.features.describer import require_indices, require_length, require_points
 
 LINE_SPREAD_RATIO = 1e-6
-"""A neighbourhood whose second spread is below this share of its first lies in a line, and has no plane."""
+"""Ratio of the second to the first variance below which a neighbourhood is a line, and has no plane."""
 
 NEIGHBOURHOOD_BATCH = 50_000
-"""Neighbourhoods of k points that are gathered at a time, which bounds memory."""
+"""Number of neighbourhoods of k points that are gathered at a time, which bounds memory."""
 
 
 def estimate_normals(
@@ -31,20 +31,43 @@ def estimate_normals(
     at: NDArray[np.integer] | None = None,
     threads: int | None = None,
 ) -> NDArray[np.float32]:
-    """Return unit normals (n, 3) of points (n, 3); with ``at`` (m,) only of the points with these indices, (m, 3).
+    """Estimate unit normals of points, oriented towards the sensor.
 
-    A neighbourhood holds what lies within ``radius`` metres, or the ``neighbours`` nearest points, the point itself
-    included; one of the two is given. Normals point to the side on which ``origin``, the sensor, stands; one at a
-    right angle to the line of sight has its first component that is not 0 above 0.
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    radius
+        Radius of a neighbourhood in metres. Give either ``radius`` or ``neighbours``.
+    neighbours
+        Number of nearest points in a neighbourhood, the point itself included; at least 3.
+    origin
+        Position of the sensor.
+    at
+        Indices of shape (m,) of the points whose normals are estimated; all points by default.
+    threads
+        Number of threads; by default one for each processor that the process may use.
 
-    A point has no normal, but nan, where it is not finite, or its neighbourhood has fewer than three points or lies
-    in a line. Where a neighbourhood spreads alike in two directions (an edge, a bead) the normal is one of many.
+    Returns
+    -------
+    Normals of shape (n, 3), or (m, 3) with ``at``. A normal is nan if the point is not finite, or if its neighbourhood
+    has fewer than three points or is a line.
 
+    Raises
+    ------
+    CloudError
+        If shapes do not fit, or not exactly one of ``radius`` and ``neighbours`` is given.
+
+    Notes
+    -----
+    A normal at a right angle to the line of sight has a first nonzero component above 0. If the variance of a
+    neighbourhood is equal in two directions (an edge, a bead), the normal is one of many.
+
+    Examples
+    --------
     >>> square = np.array([[0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]], np.float64)
     >>> estimate_normals(square, radius=1.5)[0].tolist()
     [0.0, 0.0, -1.0]
-
-    Raises CloudError where shapes do not fit, or not just one of ``radius`` and ``neighbours`` is given.
     """
     require_points(points)
     finite = np.isfinite(points).all(axis=1)
@@ -75,12 +98,12 @@ def neighbourhoods(
     neighbours: int | None,
     threads: int | None,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return how many points (n, 3) lie around each of m places, and their covariances (m, 3, 3).
+    """Return the numbers (m,) of points (n, 3) around m places (m, 3), and their covariances (m, 3, 3).
 
-    A neighbourhood is what lies within ``radius``, or the ``neighbours`` nearest points; one of the two is given.
+    A neighbourhood holds the points within ``radius`` metres, or the ``neighbours`` nearest ones; give one of the two.
     """
     if (radius is None) == (neighbours is None):
-        raise CloudError("give either a radius or a number of neighbours to estimate normals from")
+        raise CloudError("normals need exactly one of `radius` and `neighbours`")
     if radius is not None:
         require_length(radius, "a normal's radius")
         from deixis.perception.features.kernels import cell_grid, in_axes_of, spreads
@@ -96,7 +119,7 @@ def neighbourhoods(
         back = np.argsort(grid.axes)
         return counts, covariances[:, back][:, :, back]
     if neighbours is None or neighbours < 3:
-        raise CloudError(f"a plane takes 3 neighbours or more, not {neighbours}")
+        raise CloudError(f"`neighbours` must be at least 3, got {neighbours}")
     from scipy.spatial import cKDTree
 
     count = min(neighbours, len(points))

@@ -1,4 +1,4 @@
-"""The descriptors by name."""
+"""Registry of the descriptors by name."""
 
 from __future__ import annotations
 
@@ -24,17 +24,15 @@ DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
         "form": FormDescriber,
     }
 )
-"""Each makes a describer with its default settings; a further descriptor is one more line."""
+"""Factories of describers with default settings; to add a descriptor, add a line."""
 
 
 def describer_named(name: str) -> Describer:
-    """Return the describer of that name, with its defaults.
+    """Return the describer of a name, with its default settings; raise UnknownTermError for an unknown name.
 
     >>> describer_named("spin_images").size
     153
-
-    Raises UnknownTermError, with the names there are, for any other.
     """
     if name not in DESCRIBERS:
-        raise UnknownTermError(f"there is no descriptor '{name}'; choose one of {', '.join(DESCRIBERS)}")
+        raise UnknownTermError(f"unknown descriptor '{name}'; choose one of {', '.join(DESCRIBERS)}")
     return DESCRIBERS[name]()

@@ -1,4 +1,4 @@
-"""Spin images: how the surface around a keypoint looks when it is spun about the keypoint's normal.
+"""Spin images: histograms of the points around a keypoint, by distance from its normal and height along it.
 
 A. E. Johnson, M. Hebert: Using spin images for efficient object recognition in cluttered 3D scenes, IEEE PAMI 21(5),
 1999; bins, support and borders as in the class SpinImageEstimation of the Point Cloud Library. Views as sets of spin
@@ -21,14 +21,14 @@ from deixis.perception.features.normals import estimate_normals
 
 LARGE_CLOUD = 20_000
 CELLS_OF_FEW, CELLS_OF_MANY = 3, 5
-"""Cells of the grid along the support: fewer read too many points, more have rows too short to be fast."""
+"""Cells of the grid per support, in small and large clouds: fewer read too many points, more have too short rows."""
 
 UNIT_TOLERANCE = 1e-3
-"""By how much the length of a normal may differ from 1."""
+"""Tolerance for the length of a unit normal."""
 
 
 def image_size(width: int) -> int:
-    """Return the number of bins: (width + 1) rows of distance from the axis times (2 width + 1) columns along it.
+    """Return the number of bins: width + 1 rows of distance from the axis, times 2 width + 1 columns along it.
 
     >>> image_size(8)
     153
@@ -49,24 +49,49 @@ def spin_images(
     angular: bool = False,
     threads: int | None = None,
 ) -> NDArray[np.float32]:
-    """Return spin images (k, (width + 1) (2 width + 1)) of the points with the indices ``keypoints`` (k,), row by row.
+    """Compute spin images at keypoints of a cloud.
 
-    Each point within ``support`` metres of a keypoint p with normal n has a distance alpha from the axis (p, n) and a
-    height beta along it. Bins measure support / width / sqrt(2) both ways, and hold what has alpha and abs(beta) less
-    than width bins: a cylinder within the ball of the support. A point counts in its four bins' corners bilinearly, p
-    itself and points in its place do not count, and an image sums to 1. An image without a point is 0 throughout
-    (where the Point Cloud Library divides 0 by 0).
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3) in metres; those that are not finite are ignored.
+    normals
+        Unit normals of shape (n, 3). Those of the keypoints are always needed, the others only for ``angular`` or
+        ``support_angle_cos``; then points without a normal (nan) are ignored.
+    keypoints
+        Indices of shape (k,).
+    support
+        Radius in metres of the ball around a keypoint that holds the image.
+    width
+        Number of bins along the distance from the axis.
+    support_angle_cos
+        Cosine of the largest angle between a point's normal and the axis; 0 accepts all points.
+    min_points
+        Minimum number of points, the keypoint included, within the support of each keypoint.
+    radial
+        Use the distance from the keypoint (bins of support / width) and the elevation over the tangent plane (bins of
+        pi / 2 / width) as coordinates.
+    angular
+        Return the mean angle in radians between normals and axis in each bin, instead of the share of points.
+    threads
+        Number of threads; by default one for each processor that the process may use. The result does not depend on it.
 
-    ``radial`` bins distance from p (support / width) and elevation over the tangent plane (pi / 2 / width) instead.
-    ``support_angle_cos`` above 0 leaves out points whose normal makes a larger angle with the axis; ``angular`` gives
-    the mean angle (radians) between normals and axis in each bin, not the share of points. Of a normal and its
-    opposite the nearer counts for both, so that no such angle is above a right one.
-    ``normals`` (n, 3) are unit vectors; those of keypoints are always needed, the others for these two options only,
-    where a point without one (nan) is left out. Points that are not finite are ignored. ``threads`` are all that the
-    process may use if None; the result does not depend on them.
+    Returns
+    -------
+    Images of shape (k, (width + 1) (2 width + 1)), row by row. An image sums to 1, or is 0 throughout if there is no
+    point in it (where the Point Cloud Library divides 0 by 0).
 
-    Raises CloudError where shapes do not fit, a keypoint has no depth or no unit normal, or fewer points than
-    ``min_points`` (itself included) lie nearer to it than ``support``.
+    Raises
+    ------
+    CloudError
+        If shapes do not fit, a keypoint has no depth or no unit normal, or has fewer neighbours than ``min_points``.
+
+    Notes
+    -----
+    A point at a keypoint p with normal n has the distance alpha from the axis (p, n) and the height beta along it. Bins
+    measure support / width / sqrt(2) in both, and hold points with alpha and abs(beta) below width bins: a cylinder
+    within the ball of the support. A point counts bilinearly at the four corners of its bin; points at the place of p
+    do not count. A normal and its opposite are equivalent, so that no angle exceeds a right angle.
     """
     _require(points, normals, keypoints, support, width, support_angle_cos)
     if not len(keypoints):
@@ -102,18 +127,18 @@ def _require(
 ) -> None:
     require_points(points)
     if normals.shape != points.shape:
-        raise CloudError(f"normals have the shape of their points, {points.shape}, not {normals.shape}")
+        raise CloudError(f"normals must have the shape of their points, {points.shape}, got {normals.shape}")
     require_indices(keypoints, points, "keypoints")
     require_length(support, "a spin image's support")
     if width < 1:
-        raise CloudError(f"a spin image is 1 bin wide or more, not {width}")
+        raise CloudError(f"a spin image's width must be at least 1 bin, got {width}")
     if not 0.0 <= support_angle_cos <= 1.0:
-        raise CloudError(f"the cosine of a support angle lies between 0 and 1, not at {support_angle_cos:g}")
+        raise CloudError(f"the cosine of a support angle must be from 0 to 1, got {support_angle_cos:g}")
     lengths = np.linalg.norm(normals[keypoints].astype(np.float64), axis=1)
     wrong = ~(np.abs(lengths - 1.0) <= UNIT_TOLERANCE)
     if wrong.any():
         at = int(np.argmax(wrong))
-        raise CloudError(f"the normal of keypoint {keypoints[at]} has length {lengths[at]:g}; a unit vector is needed")
+        raise CloudError(f"the normal of keypoint {keypoints[at]} must be a unit vector, got length {lengths[at]:g}")
 
 
 def _require_neighbours(
@@ -126,19 +151,19 @@ def _require_neighbours(
     if counts.min() < least:
         at = int(np.argmin(counts))
         raise CloudError(
-            f"keypoint {keypoints[at]} has {counts[at]} points within {support:g} m, and {least} are asked for;"
-            " choose a larger support or a smaller min_points"
+            f"keypoint {keypoints[at]} must have at least {least} points within {support:g} m, got {counts[at]};"
+            " choose a larger `support` or a smaller `min_points`"
         )
 
 
 @dataclass(frozen=True)
 class SpinImageDescriber:
-    """A spin image at each voxel's keypoint; needs a keypoint with a normal (three points near it, not in a line).
+    """Local descriptor: a spin image at each voxel keypoint that has a normal.
 
-    The defaults suit things of 5 to 30 cm seen from a metre by a camera with points 1 to 2 mm apart: some hundred
-    keypoints on a plate, a dozen on a fork; a cylinder that reaches 7 cm around each; normals over 1.5 cm, which a
-    noise of 2 mm hardly tilts. Lengths in metres. ``support_angle_cos``, ``radial`` and ``angular`` as in
-    :func:`spin_images`. Normals are the cloud's own where it has them, else estimated.
+    The defaults suit things of 5 to 30 cm, seen from 1 m by a camera with points 1 to 2 mm apart: about a hundred
+    keypoints on a plate and a dozen on a fork, cylinders of 7 cm around each, and normals over 1.5 cm, which noise of
+    2 mm hardly tilts. Lengths are in metres. ``support_angle_cos``, ``radial`` and ``angular`` are described in
+    :func:`spin_images`. Normals are those of the cloud, or estimated if it has none.
     """
 
     width: int = 8
@@ -152,14 +177,17 @@ class SpinImageDescriber:
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "spin_images"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return image_size(self.width)
 
     @property
     def local(self) -> bool:
+        """True: there is a descriptor for each keypoint."""
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
@@ -182,10 +210,10 @@ class SpinImageDescriber:
 def keypoints_and_normals(
     cloud: PointCloud, voxel: float, radius: float, everywhere: bool = False, threads: int | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
-    """Return indices (k,) of the voxels' keypoints that have a normal, and normals (n, 3): the cloud's own, or
-    estimated.
+    """Return the indices (k,) of the voxel keypoints that have a normal, and normals (n, 3).
 
-    Estimated are only those of keypoints, the others being nan, unless they are wanted ``everywhere``.
+    The normals are those of the cloud, or estimated if it has none: at all points if ``everywhere`` is True, or else at
+    keypoints only, with nan at the other points. ``voxel`` and ``radius`` are in metres.
     """
     keypoints = voxel_keypoints(cloud.points, voxel)
     if cloud.normals is not None:

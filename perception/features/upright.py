@@ -1,8 +1,7 @@
-"""Views of things that stand upright: spin images at two scales, each beside the shape of the whole.
+"""Descriptor of upright things: spin images at two scales, each with the overall shape.
 
-The shape of the whole is what a thing looks like to a robot that knows where up is: how its points lie over height and
-radius, and how high, long and wide it is. A thing on a table may be turned about the vertical and no other way, so that
-heights tell more than distances do.
+The overall shape uses the vertical: the distribution of points over height and radius, and the height, length and width
+of the thing. A thing on a table may be turned about the vertical only, so that heights tell more than distances do.
 """
 
 from __future__ import annotations
@@ -19,28 +18,30 @@ from deixis.perception.features.keypoints import voxel_keypoints
 from deixis.perception.features.spin_images import image_size, keypoints_and_normals, spin_images
 
 SPACING = 0.004
-"""Metres between the points that count: neither distance from the camera nor noise makes a part weigh more."""
+"""Distance in metres to which points are thinned, so that the weight of a part does not depend on its point density."""
 
 FOOT_PERCENTILE, TOP_PERCENTILE = 1.0, 99.5
-"""Percentiles of height between which a thing lies; what lies beyond is mostly noise."""
+"""Percentiles of the height that bound a thing; points beyond are mostly noise."""
 
 MIN_HEIGHT = 0.005
-"""Metres that a thing is high at least, which is what a depth camera's noise makes of a sheet."""
+"""Minimum height of a thing in metres: the thickness of a sheet in the noise of a depth camera."""
 
 EXTENT_OFFSET = 0.01
-"""Metres added to extents before their logarithm: what a thin thing measures is mostly noise."""
+"""Offset in metres added to extents before their logarithm: the thickness of a thin thing is mostly noise."""
 
 PLAN_DIRECTIONS = 18
-"""Directions in plan that are looked at: every five degrees of a right angle."""
+"""Number of directions in plan that are tried: one for every five degrees of a right angle."""
 
 HISTOGRAM_CELLS = 6
-"""Of the histogram, both ways."""
+"""Number of cells of the histogram along each side."""
 
 
 class UprightShape(NamedTuple):
-    """``profile`` (36,): roots of the shares of points by height above the table (rows, over that of the top) and
-    horizontal distance from the middle (over the largest). ``extents`` (3,): logarithms of the top's height, of length
-    and of width.
+    """Overall shape of an upright thing.
+
+    ``profile`` (36,) holds square roots of the shares of points by height (rows, relative to the top) and horizontal
+    distance from the centre (columns, relative to the largest). ``extents`` (3,) holds the logarithms of height, length
+    and width in metres, each with ``EXTENT_OFFSET`` added.
     """
 
     profile: NDArray[np.float64]
@@ -48,11 +49,11 @@ class UprightShape(NamedTuple):
 
 
 def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
-    """Return the shape of finite points (n, 3) in metres in the table's frame, z up and 0 on the table; None of none.
+    """Compute the overall shape of finite points (n, 3) in metres in the table's frame, z up and 0 on the table.
 
-    What stands on another thing is as high as its top is above the table. Where a thing reaches below 0, so that the
-    frame is not the table's, height is over its own foot. Length and width are the sides of the smallest rectangle in
-    plan, its middle is the thing's.
+    Returns None for no points. The height is that of the top above the table, also for a thing that stands on another
+    one. If a thing reaches below 0, so that the frame is not the table's, its height is measured from its own foot.
+    Length and width are the sides of the smallest rectangle around it in plan.
 
     >>> rod = np.linspace([0, 0, 0], [0, 0.3, 0], 100)
     >>> (np.exp(upright_shape(rod).extents) - EXTENT_OFFSET).round(3).tolist()
@@ -73,7 +74,7 @@ def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
 
 
 def in_smallest_rectangle(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (n, 2) along the sides of the smallest rectangle around them, from its middle."""
+    """Return points (n, 2) in the frame of the smallest rectangle around them, with its centre as origin."""
     angles = np.arange(PLAN_DIRECTIONS) * np.pi / 2 / PLAN_DIRECTIONS
     along = plan @ np.stack([np.cos(angles), np.sin(angles)])  # (n, turns)
     across = plan @ np.stack([-np.sin(angles), np.cos(angles)])
@@ -85,13 +86,13 @@ def in_smallest_rectangle(plan: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class UprightDescriber:
-    """At each keypoint: spin images of each of the ``supports``, then the thing's profile and its extents.
+    """Local descriptor: spin images of each of the ``supports`` (metres), with the thing's profile and extents.
 
-    The cloud's frame is the table's, z up and 0 on the table. Images and profile are roots of histograms already, so
-    that equation 1 over these descriptors sums squares of Hellinger's distances; ``profile`` and ``extents`` are the
-    weights of these two. The large image says where on the thing a keypoint is, the small one what it is part of, and
-    the whole, the same at all keypoints, of what size and build the thing is. Keypoints, normals and what else is set
-    as in :class:`.SpinImageDescriber`; how the numbers were chosen: docs/explanation/open_ended.md.
+    The cloud's frame must be the table's, z up and 0 on the table. Images and profile are square roots of histograms,
+    so that equation 1 over these descriptors sums squares of Hellinger distances; ``profile`` and ``extents`` are the
+    weights of these two parts. The large image shows the place of a keypoint on the thing, the small image its
+    surroundings, and the overall shape, the same at all keypoints, the size and build of the thing. The other settings
+    are those of :class:`.SpinImageDescriber`; docs/explanation/open_ended.md says how the numbers were chosen.
     """
 
     supports: tuple[float, ...] = (0.2, 0.05)
@@ -104,14 +105,17 @@ class UprightDescriber:
 
     @property
     def name(self) -> str:
+        """Name of the descriptor."""
         return "upright"
 
     @property
     def size(self) -> int:
+        """Length of a descriptor."""
         return len(self.supports) * image_size(self.width) + HISTOGRAM_CELLS * HISTOGRAM_CELLS + 3
 
     @property
     def local(self) -> bool:
+        """True: there is a descriptor for each keypoint."""
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:

@@ -1,17 +1,18 @@
-"""The threshold of ND and the probabilities of names, from how views that were held out came out.
+"""Calibrate the threshold of the normalised distance (ND) and the probabilities of names from held-out views.
 
-The threshold makes the fewest wrong decisions between known and unknown (Youden 1950, with a prior). That a thing is
-known at all has Platt's probability (1999), a sigmoid of the least ND's logarithm: 1 / (1 + (ND / even)^doubt). Which
-category it then is, is a conditional logit (McFadden 1974): P(c) ~ ND(c)^-choice. Both are fitted by likelihood; a
-normal prior on their logarithms holds them near the shipped ones while held-out views are few.
+The threshold makes the fewest wrong decisions between known and unknown (Youden 1950, with a prior). The probability
+that a thing is known at all is Platt's (1999), a sigmoid of the logarithm of the least ND: 1 / (1 + (ND / even)^doubt).
+The probability of each category, given that the thing is known, is a conditional logit (McFadden 1974):
+P(c) ~ ND(c)^-choice. Both are fitted by likelihood; a normal prior on the logarithms of the parameters keeps them near
+the shipped ones while held-out views are few.
 
-Some things look like what they are not, however near the distances are: a share of ``slips`` is spread over all answers
-as if nothing had been seen, so that no answer is surer than held-out ones deserve.
+Some things look like another category, however near the distances are: a share of ``slips`` is spread over all answers
+as if nothing had been seen, so that no answer is more certain than the held-out answers justify.
 
-Where things are compared by several descriptors, ND is the weighted geometric mean of theirs: a logarithmic opinion
-pool (Genest and Zidek 1986), since a power of ND is what a probability is proportional to. The weights are fitted in
-the same way. What a colour says differs from one household to the next, so that its weight may move farther from the
-shipped one than those of descriptors of shape; and no two colours are nearer than noise lets them be told apart.
+If things are compared by several descriptors, ND is the weighted geometric mean of theirs: a logarithmic opinion pool
+(Genest and Zidek 1986), since a probability is proportional to a power of ND. The weights are fitted in the same way.
+The information in colours differs between households, so that their weight may move farther from the shipped one than
+the weights of shape; and distances between colours have a floor, the noise of the camera.
 """
 
 from __future__ import annotations
@@ -26,51 +27,66 @@ from deixis.perception.errors import RecognitionError
 from deixis.perception.recognition.held_out import HeldOut
 
 MIN_HELD_OUT_ANSWERS = 10
-"""Known and unknown answers held out, each, from which on a threshold is chosen by them."""
+"""Minimum numbers of known and of unknown held-out answers to choose a threshold from."""
 
 MIN_NORMALISED = 1e-6
-"""A normalised distance below this is taken for this: the same view again."""
+"""Lower bound of a normalised distance, which the same view seen again would have."""
 
 PRIOR_WIDTH = 1.0
-"""Standard deviation of the logarithms of even, doubt and choice about the shipped ones."""
+"""Prior standard deviation of the logarithms of even, doubt and choice about the shipped ones."""
 
 WEIGHTS_WIDTH = 0.3
-"""The same of the ratios of weights: views of the same few things say less of these than their number suggests."""
+"""Prior standard deviation of the logarithms of ratios of weights; small, since few things are seen in many views."""
 
 COLOUR_WEIGHT = 0.02
-"""Weight of colour beside the descriptors of shape until there are views to fit it to: next to nothing, since of things
-that are never twice of one colour it says nothing."""
+"""Weight of colour, beside the descriptors of shape, until there are views to fit it to: nearly 0, since colour carries
+no information on things that never have the same colour twice."""
 
 COLOUR_WIDTH = 1.0
-"""The same for colour, which tells some things apart at once and others not at all."""
+"""Prior standard deviation of the logarithm of colour's weight; large, since colour separates only some things."""
 
 COLOUR_FLOOR = 0.25
-"""Least ND by colour: nearer ones are apart by the camera's noise."""
+"""Lower bound of the ND by colour: smaller ones are the camera's noise."""
 
 SLIPS_WIDTH = 0.5
-"""The same of the log-odds of slips."""
+"""Prior standard deviation of the log-odds of slips."""
 
 MIN_SLIPS = 1e-3
-"""Share of slips that a fit begins with at least."""
+"""Minimum share of slips at the start of a fit."""
 
 MAX_ROUNDS = 1_500
-"""Rounds of the search for the most probable parameters, at most."""
+"""Maximum number of iterations of the search for the most probable parameters."""
 
 WEIGHTS_ROUNDING = 1e-6
-"""By how much the sum of weights may differ from 1."""
+"""Tolerance for the sum of the weights, which must be 1."""
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """``threshold``: an ND above it is unknown. ``even``: the least ND at which known and unknown are equally probable;
-    ``doubt``: how fast that changes. ``choice``: how much a nearer category is preferred. ``slips`` is the share of
-    things of which distances say nothing. ``weights`` are those of the descriptors in the mean, and sum to 1.
-    ``weights_widths`` are the standard deviations of the logarithms of their ratios to the first one where a fit begins
-    here (none: ``WEIGHTS_WIDTH``); that of the first says nothing. ``floors`` are the least ND that each descriptor can
-    tell, and one below counts as this (none: ``MIN_NORMALISED``).
-    ``known`` and ``unknown`` count the held-out answers behind these.
+    """Parameters that turn normalised distances (ND) into a decision and probabilities.
 
-    With none the numbers are constants, measured once on simulated tableware (docs/explanation/recognition.md).
+    Parameters
+    ----------
+    threshold
+        ND above which a thing is unknown.
+    even
+        Least ND at which known and unknown are equally probable.
+    doubt
+        Steepness of the change from known to unknown.
+    choice
+        Strength of the preference for nearer categories.
+    known, unknown
+        Numbers of the held-out answers from which the parameters were fitted. If both are 0, the parameters are
+        constants, measured on simulated tableware (docs/explanation/recognition.md).
+    weights
+        Weights of the descriptors in the mean, which sum to 1.
+    slips
+        Share of things whose distances carry no information.
+    weights_widths
+        Prior standard deviations of the logarithms of the weights' ratios to the first weight, for a fit that starts
+        here; the first one is not used. Empty for ``WEIGHTS_WIDTH``.
+    floors
+        Lower bounds of the ND by each descriptor. Empty for ``MIN_NORMALISED``.
     """
 
     threshold: float
@@ -90,18 +106,18 @@ class Calibration:
         for name in ("weights_widths", "floors"):
             values = getattr(self, name)
             if values and not (len(values) == len(self.weights) and min(values) > 0):
-                raise RecognitionError(f"a calibration's {name} are above 0, one for each weight, not {values}")
+                raise RecognitionError(f"a calibration's {name} must be above 0, one for each weight, got {values}")
         if not (min(self.weights, default=-1.0) >= 0 and abs(sum(self.weights) - 1) < WEIGHTS_ROUNDING):
-            raise RecognitionError(f"a calibration's weights are 0 or more and sum to 1, not {self.weights}")
+            raise RecognitionError(f"a calibration's weights must be at least 0 and sum to 1, got {self.weights}")
         if not 0 <= self.slips < 1:
-            raise RecognitionError(f"a calibration's share of slips is 0 or more and below 1, not {self.slips}")
+            raise RecognitionError(f"a calibration's slips must be at least 0 and below 1, got {self.slips}")
         for name in ("threshold", "even", "doubt", "choice"):
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
-                raise RecognitionError(f"a calibration's {name} is a number above 0, not {getattr(self, name)}")
+                raise RecognitionError(f"a calibration's {name} must be a number above 0, got {getattr(self, name)}")
 
     @property
     def calibrated(self) -> bool:
-        """Whether the threshold comes from the categories' own views."""
+        """True if the threshold was chosen from the categories' own views."""
         return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
     def mean(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -113,7 +129,7 @@ class Calibration:
         return np.exp(_mean_logs(self.logs(normalised), np.array(self.weights)))
 
     def logs(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the logarithms (b, ..., c) of ND by each of b descriptors, none below that of its floor."""
+        """Return the logarithms (b, ..., c) of ND by each of b descriptors, raised to their floors."""
         floors = self.floors or (MIN_NORMALISED,) * len(normalised)
         result: NDArray[np.float64] = np.log(
             np.stack([np.maximum(each, floor) for each, floor in zip(normalised, floors, strict=True)])
@@ -121,7 +137,7 @@ class Calibration:
         return result
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return probabilities (..., c + 1) of c categories and, last, of none of them, from their ND (..., c).
+        """Return probabilities (..., c + 1) from the ND (..., c) of c categories; the last is that of unknown.
 
         >>> even = Calibration(threshold=1.0, even=1.0, doubt=2.0, choice=4.0)
         >>> even.probabilities(np.array([1.0, np.inf, 1.0])).tolist()
@@ -133,15 +149,15 @@ class Calibration:
 
 
 SHIPPED = Calibration(threshold=0.756, even=0.745, doubt=6.6, choice=12.8, slips=0.1)
-"""What holds until there are views to calibrate with (benchmarks/bench_recognition.py --constants)."""
+"""Calibration until there are views to fit it to (benchmarks/bench_recognition.py --constants)."""
 
 
 SHIPPED_JOINT = Calibration(threshold=0.76, even=0.736, doubt=6.9, choice=15.4, weights=(0.65, 0.35), slips=0.1)
-"""The same for the descriptors that views of a table are compared by."""
+"""Calibration of the two descriptors by which views of a table are compared, until there are views to fit it to."""
 
 
 def beside_colour(calibration: Calibration) -> Calibration:
-    """Return what holds where views are compared by their colour, too, as the last descriptor."""
+    """Return a calibration with colour as an additional, last descriptor."""
     count = len(calibration.weights)
     return replace(
         calibration,
@@ -152,15 +168,29 @@ def beside_colour(calibration: Calibration) -> Calibration:
 
 
 def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SHIPPED) -> Calibration:
-    """Return threshold and probabilities from held-out views, if ``prior_unknown`` of all things seen are of no
-    category.
+    """Fit threshold and probabilities to held-out views of one descriptor.
 
-    With fewer than ``MIN_HELD_OUT_ANSWERS`` known or unknown answers everything stays as in ``start``: of a few answers
-    likelihood makes certainties, beside a threshold that does not move. Raises RecognitionError where the prior is not
-    between 0 and 1.
+    Parameters
+    ----------
+    held
+        Normalised distances of held-out views.
+    prior_unknown
+        Share of all things seen that belong to no category, between 0 and 1.
+    start
+        Start of the fit, and centre of its prior.
+
+    Returns
+    -------
+    The fitted calibration, or ``start`` if there are fewer than ``MIN_HELD_OUT_ANSWERS`` known or unknown answers: a
+    likelihood of few answers gives near certainty.
+
+    Raises
+    ------
+    RecognitionError
+        If ``prior_unknown`` is not between 0 and 1.
     """
     if not 0 < prior_unknown < 1:
-        raise RecognitionError(f"the share of unknown things lies between 0 and 1, not at {prior_unknown}")
+        raise RecognitionError(f"`prior_unknown` must be between 0 and 1, got {prior_unknown}")
     known, truth = held.as_known
     unknown = held.as_unknown
     if min(len(known), len(unknown)) < MIN_HELD_OUT_ANSWERS:
@@ -173,10 +203,10 @@ def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SH
 def calibrate_jointly(
     held: Sequence[HeldOut], prior_unknown: float = 0.5, start: Calibration = SHIPPED_JOINT
 ) -> Calibration:
-    """Return weights, threshold and probabilities from what the same views, held out, came to by each descriptor.
+    """Fit weights, threshold and probabilities to held-out views, given the ND of the same views by each descriptor.
 
-    Logarithms of the weights' ratios have a normal prior about those of ``start``, of its ``weights_widths``. With few
-    answers everything stays as in ``start``, as in :func:`calibrate`.
+    Logarithms of the weights' ratios have a normal prior about those of ``start``, with its ``weights_widths`` as
+    standard deviations. If there are too few answers, it returns ``start``, as :func:`calibrate` does.
     """
     known, truth = held[0].as_known
     if min(len(known), len(held[0].as_unknown)) < MIN_HELD_OUT_ANSWERS:
@@ -187,10 +217,11 @@ def calibrate_jointly(
 
 
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
-    """Return the ND that makes the least expected share of errors: known things above it, unknown ones at or below.
+    """Return the threshold of ND with the least expected share of errors.
 
-    ``known`` (k,) and ``unknown`` (u,) are the least ND of each held-out view. Cuts lie halfway between neighbouring
-    values; of equally good ones the middle one is taken. With an even prior this maximises Youden's J.
+    Errors are known things above the threshold, and unknown things at or below it. ``known`` (k,) and ``unknown`` (u,)
+    are the least ND of each held-out view. Candidate thresholds are halfway between neighbouring values; of equally
+    good ones the middle one is taken. With an even prior this maximises Youden's J.
 
     >>> best_threshold(np.array([0.4, 0.6]), np.array([1.0, 2.0]))
     0.8
@@ -200,7 +231,7 @@ def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], pri
     if not len(scores):
         return SHIPPED.threshold
     halfway = (scores[1:] + scores[:-1]) / 2
-    halfway = np.where(halfway < scores[1:], halfway, scores[:-1])  # between neighbours there is no number
+    halfway = np.where(halfway < scores[1:], halfway, scores[:-1])  # if there is no number between neighbours
     cuts = np.concatenate([scores[:1] / 2, halfway, scores[-1:] * 2])
     missed = 1 - np.searchsorted(np.sort(known), cuts, side="right") / len(known)
     taken = np.searchsorted(np.sort(unknown), cuts, side="right") / len(unknown)
@@ -210,8 +241,10 @@ def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], pri
 
 
 def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[np.bool_], bins: int = 10) -> float:
-    """Return mean over answers of how far the confidence in their bin is from the share that is right (Naeini et al.
-    2015).
+    """Return the expected calibration error of answers (Naeini et al. 2015).
+
+    It is the mean over answers of the difference between the mean confidence in their bin and the share of right
+    answers there. ``confidence`` and ``right`` have shape (n,).
 
     >>> expected_calibration_error(np.array([0.75, 0.75, 0.75, 0.75]), np.array([True, True, True, False]))
     0.0
@@ -222,9 +255,9 @@ def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[n
 
 
 def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
-    """Return the probability that something unknown has a higher score than something known; equal ones count half.
+    """Return the area under the ROC curve: the probability that an unknown thing scores higher than a known one.
 
-    nan where there is none of either.
+    Equal scores count half. ``known`` (k,) and ``unknown`` (u,) are scores; nan if one of them is empty.
 
     >>> auroc(np.array([1.0, 2.0]), np.array([2.0, 3.0]))
     0.875
@@ -237,7 +270,7 @@ def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
 
 
 def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return logarithms of the probabilities (..., c + 1); ``logs`` (3,) are those of even, doubt and choice."""
+    """Return log-probabilities (..., c + 1); ``logs`` (3,) are the logarithms of even, doubt and choice."""
     log_even, (doubt, choice) = logs[0], np.exp(logs[1:])
     apart = np.log(np.maximum(normalised, MIN_NORMALISED))
     nearest = apart.min(axis=-1, keepdims=True)
@@ -251,7 +284,7 @@ def _log_shares(normalised: NDArray[np.float64], logs: NDArray[np.float64]) -> N
 
 
 def _mean_logs(logs: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the weighted mean (..., c) of logarithms (b, ..., c); infinite where one is."""
+    """Return the weighted mean (..., c) of logarithms (b, ..., c); infinite if one of them is."""
     finite = np.isfinite(logs)
     mean = np.tensordot(weights, np.where(finite, logs, 0.0), axes=1)
     result: NDArray[np.float64] = np.where(finite.all(axis=0), mean, np.inf)
@@ -259,7 +292,7 @@ def _mean_logs(logs: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
 
 
 def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: Calibration) -> tuple[float, ...]:
-    """Return the most probable weights of b descriptors, from the logarithms (b, k, c) of ND of known views."""
+    """Return the most probable weights of b descriptors, given the logarithms (b, k, c) of the ND of known views."""
     from scipy.optimize import minimize
 
     ratios = np.log(np.array(start.weights) / start.weights[0])[1:]
@@ -281,7 +314,7 @@ def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: 
 
 
 def _blind(normalised: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the probabilities (..., c + 1) of whoever has not looked: half for none, the rest even over categories."""
+    """Return probabilities (..., c + 1) without any observation: half for unknown, the rest even over categories."""
     there = np.isfinite(normalised)
     count = there.sum(axis=-1, keepdims=True)
     none = np.where(count > 0, 0.5, 1.0)
@@ -295,7 +328,7 @@ def _fitted(
     prior_unknown: float,
     start: Calibration,
 ) -> Calibration:
-    """Return ``start`` with the most probable even distance, doubt, choice and share of slips."""
+    """Return ``start`` with the most probable even, doubt, choice and slips."""
     from scipy.optimize import minimize
 
     first = np.log([start.even, start.doubt, start.choice, max(start.slips, MIN_SLIPS) / (1 - start.slips)])

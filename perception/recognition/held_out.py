@@ -15,24 +15,23 @@ from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import spreads
 
 MAX_HELD_OUT = 400
-"""Views that are held out, at most; evenly over the categories."""
+"""Maximum number of views that are held out, distributed evenly over the categories."""
 
 
 USUAL_SHORTENING, MAX_SHORTENING = 0.2, 0.5
-"""The power of :func:`shortening` where nothing says what it is, and the largest one."""
+"""Default and maximum of the exponent that :func:`shortening` returns."""
 
 
 Progress = Callable[[int, int], None]
-"""Is told how many views are done, and how many there are."""
+"""Callback with the number of views done, and the number of all views."""
 
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
     """Normalised distances of v held-out views to c categories.
 
-    ``truth`` is each view's own category; its ND there is without the view itself, and without the other views of the
-    same thing: inf where nothing remains. It is brought to the number of things that the category has, as the other
-    categories have theirs: see :func:`shortening`.
+    ``truth`` is the category of each view; its ND to that category excludes all views of the same thing, and is inf if
+    no others remain. This ND is corrected for the missing thing by the factor that :func:`shortening` describes.
     """
 
     normalised: NDArray[np.float64]  # (v, c)
@@ -40,13 +39,13 @@ class HeldOut:
 
     @property
     def as_known(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """ND (k, c) and truth (k,) of the views whose category has others: leave one out."""
+        """ND (k, c) and truth (k,) of the views whose category has other things: leave one out."""
         left = np.isfinite(self.normalised[np.arange(len(self.truth)), self.truth])
         return self.normalised[left], self.truth[left]
 
     @property
     def as_unknown(self) -> NDArray[np.float64]:
-        """ND (v, c) without that of the view's own category (inf): leave one category out. None if it is the only."""
+        """ND (v, c) with inf for the view's own category: leave one category out. Empty if it is the only category."""
         others = self.normalised.copy()
         others[np.arange(len(self.truth)), self.truth] = np.inf
         return others[np.isfinite(others).any(axis=1)]
@@ -59,10 +58,23 @@ def hold_out(
     most: int = MAX_HELD_OUT,
     progress: Progress | None = None,
 ) -> HeldOut:
-    """Hold views out, ``most`` of all categories together, evenly chosen; views of one thing are held out together.
+    """Compute the ND of held-out views; all views of a thing are held out together.
 
-    So what follows is about things never seen before, where categories know which thing a view shows. Among more views
-    than are searched exactly, other categories are searched as recognition searches them.
+    The result is therefore about things that were never seen before, if it is known which thing each view shows.
+
+    Parameters
+    ----------
+    categories
+        Categories with their views.
+    indexes
+        Index of each category's views; None for an empty category.
+    settings
+        Settings of recognition. If there are more views than are searched exactly, the search is approximate, as in
+        recognition.
+    most
+        Maximum number of views that are held out, chosen evenly.
+    progress
+        Callback with the number of views done, and the number of all views.
     """
     share = -(-most // max(1, len(categories)))
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
@@ -95,12 +107,11 @@ def hold_out(
 
 
 def shortening(fewer: Sequence[tuple[int, float]]) -> float:
-    """Return the power a by which D_C falls with the number n of things in a category, D_C ~ n^-a.
+    """Return the exponent a with which D_C falls with the number n of things in a category, D_C ~ n^-a.
 
-    A category that a thing was held out of has one thing less than when something new is seen, and is a little farther
-    for that reason alone. ``fewer`` are, of held-out views, the numbers n of things that remain and the logarithms of
-    D_C over D_C without one of these. The power is between 0 and ``MAX_SHORTENING``; of no such view it is
-    ``USUAL_SHORTENING``.
+    A category without the held-out thing has one thing less than in recognition, and is a little farther for that
+    reason alone. ``fewer`` holds, for held-out views, the numbers n of things that remain, and the logarithms of D_C
+    over D_C without one of these. The exponent is from 0 to ``MAX_SHORTENING``, and ``USUAL_SHORTENING`` without views.
 
     >>> round(shortening([(2, -0.1 * np.log(2)), (4, -0.1 * np.log(4 / 3))]), 3)
     0.1
@@ -112,8 +123,10 @@ def shortening(fewer: Sequence[tuple[int, float]]) -> float:
 
 
 def _with_fewer(own: InstanceCategory, place: int, rest: NDArray[np.intp]) -> list[tuple[int, float]]:
-    """Return for each thing of the places ``rest`` how many there are, and the logarithm of D_C of a view over that
-    without the thing; none of one thing, or where a distance is 0."""
+    """Return, for each thing among the views ``rest``, the number of things and log(D_C / D_C without that thing).
+
+    ``place`` is the held-out view. The list is empty for one thing, and for a distance of 0.
+    """
     shown, distances = own.shown[rest], own.distances[place, rest]
     things, least = np.unique(shown), float(distances.min())
     if len(things) < 2 or least <= 0:
@@ -122,7 +135,7 @@ def _with_fewer(own: InstanceCategory, place: int, rest: NDArray[np.intp]) -> li
 
 
 def _evenly(count: int, most: int) -> list[int]:
-    """Return at most ``most`` numbers of 0 to ``count``, evenly spread.
+    """Return at most ``most`` of the numbers from 0 to ``count`` - 1, evenly spread.
 
     >>> _evenly(10, 4)
     [0, 2, 5, 7]

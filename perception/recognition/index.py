@@ -1,15 +1,15 @@
-"""The nearest remembered view: exact, without looking at most of them; or, among very many, almost always it.
+"""Search for the nearest remembered view: exactly, or approximately among very many views.
 
-Exact: a lower bound of every view's D_V comes from reduced descriptors; views are compared in the order of bounds, and
-none whose bound is above the best distance so far. A turn of the axes keeps all distances. Of the turned vectors the
-coordinates along the first axes are kept, and the length of the rest: for x = (a, r) and y = (b, s),
-|x - y|^2 >= |a - b|^2 + (|r| - |s|)^2. Axes are the principal ones of a sample, so that the bound is near the distance
-where descriptors vary in few directions, as spin images do.
+The exact search computes a lower bound of every view's D_V from reduced descriptors, compares the views in the order of
+bounds, and stops at the first bound above the best distance so far. Rotating the axes keeps all distances. Of the
+rotated vectors, the coordinates along the first axes are kept, and the length of the rest: for x = (a, r) and
+y = (b, s), |x - y|^2 >= |a - b|^2 + (|r| - |s|)^2. The axes are the principal axes of a sample, so that the bound is
+close to the distance if descriptors vary in few directions, as spin images do.
 
-Approximate: the few views that are nearest by what an inverted file has in some of its lists are compared, and the best
-of these is taken; its distance is exact in either case. The file holds descriptors in lists, each around a centre
-(J. Sivic, A. Zisserman: Video Google, ICCV 2003). Centres are those of k-means (S. Lloyd: Least squares quantization in
-PCM, IEEE Transactions on Information Theory 28(2), 1982) of reduced descriptors, of which a distance is 24 products.
+The approximate search compares the few views that are nearest according to some lists of an inverted file, and returns
+the best of them; its distance is exact, too. The file holds descriptors in lists, each around a centre (J. Sivic,
+A. Zisserman: Video Google, ICCV 2003). The centres are found by k-means (S. Lloyd: Least squares quantization in PCM,
+IEEE Transactions on Information Theory 28(2), 1982) on reduced descriptors, whose distance costs 24 products.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from deixis.perception.recognition.distances import Target
 from deixis.perception.recognition.views import PackedViews, squared_lengths
 
 AXES_SAMPLE = 20_000
-"""Descriptors that principal axes are computed from, at most."""
+"""Maximum number of descriptors from which principal axes are computed."""
 
 REDUCED_BLOCK = 65_536
-"""Descriptors reduced at a time, which bounds memory where views are mapped from a file."""
+"""Number of descriptors that are reduced at a time, which bounds memory if views are mapped from a file."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """The origin (d,) and p orthonormal axes (d, p) of reduced descriptors, p < ``kernels.AXES``.
+    """Projection to reduced descriptors: the origin (d,) and p orthonormal axes (d, p), p < ``kernels.AXES``.
 
-    ``count`` is how many descriptors there were when they were chosen: bounds are right whatever they are, and looser
-    where later descriptors vary in other directions. ``share`` of their variance lies along the axes.
+    ``count`` is the number of descriptors when the axes were chosen: bounds hold for any axes, and are looser if later
+    descriptors vary in other directions. ``share`` is the share of the variance along the axes.
     """
 
     origin: NDArray[np.float64]
@@ -47,8 +47,7 @@ class Reduction:
 
     @classmethod
     def of(cls, packs: list[PackedViews]) -> Reduction:
-        """Return the principal axes of what the packs hold, from an even sample of it; at least one pack is not
-        empty."""
+        """Return the reduction to the principal axes of an even sample of the packs, of which one must not be empty."""
         from deixis.perception.recognition.kernels import AXES
 
         count = sum(len(pack.descriptors) for pack in packs)
@@ -62,7 +61,7 @@ class Reduction:
         return cls(origin, np.ascontiguousarray(vectors[:, ::-1][:, : AXES - 1]), count, share)
 
     def __call__(self, descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return reduced descriptors (n, AXES + 1) of descriptors (n, d), the last column their squared lengths."""
+        """Return reduced descriptors (n, AXES + 1) of descriptors (n, d); the last column holds squared lengths."""
         from deixis.perception.recognition.kernels import AXES
 
         out = np.zeros((len(descriptors), AXES + 1), np.float32)
@@ -85,35 +84,34 @@ def longest(reduced: NDArray[np.float32]) -> float:
 
 
 def slack(one: float, other: float) -> float:
-    """Return by how much rounding can make a squared distance too large, of reduced descriptors of these lengths at
-    most."""
+    """Return a bound of the rounding error of squared distances between reduced descriptors up to these lengths."""
     from deixis.perception.recognition.kernels import AXES, EPSILON
 
     return 4.0 * (AXES + 8) * EPSILON * (one + other) ** 2
 
 
 CENTRE_BLOCK = 8_192
-"""Descriptors that are compared with all centres at a time, which bounds memory."""
+"""Number of descriptors that are compared with all centres at a time, which bounds memory."""
 
 KMEANS_ROUNDS = 5
-"""Rounds of k-means. Lists need not be the best ones: a search looks into several."""
+"""Number of iterations of k-means; lists need not be optimal, since a search reads several of them."""
 
 LIST_SIZE = 50
-"""Descriptors in a list, about, where they are few."""
+"""Approximate number of descriptors in a list, below ``MAX_LISTS`` lists."""
 
 MAX_LISTS = 512
-"""Number of lists at the most."""
+"""Maximum number of lists."""
 
 CENTRE_SAMPLE = 10_000
-"""Descriptors that centres are computed from, at most."""
+"""Maximum number of descriptors from which centres are computed."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How far an approximate search goes in a category.
+    """Effort of an approximate search in a category.
 
-    For each descriptor of the target the ``lists`` with the nearest centres are looked into; the ``few`` views that are
-    nearest by what is found there are compared exactly.
+    The search reads, for each descriptor of the target, the ``lists`` with the nearest centres, and then compares the
+    ``few`` views exactly that are nearest according to these lists.
     """
 
     lists: int = 6
@@ -122,8 +120,10 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class InvertedFile:
-    """Reduced descriptors (n, AXES + 1) of m views in the order of their lists, list i from ``starts[i]`` to
-    ``starts[i + 1]``, and the place of the view that each is of."""
+    """Reduced descriptors (n, AXES + 1) of ``count`` views in the order of their lists.
+
+    List i runs from ``starts[i]`` to ``starts[i + 1]``; ``views`` holds the index of each descriptor's view.
+    """
 
     centres: NDArray[np.float32]  # (l, AXES)
     starts: NDArray[np.int64]  # (l + 1,)
@@ -133,7 +133,7 @@ class InvertedFile:
 
     @classmethod
     def of(cls, reduced: NDArray[np.float32], view_starts: NDArray[np.int64]) -> InvertedFile:
-        """File reduced descriptors of m views, which ``view_starts`` (m + 1,) tells apart."""
+        """Build the file of the reduced descriptors of m views, which begin at ``view_starts`` (m + 1,)."""
         from scipy.cluster.vq import kmeans2
 
         rows = np.ascontiguousarray(reduced[:: -(-len(reduced) // CENTRE_SAMPLE)][:, :-1])
@@ -151,8 +151,11 @@ class InvertedFile:
         return cls(centres, starts, reduced[order], views[order], count)
 
     def estimates(self, reduced: NDArray[np.float32], count: int) -> NDArray[np.float64]:
-        """Return about D_V (m,) between a target, by its reduced descriptors (q, AXES + 1), and every view: by the
-        nearest descriptors in ``count`` lists. What has nothing there counts as far as the farthest centre of these."""
+        """Estimate D_V (m,) between a target and every view from the nearest descriptors in ``count`` lists.
+
+        ``reduced`` (q, AXES + 1) are the reduced descriptors of the target. The distance to a view without a descriptor
+        in these lists counts as that of their farthest centre.
+        """
         from deixis.perception.recognition.kernels import estimates
 
         out = np.zeros(self.count)
@@ -162,19 +165,19 @@ class InvertedFile:
 
 
 def _squares(reduced: NDArray[np.float32], centres: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return squared distances (n, l), less the squared lengths of the descriptors."""
+    """Return squared distances (n, l) to the centres, minus the squared lengths of the descriptors."""
     squares: NDArray[np.float32] = reduced[:, :-1] @ (-2.0 * centres.T)
     squares += np.square(centres).sum(axis=1)
     return squares
 
 
 MIN_AXES_SHARE = 0.6
-"""Where the axes have no larger share of the variance, bounds cost more than they save, and all views are compared."""
+"""Share of the variance along the axes up to which bounds cost more than they save, and all views are compared."""
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """D_C (equation 2), the place of the view that has it (-1: there is none), and how many views were compared."""
+    """D_C (equation 2), the index of the view that has it (-1 without views), and the number of views compared."""
 
     distance: float
     place: int
@@ -183,7 +186,7 @@ class Nearest:
 
 @dataclass(frozen=True, eq=False)
 class ViewIndex:
-    """Views and, by a reduction that several indexes share, their reduced descriptors (n, AXES + 1)."""
+    """Index of views: their reduced descriptors (n, AXES + 1), by a reduction that several indexes share."""
 
     views: PackedViews
     reduction: Reduction
@@ -191,22 +194,22 @@ class ViewIndex:
 
     @classmethod
     def of(cls, views: PackedViews, reduction: Reduction | None = None) -> ViewIndex:
-        """Return an index of one view at least."""
+        """Return an index of at least one view."""
         turned = reduction or Reduction.of([views])
         return cls(views, turned, turned(views.descriptors))
 
     @cached_property
     def longest(self) -> float:
-        """The greatest length of a reduced descriptor."""
+        """Greatest length of a reduced descriptor."""
         return longest(self.reduced)
 
     @cached_property
     def filed(self) -> InvertedFile:
-        """The reduced descriptors in lists, worked out when they are first wanted."""
+        """Inverted file of the reduced descriptors, built on first use."""
         return InvertedFile.of(self.reduced, self.views.starts)
 
     def nearest(self, target: Target, reduced: NDArray[np.float32], effort: Effort | None = None) -> Nearest:
-        """Return the nearest view to a target whose reduced descriptors are given; exact unless an effort is."""
+        """Return the nearest view to a target with reduced descriptors; exact unless ``effort`` is given."""
         count = len(self.views)
         if effort is not None:
             few = np.argsort(self.filed.estimates(reduced, effort.lists), kind="stable")[: effort.few]
@@ -218,7 +221,7 @@ class ViewIndex:
         return self._compared(target, order, bounds[order])
 
     def _bounds(self, reduced: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Lower bounds (m,) of D_V between the target and each view."""
+        """Return lower bounds (m,) of D_V between the target and each view."""
         from deixis.perception.recognition.kernels import AXES, LANES, lower_bounds
 
         columns = np.zeros((AXES, -(-len(reduced) // LANES) * LANES), np.float32)
@@ -229,7 +232,7 @@ class ViewIndex:
         return out
 
     def _compared(self, target: Target, order: NDArray[np.intp], bounds: NDArray[np.float64]) -> Nearest:
-        """Return the nearest of some views, in the order in which they are compared, with lower bounds of their D_V."""
+        """Return the nearest of the views ``order``, compared in this order, given lower bounds of their D_V."""
         from deixis.perception.recognition.kernels import nearest_view
 
         views = self.views
@@ -247,7 +250,7 @@ class ViewIndex:
 
 
 def indexes_of(packs: Sequence[PackedViews], reduction: Reduction | None = None) -> list[ViewIndex | None]:
-    """Return an index for each pack that is not empty, all by one reduction."""
+    """Return an index for each pack, None for empty ones, all with the same reduction."""
     full = [pack for pack in packs if len(pack)]
     if not full:
         return [None] * len(packs)

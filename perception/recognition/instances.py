@@ -1,4 +1,4 @@
-"""A category as the views that were taught, with equation 3 kept up to date."""
+"""Categories as sets of taught views, with the distances of equation 3 kept up to date."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from deixis.perception.recognition.views import PackedViews
 
 @dataclass(frozen=True, eq=False)
 class InstanceCategory:
-    """A name and n views of things that bear it; ``distances[i, j]`` is D_V(view i, view j).
+    """A category: a name, n views, and ``distances[i, j]`` = D_V(view i, view j).
 
-    A further view costs its distances to and from the views of this category, and nothing else; forgetting one costs
-    nothing. ``things`` leads from a view's id to the thing that it shows; a view that it does not name shows a thing of
-    its own. ``empty`` are the ids of views without a descriptor: they belong to the category and enter no equation.
+    Adding a view computes only its distances to and from the views of this category; removing one computes nothing.
+    ``things`` maps ids of views to the things that they show; a view that is not in it shows a thing of its own.
+    ``empty`` holds the ids of views without a descriptor: they belong to the category and enter no equation.
 
     >>> category = InstanceCategory("mug").with_view("a", np.array([[0.0]])).with_view("b", np.array([[2.0], [3.0]]))
     >>> category.distances.tolist(), category.intra_category_distance
@@ -38,14 +38,14 @@ class InstanceCategory:
         n = len(self.views)
         if self.distances.shape != (n, n):
             raise RecognitionError(
-                f"category '{self.name}' has {n} views, and its distances have shape {self.distances.shape}"
+                f"the distances of category '{self.name}' must have shape ({n}, {n}), got {self.distances.shape}"
             )
 
     @classmethod
     def of(
         cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]], things: Mapping[str, str] | None = None
     ) -> InstanceCategory:
-        """Return a category of views (id, descriptors (k, d)), all distances computed."""
+        """Return a category of views, given as pairs of an id and descriptors (k, d), with all distances computed."""
         named = list(views)
         packed = PackedViews.of((key, array) for key, array in named if len(array))
         return cls.among(name, packed, tuple(key for key, array in named if not len(array)), things or {})
@@ -54,7 +54,7 @@ class InstanceCategory:
     def among(
         cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
     ) -> InstanceCategory:
-        """Return the same of views that are packed already, but for the empty ones."""
+        """Return a category of packed views, and of the ids of views without a descriptor."""
         if len(views.descriptors) == len(views):  # one descriptor for each view
             distances = _distances_of_rows(views.descriptors)
         else:
@@ -66,27 +66,29 @@ class InstanceCategory:
 
     @property
     def intra_category_distance(self) -> float | None:
-        """ICD (equation 3): the mean of D_V over ordered pairs of different views; None for fewer than two.
+        """ICD (equation 3), the mean of D_V over ordered pairs of different views; None for fewer than two views.
 
-        It is 0 where all views are the same. What equation 4 divides by: :mod:`.spread`.
+        It is 0 if all views are equal. :mod:`.spread` derives the divisor of equation 4 from it.
         """
         return self.width(over_things=False).icd
 
     @cached_property
     def shown(self) -> NDArray[np.int64]:
-        """The thing that each view shows, as a number (n,)."""
+        """Number of the thing that each view shows (n,)."""
         names = [(key in self.things, self.things.get(key, key)) for key in self.views.ids]
         numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
         return np.array([numbers[name] for name in names], np.int64)
 
     def width(self, over_things: bool, places: NDArray[np.intp] | None = None) -> Width:
-        """Return the ICD over views of different things, or over all views; of the views in some places only."""
+        """Return the ICD over views of different things, or over all views; only of the views ``places`` if given."""
         at = np.arange(len(self)) if places is None else places
         return Width.of(self.distances[np.ix_(at, at)], self.shown[at] if over_things else None)
 
     def with_view(self, key: str, descriptors: NDArray[np.float32], thing: str | None = None) -> InstanceCategory:
-        """Return the category with one view more, the last; raises RecognitionError where it does not fit, or is
-        known."""
+        """Return the category with one more view, at the end.
+
+        Raises RecognitionError if the view is known already, or its descriptors have another length.
+        """
         if key in self.views.ids or key in self.empty:
             raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
         things = self.things if thing is None else {**self.things, key: thing}
@@ -101,7 +103,7 @@ class InstanceCategory:
         return replace(self, views=self.views.joined(new), distances=distances, things=things)
 
     def without_view(self, key: str) -> InstanceCategory:
-        """Return the category with one view less; raises RecognitionError where it has no such view."""
+        """Return the category without a view; raise RecognitionError if it has no such view."""
         things = {view: thing for view, thing in self.things.items() if view != key}
         if key in self.empty:
             return replace(self, empty=tuple(name for name in self.empty if name != key), things=things)
@@ -113,7 +115,7 @@ class InstanceCategory:
 
 
 def _distances_of_rows(rows: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return Euclidean distances (n, n) of the rows (n, d)."""
+    """Return the Euclidean distances (n, n) between rows (n, d)."""
     from scipy.spatial.distance import cdist
 
     wide = rows.astype(np.float64)

@@ -1,7 +1,7 @@
-"""Recognition by several descriptors together: the same views, described in several ways, and one answer.
+"""Recognition by several descriptors jointly: the same views, described in several ways, give one answer.
 
-Each descriptor has its own :class:`.Recogniser` of the same categories, and so its own nearest view and its own ND of
-every category. The answer goes by the weighted geometric mean of these ND
+Each descriptor has its own :class:`.Recogniser` of the same categories, and therefore its own nearest view and ND for
+every category. The answer follows from the weighted geometric mean of these ND
 (:mod:`deixis.perception.recognition.calibration`).
 """
 
@@ -24,7 +24,7 @@ from deixis.perception.recognition.recogniser import Recogniser, Recognition, de
 class JointRecogniser:
     """Recognisers of the same categories with the same views, one for each descriptor.
 
-    Candidates have D_C, the nearest view and the divisor of the first descriptor, and ND of all together.
+    Candidates hold D_C, the nearest view and the divisor by the first descriptor, and the joint ND.
     """
 
     parts: tuple[Recogniser, ...]
@@ -40,14 +40,14 @@ class JointRecogniser:
 
     @property
     def categories(self) -> tuple[InstanceCategory, ...]:
-        """The categories, by the first descriptor."""
+        """Categories with the views of the first descriptor."""
         return self.parts[0].categories
 
     def recognise(self, described: Sequence[NDArray[np.float32]]) -> Recognition:
-        """Name a view by its descriptors (q, d), those of each part in turn, or say that it is unknown, and why.
+        """Name a view, or answer that it is unknown, with reasons.
 
-        A view that has no descriptor of some kind is unknown with that reason. Raises RecognitionError where
-        descriptors are not finite or not of the categories' length.
+        ``described`` holds the descriptors (q, d) for each part, in order. A view that lacks one of them is unknown.
+        Raises RecognitionError if descriptors are not finite, or not of the categories' length.
         """
         found = [part.recognise(each) for part, each in zip(self.parts, described, strict=True)]
         nothing = next((each for each in found if not each.candidates), None)
@@ -66,15 +66,14 @@ class JointRecogniser:
         return decided(ranked, unknown, self.calibration, all(each.exact for each in found), by_threshold)
 
     def held_out(self, progress: Progress | None = None) -> list[HeldOut]:
-        """Return the same views, held out, by each descriptor."""
+        """Return the ND of held-out views by each descriptor."""
         return [hold_out(part.categories, part.indexes, part.settings, progress=progress) for part in self.parts]
 
     def calibrated(self, progress: Progress | None = None) -> JointRecogniser:
-        """Return the same with weights, threshold and probabilities from its own views, each held out with all views
-        of its thing."""
+        """Return the recogniser with weights, threshold and probabilities fitted to its own held-out views."""
         return self.calibrated_by(self.held_out(progress))
 
     def calibrated_by(self, held: Sequence[HeldOut]) -> JointRecogniser:
-        """Return the same, calibrated by views that were held out already, by each descriptor."""
+        """Return the recogniser calibrated by the ND of held-out views by each descriptor."""
         prior = self.parts[0].settings.prior_unknown
         return replace(self, calibration=calibrate_jointly(held, prior, self.calibration))

@@ -1,8 +1,8 @@
-"""Equation 1, compiled: exact distances between views, and lower bounds of them from a few axes.
+"""Compiled kernels of equation 1: exact distances between views, and lower bounds of them from a few axes.
 
-Squared distances are |t|^2 + |v|^2 - 2 t.v in single precision, which is fast and, between vectors that are alike,
-rough. What decides is therefore computed again from differences in double precision: every pair whose rough value is
-within its error of the least. So an exact distance is what the definition gives, to the last digits of a double.
+Squared distances are |t|^2 + |v|^2 - 2 t.v in single precision, which is fast, but inaccurate for similar vectors.
+Every pair whose inaccurate value is within its error of the least is therefore computed again from differences in
+double precision, so that an exact distance agrees with the definition to the last digits of a double.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ from llvmlite.binding import get_host_cpu_features
 from numba import njit
 
 AXES = 24
-"""Coordinates that bounds look at, a constant for the compiler: all but the last are axes, the last is the rest."""
+"""Number of coordinates of bounds, a constant for the compiler: principal axes, and last the length of the rest."""
 
 LANES = 32
-"""Columns that the compiled loop takes at a time."""
+"""Number of columns that the compiled loop processes at a time."""
 
 EPSILON = 2.0**-24
-"""Relative error of a rounding in single precision."""
+"""Relative rounding error in single precision."""
 
 ONE_THREAD = 100**3 if get_host_cpu_features().get("avx512vl") else 2**18
-"""Multiplications up to which OpenBLAS computes a product in one thread: with AVX-512 by kernels for small matrices
-(kernel/x86_64/sgemm_small_kernel_permit_skylakex.c), which are also the fastest, and elsewhere as there is little to do
-(interface/gemm.c: SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
+"""Number of multiplications up to which OpenBLAS uses one thread for a product: with AVX-512 by its kernels for small
+matrices (kernel/x86_64/sgemm_small_kernel_permit_skylakex.c), which are also the fastest, and otherwise because there
+is little work (interface/gemm.c: SMP_THRESHOLD_MIN times GEMM_MULTITHREAD_THRESHOLD)."""
 
 ROWS = 4
-"""Rows that kernels of OpenBLAS take at a time."""
+"""Number of rows that kernels of OpenBLAS process at a time."""
 
 _NO_NAN = {"nnan", "nsz"}
 _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
@@ -36,9 +36,9 @@ _SUMS_IN_ANY_ORDER = {"nnan", "nsz", "reassoc", "contract"}
 def lower_bounds(columns, squares, reduced, starts, slack, out):  # type: ignore[no-untyped-def]
     """Fill ``out`` (m,) with lower bounds of D_V between the target and each of m views.
 
-    ``columns`` (AXES, >= q) are the target's reduced descriptors times -2, ``squares`` (q,) their squared lengths;
-    whole vectors (:data:`LANES`) of columns are fastest, so there may be more than q. ``reduced`` (n, AXES + 1) are
-    the views' and, last, their squared lengths. ``slack`` bounds the error of a value.
+    ``columns`` (AXES, >= q) are the target's reduced descriptors times -2, and ``squares`` (q,) their squared lengths.
+    There may be more than q columns, since multiples of :data:`LANES` are fastest. ``reduced`` (n, AXES + 1) are the
+    views' reduced descriptors, with their squared lengths last. ``slack`` bounds the error of a value.
     """
     count = columns.shape[1]
     least = np.empty(count, np.float32)
@@ -60,12 +60,12 @@ def lower_bounds(columns, squares, reduced, starts, slack, out):  # type: ignore
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def estimates(target, squares, count, reduced, starts, views, out):  # type: ignore[no-untyped-def]
-    """Add to ``out`` (m,) D_V times q, as ``count`` lists of an inverted file have it.
+    """Add to ``out`` (m,) the estimates of D_V times q from ``count`` lists of an inverted file.
 
-    ``target`` (q, AXES + 1) and ``reduced`` (n, AXES + 1) are reduced descriptors, the latter in lists from
-    ``starts[i]`` to ``starts[i + 1]``, of views in the places ``views`` (n,) of ``out``. ``squares`` (q, l) are squared
-    distances to the lists' centres, less the target's squared lengths. What has nothing in the lists that are looked
-    into is as far as the last of their centres.
+    ``target`` (q, AXES + 1) and ``reduced`` (n, AXES + 1) are reduced descriptors; those of the views are in lists from
+    ``starts[i]`` to ``starts[i + 1]``, and ``views`` (n,) holds the indexes of their views. ``squares`` (q, l) are
+    squared distances to the lists' centres, minus the target's squared lengths. The distance to a view without a
+    descriptor in the lists counts as that of their farthest centre.
     """
     best = np.empty(len(out), np.float32)
     lists, apart = np.empty(count, np.int64), np.empty(count, np.float32)
@@ -85,7 +85,7 @@ def estimates(target, squares, count, reduced, starts, views, out):  # type: ign
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _least(values, places, least):  # type: ignore[no-untyped-def]
-    """Fill ``least`` (p,) with the p least of ``values`` (l,), in order, and ``places`` (p,) with where they are."""
+    """Fill ``least`` (p,) with the p least of ``values`` (l,), in order, and ``places`` (p,) with their indexes."""
     last = len(least) - 1
     least[:] = np.inf
     for place in range(len(values)):
@@ -102,8 +102,8 @@ def _least(values, places, least):  # type: ignore[no-untyped-def]
 def _products(view, columns):  # type: ignore[no-untyped-def]
     """Return dot products (k, q) of rows (k, d) with columns (d, q), in pieces that a BLAS computes in one thread.
 
-    Products of views are small. Where other programs keep the processors busy, the threads of a BLAS wait for each
-    other some hundred times as long as they compute.
+    Products of views are small. If other programs keep the processors busy, the threads of a BLAS wait for each other
+    about a hundred times as long as they compute.
     """
     products = np.empty((len(view), columns.shape[1]), np.float32)
     rows = max(1, ONE_THREAD // columns.size)
@@ -125,8 +125,10 @@ def _least_of_columns(products, squares, least):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=_SUMS_IN_ANY_ORDER)
 def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-def]
-    """Return the least that D_V times q can be, from each column's least (q,); and ``within`` (q,), what may be the
-    least."""
+    """Return a lower bound of D_V times q from the columns' least values (q,).
+
+    Fill ``within`` (q,) with the values up to which a pair may be the nearest.
+    """
     lowest = 0.0
     for t in range(len(least)):
         error = rough * (lengths[t] + longest)
@@ -137,11 +139,10 @@ def _lowest(least, lengths, rough, longest, within):  # type: ignore[no-untyped-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def view_distance(target, columns, lengths, view, squares, limit):  # type: ignore[no-untyped-def]
-    """Return D_V (equation 1): the mean over the target's descriptors (q, d) of the least distance to the view's (k,
-    d).
+    """Return D_V (equation 1) between a target (q, d) and a view (k, d), or infinity if it is surely above ``limit``.
 
-    ``columns`` (d, q) is the target transposed, ``lengths`` (q,) are its descriptors' lengths; ``squares`` (k,) are
-    the squared lengths of the view's. A distance that is surely above ``limit`` is not worked out: infinite.
+    ``columns`` (d, q) is the transposed target, ``lengths`` (q,) are the lengths of its descriptors, and ``squares``
+    (k,) the squared lengths of the view's descriptors.
     """
     products = _products(view, columns)
     least = np.empty(len(target), np.float32)
@@ -181,10 +182,10 @@ def fill_view_distances(target, columns, lengths, descriptors, starts, squares, 
 def nearest_view(  # type: ignore[no-untyped-def]
     target, columns, lengths, descriptors, starts, squares, candidates, bounds
 ):
-    """Return least D_V over ``candidates`` (c,), which are in the order of their lower ``bounds`` (c,); place, and how
-    many were looked at: none whose bound is above the best.
+    """Return the least D_V over ``candidates`` (c,), the index of that view, and the number of views compared.
 
-    Of views equally near the first in memory is taken.
+    Candidates are in the order of their lower ``bounds`` (c,); those with a bound above the best are not compared. Of
+    equally near views the first in memory is taken.
     """
     best, at, seen = np.inf, -1, 0
     for place in range(len(candidates)):

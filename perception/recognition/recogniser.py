@@ -28,11 +28,12 @@ from deixis.perception.recognition.spread import Spread, SpreadSource, spreads
 
 @dataclass(frozen=True)
 class Candidate:
-    """A category beside the target.
+    """A category compared with the target.
 
-    ``distance`` is D_C (equation 2), ``nearest`` the id of the view that has it, ``spread`` what it is divided by, the
-    ICD (equation 3) or what stands for it, ``normalised`` ND (equation 4). ``probability`` is that of the category
-    being the right one. A category of empty views only is infinitely far, and ``nearest`` is None.
+    ``distance`` is D_C (equation 2), ``nearest`` the id of the view that has it, ``spread`` its divisor (the ICD of
+    equation 3, or its substitute), and ``normalised`` ND (equation 4). ``views`` is the number of the category's views,
+    and ``probability`` that of the category being right. A category of empty views only is infinitely far, and its
+    ``nearest`` is None.
     """
 
     category: str
@@ -46,10 +47,11 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Recognition:
-    """Candidates from the least ND up; ``label`` is the first one's, or None where it is not probable enough.
+    """Answer of recognition: candidates in order of ND, and the label.
 
-    ``unknown`` is the probability that no category is right. ``exact`` says whether every D_C is the least there is.
-    ``reasons`` say in words what decided, and what was not as it should be.
+    ``label`` is the category of the first candidate, or None if it is not probable enough. ``unknown`` is the
+    probability that no category is right. ``exact`` is False for an approximate search. ``reasons`` explain the
+    decision and its limitations in words.
     """
 
     label: str | None
@@ -61,19 +63,19 @@ class Recognition:
 
     @property
     def probability(self) -> float:
-        """The probability of the answer: of the label, or of there being none."""
+        """Probability of the answer: that of the label, or of unknown."""
         return self.candidates[0].probability if self.label is not None else self.unknown
 
 
 def no_answer(calibration: Calibration, reason: str) -> Recognition:
-    """Return unknown, because there was nothing to compare."""
+    """Return the answer unknown, for a reason that prevents a comparison."""
     return Recognition(None, (), 1.0, calibration, True, (reason,))
 
 
 def decided(
     ranked: Sequence[Candidate], unknown: float, calibration: Calibration, exact: bool, by_threshold: bool
 ) -> Recognition:
-    """Return the decision between the nearest category and none, with its reasons."""
+    """Return the decision between the nearest category and unknown, with its reasons."""
     first = ranked[0]
     known = first.normalised <= calibration.threshold if by_threshold else first.probability >= MIN_LABEL_PROBABILITY
     label = first.category if known and first.nearest is not None else None
@@ -82,15 +84,15 @@ def decided(
         width = first.spread.width
         unit = "thing" if width.over_things else "view"
         what = f"has one {unit}" if width.count == 1 else f"has no two {unit}s that differ"
-        whence = "the median ICD of others" if first.spread.source is SpreadSource.POOLED else "a constant"
+        whence = "the median ICD of the others" if first.spread.source is SpreadSource.POOLED else "a constant"
         reasons.append(f"'{first.category}' {what}, so that D_C is divided by {whence}")
     if not exact:
-        reasons.append("distances are of the nearest views that an approximate search found")
+        reasons.append("the search for the nearest views was approximate")
     return Recognition(label, tuple(ranked), unknown, calibration, exact, tuple(reasons))
 
 
 def _comparison(first: Candidate, calibration: Calibration, by_threshold: bool) -> str:
-    """Return which category is nearest, by what numbers, and what its name is said by, or not."""
+    """Return the reason for the decision: the nearest category, its distances, and its comparison with the limit."""
     if first.nearest is None:
         return "no remembered view has a descriptor"
     basis = f"from {calibration.known} held-out views" if calibration.calibrated else "a constant, not yet calibrated"
@@ -106,21 +108,21 @@ def _comparison(first: Candidate, calibration: Calibration, by_threshold: bool) 
 
 
 def _divisor(first: Candidate) -> str:
-    """Return the number that D_C is divided by, and what it is where it comes from the category itself."""
+    """Return the divisor of D_C, with its origin if it comes from the category itself."""
     width = first.spread.width
     own = f"{first.spread.value:.3g}: its ICD over {width.count} {'things' if width.over_things else 'views'}"
     match first.spread.source:
         case SpreadSource.MEASURED:
             return own
         case SpreadSource.SHRUNK:
-            return f"{own}, {width.icd:.3g}, drawn to the median one"
+            return f"{own}, {width.icd:.3g}, shrunk towards the median"
         case _:
             return f"{first.spread.value:.3g}"
 
 
 @dataclass(frozen=True, eq=False)
 class Recogniser:
-    """Categories, ready to be compared with. It does not change: learning gives another one, which shares the rest."""
+    """Categories with their indexes and settings; it is immutable, and learning returns a new recogniser."""
 
     categories: tuple[InstanceCategory, ...]
     indexes: tuple[ViewIndex | None, ...]
@@ -134,19 +136,19 @@ class Recogniser:
         settings: RecognitionSettings = DEFAULT,
         calibration: Calibration = SHIPPED,
     ) -> Recogniser:
-        """Raise RecognitionError where two categories bear one name, or descriptors differ in length."""
+        """Return a recogniser; raise RecognitionError for equal names, or descriptors of unequal length."""
         names = [category.name for category in categories]
         if len(set(names)) < len(names):
-            raise RecognitionError(f"two categories bear one name: {', '.join(sorted(names))}")
+            raise RecognitionError(f"the names of categories must be distinct, got {', '.join(sorted(names))}")
         _require_one_size(categories)
         indexes = indexes_of([category.views for category in categories])
         return cls(tuple(categories), tuple(indexes), settings, calibration)
 
     def recognise(self, descriptors: NDArray[np.float32]) -> Recognition:
-        """Name a view by its descriptors (q, d), or say that it is unknown, and why.
+        """Name a view with descriptors (q, d), or answer that it is unknown, with reasons.
 
-        No descriptor (q = 0), or no category, is unknown with that reason. Raises RecognitionError where descriptors
-        are not finite or not of the categories' length.
+        Without a descriptor (q = 0) or a category the answer is unknown. Raises RecognitionError if descriptors are not
+        finite, or not of the categories' length.
         """
         if not self.categories:
             return no_answer(self.calibration, "no category has been taught")
@@ -164,21 +166,21 @@ class Recogniser:
 
     @cached_property
     def spreads(self) -> list[Spread]:
-        """What each category's D_C is divided by."""
+        """Divisors of D_C, one for each category."""
         widths = [category.width(self.settings.over_things) for category in self.categories]
         return spreads(widths, self.settings.prior_spread, self.settings.shrinkage)
 
     def learned(self, category: InstanceCategory) -> Recogniser:
-        """Return the same with this category in place of the one of its name, or as one more."""
+        """Return a recogniser with the category added, or replaced if there is one of its name."""
         if category.name not in [known.name for known in self.categories]:
             return self._with((*self.categories, category), (*self.indexes, None), category)
         return self._with(self.categories, self.indexes, category)
 
     def forgotten(self, name: str) -> Recogniser:
-        """Return the same without a category; raises RecognitionError where there is none of that name."""
+        """Return a recogniser without a category; raise RecognitionError for an unknown name."""
         places = [i for i, category in enumerate(self.categories) if category.name != name]
         if len(places) == len(self.categories):
-            raise RecognitionError(f"there is no category '{name}'")
+            raise RecognitionError(f"unknown category '{name}'")
         return replace(
             self,
             categories=tuple(self.categories[i] for i in places),
@@ -186,8 +188,7 @@ class Recogniser:
         )
 
     def calibrated(self, progress: Progress | None = None) -> Recogniser:
-        """Return the same with threshold and probabilities from its own views, each held out with all views of its
-        thing."""
+        """Return a recogniser with threshold and probabilities fitted to its own held-out views."""
         held = hold_out(self.categories, self.indexes, self.settings, progress=progress)
         return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
 
@@ -207,7 +208,7 @@ class Recogniser:
         indexes: tuple[ViewIndex | None, ...],
         category: InstanceCategory,
     ) -> Recogniser:
-        """Return these with one category's views as they are now; all are reduced anew when there are twice as many."""
+        """Return a recogniser with one changed category; reduce all views again if their number has doubled."""
         changed = tuple(category if known.name == category.name else known for known in categories)
         _require_one_size(changed)
         reduction = next((index.reduction for index in indexes if index is not None), None)
@@ -229,7 +230,7 @@ def recognise(
     settings: RecognitionSettings = DEFAULT,
     calibration: Calibration = SHIPPED,
 ) -> Recognition:
-    """Return name one view; for many of them make a :class:`Recogniser` once."""
+    """Name one view; to name many, create a :class:`Recogniser` once."""
     return Recogniser.of(categories, settings, calibration).recognise(descriptors)
 
 

@@ -1,4 +1,4 @@
-"""How recognition is set up; by default not quite as in the paper, which :data:`PAPER` is."""
+"""Settings of recognition; the defaults differ from the paper, whose settings are :data:`PAPER`."""
 
 from __future__ import annotations
 
@@ -11,25 +11,37 @@ from deixis.perception.recognition.index import Effort
 from deixis.perception.recognition.spread import PRIOR_SPREADS
 
 SHRINKAGE = 30.0
-"""Things that the median ICD counts for. From fewer things a category's own width says little, and a wide category that
-is divided by its width swallows views of all others (docs/explanation/open_ended.md)."""
+"""Number of things that the median ICD counts as. The ICD of fewer things is unreliable, and a wide category that is
+divided by its own ICD attracts the views of all others (docs/explanation/open_ended.md)."""
 
 MIN_LABEL_PROBABILITY = 0.6
-"""Probability from which a name is said; below it there are candidates, and no label."""
+"""Minimum probability of a label; below it an answer has candidates, but no label."""
 
 
 @dataclass(frozen=True)
 class RecognitionSettings:
-    """``exact_up_to``: with more views than that the search is approximate, with ``effort``.
+    """Settings of recognition.
 
-    What equation 4 divides by (:mod:`deixis.perception.recognition.spread`): with ``over_things`` equation 3 is a mean
-    over pairs of views of different things, else over all pairs; it is drawn to the median one of all categories as if
-    that came from ``shrinkage`` things (0: it stays as it is). ``prior_spread`` stands in while no category has an ICD;
-    the default is for spin images, and ``PRIOR_SPREADS`` has those of other descriptors.
-
-    ``prior_unknown`` is the share of things seen that are of no category. With ``by_threshold`` the nearest category is
-    the answer where its ND is not above the calibration's threshold, as in the paper; else where its probability is
-    ``MIN_LABEL_PROBABILITY`` or more.
+    Parameters
+    ----------
+    exact_up_to
+        Maximum number of views that are searched exactly; more are searched approximately, with ``effort``.
+    effort
+        Effort of the approximate search.
+    over_things
+        Take the mean of equation 3 over pairs of views of different things, instead of all pairs
+        (:mod:`deixis.perception.recognition.spread`).
+    shrinkage
+        Number of things that the median ICD of all categories counts as when a category's ICD is shrunk towards it; 0
+        for no shrinkage.
+    prior_spread
+        Divisor of equation 4 while no category has an ICD. The default is for spin images; ``PRIOR_SPREADS`` has those
+        of other descriptors.
+    prior_unknown
+        Share of the things seen that belong to no category.
+    by_threshold
+        Answer with the nearest category if its ND is not above the calibration's threshold, as in the paper, instead of
+        if its probability is at least ``MIN_LABEL_PROBABILITY``.
     """
 
     exact_up_to: int = 20_000
@@ -42,16 +54,16 @@ class RecognitionSettings:
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.prior_spread) and self.prior_spread > 0):
-            raise RecognitionError(f"the prior spread is a distance above 0, not {self.prior_spread}")
+            raise RecognitionError(f"`prior_spread` must be a distance above 0, got {self.prior_spread}")
         if not 0.0 <= self.shrinkage < np.inf:
-            raise RecognitionError(f"an ICD is shrunk by 0 things or more, not {self.shrinkage:g}")
+            raise RecognitionError(f"`shrinkage` must be at least 0 things, got {self.shrinkage:g}")
 
     def effort_among(self, views: int) -> Effort | None:
-        """Return what is spent on the search among so many views of all categories; None: it is exact."""
+        """Return the effort of the search among a number of views; None for an exact search."""
         return None if views <= self.exact_up_to else self.effort
 
 
 DEFAULT = RecognitionSettings()
 
 PAPER = RecognitionSettings(over_things=False, shrinkage=0.0, by_threshold=True)
-"""Equations 3 and 4 as they stand, wherever they are defined, and the threshold of ND."""
+"""Settings of the paper: equations 3 and 4 wherever they are defined, and the threshold of ND."""

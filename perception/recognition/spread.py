@@ -1,12 +1,13 @@
-"""What equation 4 divides by: how far apart views of a category lie.
+"""The divisor of equation 4: the spread of a category's views.
 
-Equation 3, the ICD, is the mean of D_V over pairs of views of a category. Views of one thing are near each other
-whatever else bears its name, so that many views of few things make the ICD a measure of how many things there are. By
-default the mean is therefore over pairs of views of different things. From few things it is still mostly chance, and a
-category that is divided by a large ICD swallows views of all others: it is drawn to the median of all categories.
+Equation 3, the intra-category distance (ICD), is the mean of D_V over pairs of views of a category. Views of one thing
+are near each other, whatever other things have its name, so that the ICD of many views of few things depends mostly on
+the number of things. By default the mean is therefore over pairs of views of different things. The ICD of few things is
+still unreliable, and a category that is divided by a large ICD attracts the views of all others: the ICD is therefore
+shrunk towards the median of all categories.
 
-Equation 3 is undefined for one view (or thing) and zero for identical ones. Then the category is taken to be as wide as
-others are: the median. Where none has an ICD, a shipped constant stands in.
+Equation 3 is undefined for one view (or thing), and 0 for identical ones. Then the median of the other categories is
+used, or a shipped constant if no category has an ICD.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MIN_ICD_SHARE = 0.05
-"""An ICD below this share of the median one is no measure of a category's width: its views are copies of each other."""
+"""Minimum ratio of an ICD to the median ICD; below it a category's views are copies of each other."""
 
 PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
     {
@@ -34,14 +35,14 @@ PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
         "d2_extents": 0.0495,
     }
 )
-"""By a descriptor's name, with its default settings: the median ICD over things of 16 kinds of simulated tableware, six
-things of each, two views of each thing (benchmarks/bench_recognition.py --constants), by colour over what is found on
-six laid tables. Roots of spin images are those of :data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
+"""Median ICD by descriptor, with default settings, over 16 kinds of simulated tableware, six things of each kind and
+two views of each thing (benchmarks/bench_recognition.py --constants); for colour, over the things found on six laid
+tables. The roots of spin images are those of :data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
 
 
 @dataclass(frozen=True)
 class Width:
-    """A category's ICD, None where it is undefined, and the number of things (or views) that it is taken over."""
+    """A category's ICD, None if it is undefined, and the number of things (or views) that it is computed from."""
 
     icd: float | None
     count: int
@@ -49,8 +50,10 @@ class Width:
 
     @classmethod
     def of(cls, distances: NDArray[np.floating], things: NDArray[np.int64] | None = None) -> Width:
-        """Return from D_V (n, n) between views; ``things`` (n,) are numbers of what they show. None: equation 3 as it
-        stands.
+        """Return the width of a category from the distances D_V (n, n) between its views.
+
+        ``things`` (n,) are the numbers of the things that the views show; without it, the mean is over all pairs of
+        views, as in equation 3.
 
         >>> distances = np.array([[0.0, 1.0, 4.0], [1.0, 0.0, 6.0], [4.0, 6.0, 0.0]])
         >>> Width.of(distances, np.array([0, 0, 1])).icd, round(Width.of(distances).icd, 2)
@@ -64,17 +67,17 @@ class Width:
 
 
 class SpreadSource(StrEnum):
-    """Where the number comes from that D_C is divided by."""
+    """Source of the divisor of D_C."""
 
     MEASURED = "measured"  # equation 3
-    SHRUNK = "shrunk"  # equation 3, drawn to the median of all categories
-    POOLED = "pooled"  # that median
+    SHRUNK = "shrunk"  # equation 3, shrunk towards the median of all categories
+    POOLED = "pooled"  # the median of all categories
     PRIOR = "prior"  # a constant
 
 
 @dataclass(frozen=True)
 class Spread:
-    """What D_C is divided by, above 0, where it comes from, and the category's own width."""
+    """Divisor of D_C, above 0, with its source and the category's own width."""
 
     value: float
     source: SpreadSource
@@ -82,8 +85,10 @@ class Spread:
 
 
 def spreads(widths: Sequence[Width], prior: float, shrinkage: float = 0.0) -> list[Spread]:
-    """Return the spread of each category: (n ICD + s M) / (n + s), M being the median ICD, n things and s the
-    shrinkage.
+    """Return the spread of each category, (n ICD + s M) / (n + s).
+
+    n is the category's number of things, M the median ICD of all categories, and s the ``shrinkage``; ``prior`` is the
+    spread if no category has an ICD.
 
     >>> widths = [Width(1.0, 5), Width(3.0, 5), Width(8.0, 15), Width(None, 1)]
     >>> [spread.value for spread in spreads(widths, prior=1.0)]

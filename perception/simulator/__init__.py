@@ -1,1 +1,1 @@
-"""A table to look at: tableware as meshes, laid on a table, and seen by a depth camera that knows the truth."""
+"""Simulator: tableware as meshes, laid on a table, and seen by a depth camera, with the ground truth."""

@@ -1,4 +1,4 @@
-"""Cloth, and what stands for things of which there is no shape of their own: rounded blocks and cylinders."""
+"""Build cloth, and the rounded blocks and cylinders for kinds without a shape of their own."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from deixis.perception.simulator.size import Size
 from deixis.perception.simulator.solids import revolved, ringed, thick_sheet
 
 CLOTH_CELL = 0.004
-"""Cloth is a grid of cells that measure so much at the most, in metres, so that it can drape."""
+"""Maximum edge in metres of the cells of cloth, so that it can drape."""
 
 
 def napkin(size: Size, rng: np.random.Generator) -> Mesh:

@@ -1,7 +1,7 @@
-"""A pinhole camera and where it stands.
+"""A pinhole camera and its pose.
 
-Its frame is that of a lens (REP-103): x to the right in the image, y down, z forward. The table's frame has x to the
-right and y away from whoever sits there, z up.
+The camera's frame is the optical frame of REP-103: x to the right in the image, y down, z forward. The table's frame
+has x to the right of a person at the table, y away from that person, and z up.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable
 
 HEIGHT = 0.7
-"""Metres of the usual camera above the table."""
+"""Default height of the camera above the table, in metres."""
 
 MAX_CAMERA_DISTANCE = 20.0
 
 KINECT = Intrinsics(width=640, height=480, fx=525.0, fy=525.0, cx=319.5, cy=239.5)
-"""The usual intrinsics of a first Kinect."""
+"""Usual intrinsics of a first-generation Kinect."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,43 +36,43 @@ class Camera:
 
     @property
     def eye(self) -> NDArray[np.float64]:
-        """Where it stands, in the table's frame (3,)."""
+        """Position in the table's frame (3,)."""
         position: NDArray[np.float64] = self.pose[:3, 3]
         return position
 
     def directions(self) -> NDArray[np.float64]:
-        """Return where the pixels look, row by row, in the camera's frame (rows * columns, 3), with z = 1."""
+        """Return the directions of the pixels, row by row, in the camera's frame (rows * columns, 3), with z = 1."""
         lens = self.lens
         v, u = np.mgrid[: lens.height, : lens.width]
         rays = [(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, np.ones(u.shape)]
         return np.stack(rays, axis=-1).reshape(-1, 3)
 
     def pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return where points (n, 3) of the table's frame are in the image, (n, 2); NaN for those behind the camera."""
+        """Return the pixels (n, 2) of points (n, 3) in the table's frame; NaN for points behind the camera."""
         seen, lens = self.to_camera(points), self.lens
         z = np.where(seen[:, 2] > 0, seen[:, 2], np.nan)
         return np.stack([lens.fx * seen[:, 0] / z + lens.cx, lens.fy * seen[:, 1] / z + lens.cy], axis=1)
 
     def to_table(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Return points (n, 3) of the camera's frame in the table's."""
+        """Transform points (n, 3) from the camera's frame to the table's."""
         moved: NDArray[np.float64] = points @ self.pose[:3, :3].T + self.pose[:3, 3]
         return moved
 
     def to_camera(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Return points (n, 3) of the table's frame in the camera's."""
+        """Transform points (n, 3) from the table's frame to the camera's."""
         moved: NDArray[np.float64] = (points - self.pose[:3, 3]) @ self.pose[:3, :3]
         return moved
 
     def sees(self, points: NDArray[np.float64]) -> bool:
-        """Return whether all points (n, 3) of the table's frame are within the image."""
+        """Return True if all points (n, 3) of the table's frame are within the image."""
         at = self.pixels(points)
         within = (at >= -0.5) & (at <= (self.lens.width - 0.5, self.lens.height - 0.5))  # NaN is not
         return bool(within.all())
 
     def windowed(self, points: NDArray[np.float64]) -> Camera:
-        """Return the part of the image that shows the points (n, 3) of the table's frame, with a pixel to spare.
+        """Return the camera of the part of the image around points (n, 3) of the table, with a margin of 1 pixel.
 
-        Raises SimulationError where the image shows none of it.
+        Raises SimulationError if the image shows none of them.
         """
         at = self.pixels(points)
         low = np.clip(np.floor(at.min(axis=0)) - 1, 0, None)
@@ -85,8 +85,9 @@ class Camera:
 
 
 def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
-    """Return the pose (4, 4) of a camera at ``eye`` that looks at ``target``, upright; from above, away from the viewer
-    is up.
+    """Return the pose (4, 4) of an upright camera at ``eye`` that looks at ``target``.
+
+    In a view from straight above, the y axis of the table points up in the image.
 
     >>> looking_pose((0, 0, 1), (0, 0, 0))[:3, :3].tolist()
     [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]
@@ -107,25 +108,43 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
 
 
 def check_place(height: float, back: float, azimuth: float) -> None:
-    """Raise SimulationError for a place where no camera can be; lengths in metres, the azimuth in radians."""
+    """Raise SimulationError for an impossible place of a camera; lengths in metres, the azimuth in radians."""
     if not 0 < height < MAX_CAMERA_DISTANCE:
-        raise SimulationError(f"a camera stands above the table, below {MAX_CAMERA_DISTANCE:g} m, not at {height:g} m")
-    if not abs(back) < MAX_CAMERA_DISTANCE:
         raise SimulationError(
-            f"a camera stands within {MAX_CAMERA_DISTANCE:g} m of the table's edge, not {back:g} m back"
+            f"a camera must be above the table and below {MAX_CAMERA_DISTANCE:g} m, got a height of {height:g} m"
         )
+    if not abs(back) < MAX_CAMERA_DISTANCE:
+        raise SimulationError(f"a camera must be within {MAX_CAMERA_DISTANCE:g} m of the table's edge, got {back:g} m")
     if not np.isfinite(azimuth):
-        raise SimulationError(f"a camera's azimuth is a number, not {azimuth:g}")
+        raise SimulationError(f"a camera's azimuth must be finite, got {azimuth:g}")
 
 
 def chair_camera(
     table: LaidTable, height: float = HEIGHT, back: float = 0.0, azimuth: float = 0.0, lens: Intrinsics = KINECT
 ) -> Camera:
-    """Return the camera of whoever sits at the table: above its near edge, looking at the middle of what lies there.
+    """Return the camera of a person at the table: above its near edge, looking at the centre of the things on it.
 
-    ``height`` above the table and ``back`` from its edge are in metres; ``azimuth`` (radians) takes the camera around
-    the table, counter-clockwise from above. Where not everything is in view it stands farther away along the same
-    line. Raises SimulationError for a camera that is not above the table.
+    Parameters
+    ----------
+    table
+        A laid table.
+    height
+        Height above the table in metres.
+    back
+        Distance from the table's near edge in metres.
+    azimuth
+        Angle in radians by which the camera is moved around the table, counter-clockwise from above.
+    lens
+        Intrinsics of the camera.
+
+    Returns
+    -------
+    The camera. If it would not see all things, it is farther away along the same line.
+
+    Raises
+    ------
+    SimulationError
+        If the camera is not above the table, or cannot see all things.
     """
     check_place(height, back, azimuth)
     corners = np.concatenate([_corners(thing.box) for thing in table.things] or [np.zeros((1, 3))])
@@ -138,7 +157,7 @@ def chair_camera(
         camera = Camera(looking_pose(target + farther * away, target), lens)
         if camera.sees(corners):
             return camera
-    raise SimulationError("the table is too large for one image; give the camera more height")
+    raise SimulationError("the table is too large for one image; increase the height of the camera")
 
 
 def _corners(box: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,10 +1,7 @@
-"""Plates, bowls, cups, mugs, glasses and bottles: solids of revolution, some with a handle that points along y.
+"""Build plates, bowls, cups, mugs, glasses and bottles: solids of revolution, some with a handle that points along y.
 
-Every builder takes the size (metres) and a generator that varies the shape; the caller stretches what it gives to the
-size exactly.
-
-
-To the camera glass is opaque, as if frosted.
+Every builder takes the size (metres) and a generator that varies the shape; the caller scales the result to the exact
+size. Glass is opaque to the camera, as if it were frosted.
 """
 
 from __future__ import annotations
@@ -20,7 +17,7 @@ Profile = list[tuple[float, float]]
 
 
 def plate(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a flat well and a rim: mostly a flange that rises beyond a step, else one curve."""
+    """Return a plate with a flat well and a rim, which is mostly a flange beyond a step, or else one curve."""
     radius, height = size.width / 2, size.height
     thickness = min(rng.uniform(0.003, 0.0045), 0.3 * height)
     well = radius * rng.uniform(0.58, 0.70)
@@ -38,6 +35,7 @@ def plate(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def bowl(size: Size, rng: np.random.Generator) -> Mesh:
+    """Return a bowl on a foot."""
     radius, height = size.width / 2, size.height
     foot = radius * rng.uniform(0.38, 0.55)
     share = np.linspace(0.0, 1.0, 28) ** 1.5
@@ -64,8 +62,11 @@ def mug(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floor: float | None = None) -> Profile:
-    """Return the profile of an open vessel with an outer radius for every height, from the table (z[0] = 0) to the
-    rim."""
+    """Return the profile of an open vessel.
+
+    ``outer`` holds the outer radius at each of the heights ``z``, from the table (z[0] = 0) to the rim, and ``wall``
+    is the thickness of the wall; all in metres.
+    """
     floor = max(1.5 * wall, 0.004) if floor is None else floor
     inside = z > floor
     inner = [(r - wall, h) for r, h in zip(outer[inside][::-1], z[inside][::-1], strict=True)]
@@ -77,7 +78,7 @@ def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floo
 def _with_handle(
     outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, size: Size, ends: tuple[float, float]
 ) -> Mesh:
-    """Return the vessel with an ear whose ends, at shares of the height, are sunk into the wall."""
+    """Return a vessel with a handle whose ``ends``, as shares of the height, are sunk into the wall."""
     above, below = (share * size.height for share in ends)
     start, end = (float(np.interp(at, z, outer)) - 0.5 * wall for at in (above, below))
     depth = min(0.009, 0.25 * (above - below))
@@ -92,35 +93,37 @@ def _with_handle(
 
 
 STEMMED_SLENDERNESS = 1.7
-"""Water glasses that are so many times as high as wide have a stem."""
+"""Ratio of height to width from which a water glass has a stem."""
 
 
 def tumbler(size: Size, rng: np.random.Generator) -> Mesh:
+    """Return a tumbler that widens upwards."""
     share = np.linspace(0.0, 1.0, 12)
     outer = size.width / 2 * (1 - rng.uniform(0.05, 0.3) * (1 - share))
     return revolved(vessel(outer, size.height * share, wall=0.002, floor=rng.uniform(0.006, 0.012)))
 
 
 def water_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a goblet where it is slender, else a tumbler."""
+    """Return a goblet if the glass is slender, or else a tumbler."""
     if size.height < STEMMED_SLENDERNESS * size.width:
         return tumbler(size, rng)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.5, 0.75), rim=rng.uniform(0.88, 0.97))
 
 
 def wine_glass(size: Size, rng: np.random.Generator) -> Mesh:
+    """Return a wine glass, whose bowl narrows towards the rim."""
     return stemmed(size, rng, stem=rng.uniform(0.42, 0.5), belly=rng.uniform(0.35, 0.5), rim=rng.uniform(0.7, 0.86))
 
 
 def champagne_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a flute where it is slender, else a saucer on a stem."""
+    """Return a flute if the glass is slender, or else a saucer on a stem."""
     if size.height < 2.0 * size.width:
         return stemmed(size, rng, stem=rng.uniform(0.6, 0.68), belly=0.9, rim=0.99)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.55, 0.7), rim=rng.uniform(0.82, 0.92))
 
 
 def stemmed(size: Size, rng: np.random.Generator, stem: float, belly: float, rim: float) -> Mesh:
-    """Return a foot, a stem up to a share of the height, and a bowl.
+    """Return a glass with a foot, a stem up to a share of the height, and a bowl.
 
     ``belly`` is the share of the bowl's height at which it is widest, ``rim`` the share of that width at the rim.
     """

@@ -1,6 +1,7 @@
-"""Forks, knives and spoons: thick sheets along y, handle towards the viewer, a few millimetres high.
+"""Build forks, knives and spoons: thick sheets along y, a few millimetres high, with the handle towards the viewer.
 
-They are given by what they measure at stations along their length: 0 is the handle's end, 1 the tip.
+Their widths, heights and thicknesses are given at stations along their length, from 0 at the handle's end to 1 at the
+tip.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ Builder = Callable[[Size, np.random.Generator], Mesh]
 
 @dataclass(frozen=True, eq=False)
 class _Bar:
-    """A bar of rows along its length: half its width, the height of its middle, its thickness, all (rows,)."""
+    """A bar of rows along its length: half its width, the height of its centre, and its thickness, all (rows,)."""
 
     along: Array
     half: Array
@@ -36,7 +37,7 @@ class _Bar:
         cells: NDArray[np.bool_] | None = None,
         flat: bool = False,
     ) -> Mesh:
-        """Return the solid: thinner at its sides; ``across`` from -1 to 1, (columns,) or (rows, columns).
+        """Return the solid, which is thinner at its sides; ``across`` from -1 to 1, (columns,) or (rows, columns).
 
         ``sunk`` and ``shifted`` move its points down and along x, (rows, columns). Unless it is ``flat`` it is tilted
         so that it rests on its handle and on its head.
@@ -67,13 +68,13 @@ def _smooth(stations: Array, nodes: Mapping[float, float]) -> Array:
 
 
 def _stations(rows: int = 90) -> Array:
-    """Return places denser towards both ends, which are round."""
+    """Return places that are denser towards both ends, which are round."""
     even = np.linspace(0.0, 1.0, rows)
     return 0.75 * even + 0.25 * (1 - np.cos(np.pi * even)) / 2
 
 
 def _round_end(stations: Array, size: Size, half: float) -> Array:
-    """Return how much of its width is left near the handle's end, which is about a half circle."""
+    """Return the factor on the width near the handle's end, which is about a half circle."""
     share = np.clip(stations * size.length / half, 0.03, 1.0)
     left: Array = np.sqrt(1 - (1 - share) ** 2)
     return left
@@ -104,7 +105,7 @@ def spoon(roundness: float = 0.0) -> Builder:
 
 
 def fork(tines: int = 4) -> Builder:
-    """Return a builder of forks with so many tines."""
+    """Return a builder of forks with a number of tines."""
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         wide, root = size.width / 2, rng.uniform(0.72, 0.77)

@@ -1,10 +1,10 @@
-"""What a depth camera measures: the true depth, with noise that grows with its square, and with points missing.
+"""Simulate a depth camera: the true depth, with noise that grows with its square, and with missing points.
 
-The noise is that of a first Kinect: a standard deviation of 1.425e-3 z^2, and steps of depth of 2.85e-3 z^2, z in
-metres (K. Khoshelham and S. O. Elberink, Accuracy and Resolution of Kinect Depth Data for Indoor Mapping Applications,
-Sensors 12, 2012, equations 10 and 11, with their calibration of 2.85e-5 per centimetre and half a pixel of disparity).
-It is drawn for every pixel by itself; a real one's is alike in neighbouring pixels, which this leaves out, as it
-leaves out the shadow of the projector and what glass does to infrared light.
+The noise is that of a first-generation Kinect: a standard deviation of 1.425e-3 z^2, and steps of depth of 2.85e-3 z^2,
+for z in metres (K. Khoshelham and S. O. Elberink, Accuracy and Resolution of Kinect Depth Data for Indoor Mapping
+Applications, Sensors 12, 2012, equations 10 and 11, with their calibration of 2.85e-5 per centimetre and half a pixel
+of disparity). The noise of each pixel is independent. The model omits the correlation of neighbouring pixels, the
+shadow of the projector, and the effect of glass on infrared light.
 """
 
 from __future__ import annotations
@@ -22,22 +22,32 @@ from deixis.perception.simulator.laying import LaidTable
 from deixis.perception.simulator.rays import RayCaster
 
 NOISE = 1.425e-3
-"""Standard deviation of the depth at one metre, in metres; it grows with the square of the depth."""
+"""Standard deviation in metres of the depth at 1 m; it grows with the square of the depth."""
 
 DISPARITY_STEP = 2.85e-3
-"""Metres between two measurable depths at one metre; it grows with the square of the depth."""
+"""Distance in metres between two measurable depths at 1 m; it grows with the square of the depth."""
 
 NOTHING, TABLE, FIRST_THING = -1, 0, 1
-"""Labels of points: nothing measured, the table, and the first thing of the table; the others follow in order."""
+"""Labels of points: no measurement, the table, and the first thing on it; the other things follow in order."""
 
 
 @dataclass(frozen=True, slots=True)
 class DepthSensor:
-    """How a camera measures. All that is wrong with it can be switched off: ``DepthSensor.ideal()``.
+    """Errors of a depth sensor; ``DepthSensor.ideal()`` has none.
 
-    ``noise`` multiplies that of a Kinect. Of all points the share ``missing`` has no depth, and of those that are seen
-    at a grazing angle more: from none at ``grazing[0]`` to all at ``grazing[1]``, radians between the ray and the
-    surface's normal. ``quantised`` rounds depths as a Kinect does. ``colour_noise`` is a standard deviation, of 255.
+    Parameters
+    ----------
+    noise
+        Factor on the noise of a Kinect.
+    missing
+        Share of all points without a depth.
+    grazing
+        Angles in radians between the ray and the surface's normal: from the first to the second the share of points
+        without a depth rises to 1.
+    quantised
+        Round depths as a Kinect does.
+    colour_noise
+        Standard deviation of the colours, whose range is 0 to 255.
     """
 
     noise: float = 1.0
@@ -49,24 +59,24 @@ class DepthSensor:
     def __post_init__(self) -> None:
         if not (0 <= self.noise < 1000 and 0 <= self.missing <= 1 and 0 <= self.colour_noise < 256):
             raise SimulationError(
-                f"noise is 0 or more, not {self.noise:g}, and the share of missing points 0 to 1, not {self.missing:g}"
+                f"`noise` must be from 0 to 1000, got {self.noise:g}; `missing` from 0 to 1, got {self.missing:g};"
+                f" `colour_noise` from 0 to 256, got {self.colour_noise:g}"
             )
         if not 0 <= self.grazing[0] < self.grazing[1]:
-            raise SimulationError("points begin to be missing at a smaller grazing angle than that where all are")
+            raise SimulationError(f"the `grazing` angles must be at least 0 and increase, got {self.grazing}")
 
     @classmethod
     def ideal(cls) -> DepthSensor:
-        """Return no noise, nothing missing."""
+        """Return a sensor without noise or missing points."""
         return cls(noise=0.0, missing=0.0, grazing=(np.pi, 2 * np.pi), colour_noise=0.0)
 
     def measured(self, depth: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
-        """Return depths (n,) in metres as they are measured."""
+        """Return the measured depths (n,) in metres, from the true ones."""
         noisy = depth + rng.standard_normal(len(depth)) * self.noise * NOISE * depth**2
         return _quantised(noisy) if self.quantised else noisy
 
     def lost(self, cosine: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.bool_]:
-        """Return which points (n,) have no depth, by the cosine of the angle between the ray and the surface's
-        normal."""
+        """Return True for points (n,) without a depth, given cosines of the angles between rays and normals."""
         angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
         start, end = self.grazing
         share = np.maximum(np.clip((angle - start) / (end - start), 0.0, 1.0), self.missing)
@@ -75,17 +85,17 @@ class DepthSensor:
 
 
 def _quantised(depth: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return depths of which the disparity is whole: 1 / (step * k)."""
+    """Round depths to those with whole disparities k, 1 / (step * k)."""
     result: NDArray[np.float64] = 1 / (DISPARITY_STEP * np.maximum(np.round(1 / (DISPARITY_STEP * depth)), 1))
     return result
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What the pixels of one look show, row by row; ``points`` are in the camera's frame, NaN where there is no depth.
+    """Image of meshes, row by row; ``points`` are in the camera's frame, NaN without a depth.
 
-    ``mesh`` is the number of the mesh seen (-1 for none, or where nothing was measured), ``shade`` how much of the
-    light its surface sends to the camera, between 0 and 1.
+    ``mesh`` is the number of the mesh seen (-1 for no mesh or no measurement), and ``shade`` the share of light that
+    its surface reflects to the camera, from 0 to 1.
     """
 
     points: NDArray[np.float32]  # (n, 3)
@@ -94,7 +104,7 @@ class Look:
 
 
 def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.Generator) -> Look:
-    """Return one look at meshes in the table's frame."""
+    """Return an image of meshes in the table's frame."""
     rays = camera.directions()
     turned = rays @ camera.pose[:3, :3].T
     hits = caster.cast(camera.eye, turned)
@@ -116,15 +126,14 @@ def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.
 
 
 LIGHT = np.array([-0.36, -0.25, 0.9])
-"""Where most light comes from, a unit vector in the table's frame."""
+"""Direction of the main light, a vector in the table's frame."""
 
 
 def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, seed: int = 0) -> PointCloud:
-    """Return the table as an organised cloud in the camera's frame, the camera at its origin, with colours and the
-    truth.
+    """Return an organised cloud of the table in the camera's frame, with colours and true labels.
 
-    Labels are -1 where nothing was measured, 0 for the table, and 1 and up for the things in the order of the table.
-    The same seed gives the same cloud.
+    Labels are -1 without a measurement, 0 for the table, and from 1 for the things in the order of the table. The same
+    seed gives the same cloud.
     """
     rng = np.random.default_rng(seed)
     sensor = sensor or DepthSensor()
@@ -141,7 +150,7 @@ def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, see
 
 
 def in_table_frame(cloud: PointCloud, camera: Camera) -> PointCloud:
-    """Return a cloud of the camera's frame in the table's, with the camera as its origin."""
+    """Transform a cloud from the camera's frame to the table's; its origin is then the camera's position."""
     x, y, z = camera.eye.tolist()
     points = camera.to_table(cloud.points.astype(np.float64)).astype(np.float32)
     normals = None if cloud.normals is None else (cloud.normals @ camera.pose[:3, :3].T).astype(np.float32)

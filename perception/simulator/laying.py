@@ -1,10 +1,8 @@
-"""Laying a table: placements become things in the table's frame, set down one after the other.
+"""Lay a table: placements become things in the table's frame, set down one after the other.
 
-The table's top is the plane z = 0; x runs to the right and y away from whoever sits at it.
-
-
-A thing comes to rest on what lies below it: the stiff is lowered until it touches, the soft drapes. The truth of a laid
-table is the scene that perception ought to find.
+The table's top is the plane z = 0; x points to the right of a person at the table, and y away from that person. A thing
+comes to rest on the things below it: stiff things are lowered until they touch, and soft ones drape. The ground truth
+of a laid table is the scene that perception should find.
 """
 
 from __future__ import annotations
@@ -25,28 +23,27 @@ from deixis.perception.simulator.solids import moved
 from deixis.perception.simulator.tableware import Colour, make
 
 CLEARANCE = 0.0002
-"""Metres that are left between things that touch, for what lies between the places where heights are compared."""
+"""Gap in metres between things that touch, since heights are compared at some places only."""
 
 HEIGHT_STEP = 0.002
-"""Metres between these places, beside the vertices of both."""
+"""Distance in metres between the places where heights are compared, in addition to the vertices."""
 
 PlanBox = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""The least and the greatest corner (2,) in the plan."""
+"""Least and greatest corner (2,) in plan."""
 
 
 def overlap_in_plan(box: PlanBox, other: PlanBox) -> bool:
-    """Return whether two boxes of the plan overlap."""
+    """Return True if two boxes overlap in plan."""
     return bool((box[0] < other[1]).all() and (other[0] < box[1]).all())
 
 
 def plan_box(mesh: Mesh) -> PlanBox:
-    """Return the box around a mesh, seen from above."""
+    """Return the box around a mesh in plan."""
     return mesh.vertices[:, :2].min(axis=0), mesh.vertices[:, :2].max(axis=0)
 
 
 def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
-    """Return a stiff thing that stands on z = 0, raised so far that it rests on whatever lies below it, level as it
-    is."""
+    """Return a stiff thing that stands on z = 0, raised without tilting until it rests on the meshes below."""
     if not below:
         return mesh
     lower, upper = RayCaster(below), RayCaster([mesh])
@@ -57,11 +54,10 @@ def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
 
 
 def draped(mesh: Mesh, below: Sequence[Mesh], cell: float) -> Mesh:
-    """Return a soft thing that lies on z = 0, laid over whatever lies below it: each vertex is raised by what is under
-    it.
+    """Return a soft thing that lies on z = 0, with each vertex raised by the height of the meshes below it.
 
-    No edge of the mesh may be longer in the plan than ``cell`` (metres) times the root of 2. What is under a vertex
-    is the highest place within that distance on each axis, so that no face cuts into what it lies on.
+    No edge of the mesh may be longer in plan than ``cell`` (metres) times the square root of 2. The height below a
+    vertex is that of the highest place within this distance along each axis, so that no face cuts into the meshes.
     """
     from scipy.ndimage import map_coordinates, maximum_filter
 
@@ -84,7 +80,7 @@ def draped(mesh: Mesh, below: Sequence[Mesh], cell: float) -> Mesh:
 def _raise_to_vertices(
     heights: NDArray[np.float64], meshes: Sequence[Mesh], low: NDArray[np.float64], fine: float
 ) -> None:
-    """Raise a grid of heights to the vertices nearest to its points: a rim between the points is not missed."""
+    """Raise a grid of heights to the vertices nearest to its points, so that no rim between the points is missed."""
     for mesh in meshes:
         cell = np.rint((mesh.vertices[:, :2] - low) / fine).astype(np.int64)
         there = ((cell >= 0) & (cell < heights.shape)).all(axis=1)
@@ -92,7 +88,7 @@ def _raise_to_vertices(
 
 
 def _places(meshes: Sequence[Mesh], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return a grid over a part of the plan, and the vertices in it."""
+    """Return the points of a grid over a part of the plan, and the vertices in that part."""
     axes = [np.linspace(low[axis], high[axis], int((high[axis] - low[axis]) / HEIGHT_STEP) + 2) for axis in (0, 1)]
     grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
     vertices = np.concatenate([mesh.vertices[:, :2] for mesh in meshes])
@@ -103,18 +99,18 @@ def _places(meshes: Sequence[Mesh], low: NDArray[np.float64], high: NDArray[np.f
 WOOD: Colour = (150, 112, 78)
 LINEN_CLOTH: Colour = (226, 222, 212)
 FOREIGN_COLOUR: Colour = (186, 150, 90)
-"""The colour of a mesh from a file."""
+"""Colour of a mesh from a file."""
 
 MARGIN = 0.15
-"""How far a table reaches beyond what lies on it, in metres, unless it is told."""
+"""Default distance in metres by which a table extends beyond the things on it."""
 
 
 @dataclass(frozen=True)
 class Placement:
-    """A thing to be laid: its kind, the middle of its box before it is turned, and which instance it is.
+    """A thing to lay: its kind, the centre (x, y) of its box before it is turned, and the seed of its shape.
 
-    ``yaw`` in radians, counter-clockwise from above; at 0 a head or a handle points away from the viewer. ``plan``
-    settles width and length (metres), else the seed does. ``mesh`` (metres, z up) is laid in place of an instance.
+    ``yaw`` is in radians, counter-clockwise from above; at 0 a head or a handle points away from the viewer. ``plan``
+    sets width and length (metres) instead of the seed. ``mesh`` (metres, z up) is laid instead of a generated shape.
     """
 
     name: str
@@ -129,9 +125,9 @@ class Placement:
 
 @dataclass(frozen=True, eq=False)
 class LaidThing:
-    """A thing on the table: its mesh in the table's frame, and the shape that it was given.
+    """A thing on the table: its mesh in the table's frame, and the name of its shape.
 
-    ``generic`` where its kind has no shape of its own here, so that a block or a cylinder stands for it.
+    ``generic`` is True if its kind has no shape of its own, so that a block or a cylinder represents it.
     """
 
     name: str
@@ -143,14 +139,14 @@ class LaidThing:
 
     @property
     def box(self) -> NDArray[np.float64]:
-        """Least and greatest corner in the table's frame, shape (2, 3), to the micrometre: what meets stays so."""
+        """Least and greatest corner in the table's frame, (2, 3), rounded to micrometres to keep contacts."""
         corners: NDArray[np.float64] = np.stack([self.mesh.vertices.min(axis=0), self.mesh.vertices.max(axis=0)])
         return corners.round(6) + 0.0
 
 
 @dataclass(frozen=True)
 class TableTop:
-    """A table's top: a slab below z = 0 over an extent ((x0, y0), (x1, y1)), of the colour of wood or of a cloth."""
+    """Top of a table: a slab below z = 0 from ``low`` (x0, y0) to ``high`` (x1, y1), in metres, with a colour."""
 
     low: tuple[float, float]
     high: tuple[float, float]
@@ -159,10 +155,13 @@ class TableTop:
 
     def __post_init__(self) -> None:
         if not (self.low[0] < self.high[0] and self.low[1] < self.high[1] and self.thickness > 0):
-            raise SimulationError(f"a table from {self.low} to {self.high}, {self.thickness:g} m thick, is empty")
+            raise SimulationError(
+                f"a table must not be empty, got {self.low} to {self.high}, {self.thickness:g} m thick"
+            )
 
     @property
     def mesh(self) -> Mesh:
+        """Mesh of the slab."""
         (x0, y0), (x1, y1) = self.low, self.high
         corners = [(x, y, z) for z in (-self.thickness, 0.0) for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
         quads = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -172,27 +171,42 @@ class TableTop:
 
 @dataclass(frozen=True)
 class LaidTable:
-    """A laid table: its top, and the things on it, in the order in which they are numbered."""
+    """A laid table: its top, and the things on it in the order of their numbers."""
 
     top: TableTop
     things: tuple[LaidThing, ...]
 
 
 def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: Ontology | None = None) -> LaidTable:
-    """Set things down in the order in which they come, each on the table or on what lies there already.
+    """Set things down in order, each on the table or on the things that lie there already.
 
-    Stiff things stay level and are lowered until they touch; cloth drapes. So nothing goes through anything, and
-    what is to lie below must come first. Without a ``top`` the table reaches a little beyond what lies on it. Raises
-    SimulationError where a name is used twice, a kind is not known, or a placement is nowhere.
+    Stiff things stay level and are lowered until they touch; cloth drapes. Things therefore never intersect, and those
+    below must come first.
+
+    Parameters
+    ----------
+    placements
+        Things to lay.
+    top
+        Top of the table; by default it extends a little beyond the things.
+    ontology
+        Kinds and their sizes; by default :func:`default_ontology`.
+
+    Raises
+    ------
+    SimulationError
+        If a name is used twice, a kind is not known, or a position is not finite.
     """
     ontology = ontology or default_ontology()
     things: list[LaidThing] = []
     boxes: list[PlanBox] = []
     for placement in placements:
         if any(thing.name == placement.name for thing in things):
-            raise SimulationError(f"'{placement.name}' is placed twice; give every thing a name of its own")
+            raise SimulationError(f"'{placement.name}' is placed twice; give every thing its own name")
         if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
-            raise SimulationError(f"'{placement.name}' has no place: {placement.x}, {placement.y}, yaw {placement.yaw}")
+            raise SimulationError(
+                f"the place of '{placement.name}' must be finite, got {placement.x}, {placement.y}, yaw {placement.yaw}"
+            )
         laid, soft = _upright(placement, ontology)
         mesh = moved(laid.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
         own = plan_box(mesh)
@@ -203,7 +217,7 @@ def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: 
 
 
 def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]:
-    """Return the thing by itself at the origin, and whether it is soft."""
+    """Return the thing at the origin, and True if it is soft."""
     name, kind = placement.name, placement.kind
     if placement.mesh is not None:
         return LaidThing(name, kind, stood(placement.mesh), FOREIGN_COLOUR, "mesh from a file"), False
@@ -212,17 +226,19 @@ def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]
 
 
 def stood(mesh: Mesh) -> Mesh:
-    """Return the mesh moved so that its box stands on z = 0, centred on the z axis. Raises SimulationError for no
-    mesh."""
+    """Return the mesh moved so that its box stands on z = 0, centred on the z axis.
+
+    Raises SimulationError for a mesh without faces, or with vertices that are not finite.
+    """
     if not len(mesh.faces) or not np.isfinite(mesh.vertices).all():
-        raise SimulationError("a mesh has no faces, or vertices that are nowhere")
+        raise SimulationError("a mesh must have faces and finite vertices")
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     middle = (low + high) / 2
     return Mesh(mesh.vertices - (middle[0], middle[1], low[2]), mesh.faces)
 
 
 def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colour = WOOD) -> TableTop:
-    """Return a table that reaches ``margin`` metres beyond all things."""
+    """Return the top of a table that extends ``margin`` metres beyond all things."""
     if not things:
         return TableTop((-0.5, -0.35), (0.5, 0.35), colour=colour)
     boxes = [plan_box(thing.mesh) for thing in things]
@@ -231,8 +247,10 @@ def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colou
 
 
 def truth_scene(table: LaidTable, viewpoint: str = "chair") -> Scene:
-    """Return every thing with its name and its box in the table's frame; ``o3`` is the thing whose points bear label
-    3."""
+    """Return the true scene: every thing with its name and its box in the table's frame.
+
+    The object ``o3`` is the thing whose points have label 3.
+    """
     things = []
     for number, thing in enumerate(table.things, start=1):
         low, high = thing.box.tolist()

@@ -1,4 +1,4 @@
-"""Rays against meshes, by Open3D's ray casting (Embree)."""
+"""Ray casting against meshes, by Open3D (Embree)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deixis.perception.open3d import open3d
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Where r rays first meet something: in rays' lengths, infinite for those that meet nothing."""
+    """First hits of r rays; distances are in lengths of the ray's direction, and infinite without a hit."""
 
     distance: NDArray[np.float32]  # (r,)
     mesh: NDArray[np.int32]  # (r,): number of the mesh, -1 for none
@@ -23,7 +23,7 @@ class Hits:
 
 
 class RayCaster:
-    """Several meshes, ready to be met by rays; they are numbered as they come."""
+    """Ray caster for several meshes, which are numbered in order."""
 
     def __init__(self, meshes: Sequence[Mesh]) -> None:
         core = open3d().core
@@ -47,11 +47,11 @@ class RayCaster:
         )
 
     def tops(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return how high the meshes reach at places (p, 2) of the plan; NaN where there is nothing."""
+        """Return the height of the top of the meshes at places (p, 2) in plan; NaN where there is no mesh."""
         return self._vertical(plan, start=10.0, down=True)
 
     def bottoms(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return where the meshes begin, from below, at places (p, 2) of the plan; NaN where there is nothing."""
+        """Return the height of the bottom of the meshes at places (p, 2) in plan; NaN where there is no mesh."""
         return self._vertical(plan, start=-10.0, down=False)
 
     def _vertical(self, plan: NDArray[np.float64], start: float, down: bool) -> NDArray[np.float64]:

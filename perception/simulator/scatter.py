@@ -17,13 +17,13 @@ KINDS = (
     *("dinner fork", "salad fork", "dessert fork", "dinner knife", "fish knife", "butter knife"),
     *("soup spoon", "dessert spoon", "teaspoon", "napkin"),
 )
-"""What random tables are laid with."""
+"""Kinds of things on random tables."""
 
 PLATED_KINDS = ("napkin", "butter knife", "teaspoon", "dessert fork")
-"""What is laid on a plate half the time, where there is a free one that is large enough."""
+"""Kinds that are laid on a plate half the time, if there is a free one that is large enough."""
 
 MIN_GAP = 0.012
-"""Metres between things at least."""
+"""Minimum distance between things, in metres."""
 
 MAX_THINGS = 300
 
@@ -37,19 +37,19 @@ def scattered(
     foreign: Sequence[Placement] = (),
     ontology: Ontology | None = None,
 ) -> list[Placement]:
-    """Return so many things of random kinds, and the ``foreign`` ones, which have meshes, at random places, turned at
-    random.
+    """Return ``count`` things of random kinds, and the ``foreign`` ones, at random places and angles.
 
-    They lie at least ``MIN_GAP`` apart, but some on plates; the area that they take up is wider than deep. Names are
-    kinds with numbers. Raises SimulationError for more than ``MAX_THINGS`` things, or none.
+    Foreign things have their own meshes. Things are at least ``MIN_GAP`` apart, except those on plates; the area that
+    they cover is wider than deep. Names are kinds with numbers. Raises SimulationError for more than ``MAX_THINGS``
+    things, or for no things.
     """
     if not 0 <= count <= MAX_THINGS or count + len(foreign) == 0:
-        raise SimulationError(f"a random table has 1 to {MAX_THINGS} things, not {count}")
+        raise SimulationError(f"a random table must have 1 to {MAX_THINGS} things, got {count}")
     ontology, rng = ontology or default_ontology(), np.random.default_rng(seed)
     floor = _Floor(rng)
     placed = [floor.put(placement, placement.plan or (0.1, 0.1)) for placement in foreign]
     chosen = [str(kind) for kind in rng.choice(np.array(kinds), count)]
-    chosen.sort(key=lambda kind: kind in PLATED_KINDS)  # what lies below is set down first
+    chosen.sort(key=lambda kind: kind in PLATED_KINDS)  # things below are set down first
     for number, kind in enumerate(chosen):
         name = f"{kind.replace(' ', '_')}_{chosen[:number].count(kind) + 1}"
         instance = int(rng.integers(2**31))
@@ -61,7 +61,7 @@ def scattered(
 
 
 class _Floor:
-    """Where things stand already: rectangles in the plan, and plates on which there is nothing."""
+    """Occupied places: rectangles in plan, and empty plates."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
@@ -70,7 +70,7 @@ class _Floor:
         self._half = 0.15
 
     def put(self, thing: Placement, plan: tuple[float, float]) -> Placement:
-        """Return the thing at a free place; the area grows until there is one."""
+        """Return the thing at a free place; the area grows until one is found."""
         while True:
             for _ in range(_MAX_TRIES):
                 x, y = self._rng.uniform(-1, 1, 2) * (1.2 * self._half, 0.85 * self._half)
@@ -88,7 +88,7 @@ class _Floor:
             self._half *= 1.15
 
     def put_on_plate(self, thing: Placement, plan: tuple[float, float]) -> Placement | None:
-        """Return the thing on the first free plate on which all of it fits."""
+        """Return the thing on the first free plate that is large enough, or None."""
         for place, (across, x, y) in enumerate(self._plates):
             if float(np.hypot(*plan)) < across:
                 del self._plates[place]
@@ -110,8 +110,7 @@ def _corners(x: float, y: float, yaw: float, plan: tuple[float, float]) -> NDArr
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return whether there is a direction along which corners (…, 4, directions) and the others' do not overlap,
-    (m,)."""
+    """Return True (m,) where corners (…, 4, directions) and the others' do not overlap along some direction."""
     beyond = (one.max(axis=-2) <= other.min(axis=-2)) | (other.max(axis=-2) <= one.min(axis=-2))
     result: NDArray[np.bool_] = beyond.any(axis=-1)
     return result

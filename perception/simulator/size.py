@@ -1,4 +1,4 @@
-"""How large one thing is, drawn from how large things of its kind usually are."""
+"""Draw the size of a thing from the usual sizes of its kind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from deixis.ontology.sizes import Extent, SizeRange
 
 SHARED_VARIATION = 0.7
-"""How much of a thing's place between small and large its lengths share: a long spoon is wide and high too."""
+"""Weight of the common random part in a thing's three lengths: a long spoon is also wide and high."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,9 +22,9 @@ class Size:
 
 
 def drawn_size(usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None = None) -> Size:
-    """Return a size within the usual range; each length has a triangular distribution with its mode at what is typical.
+    """Draw a size within the usual range; each length has a triangular distribution with its mode at the typical one.
 
-    ``plan`` gives width and length where they are settled already, and only the height is drawn.
+    If ``plan`` gives width and length, only the height is drawn.
     """
     draws = rng.random(4)
     if plan is not None:
@@ -57,7 +57,7 @@ def quantile(extent: Extent, share: float) -> float:
 
 
 def share_below(extent: Extent, length: float) -> float:
-    """Return the share of the triangular distribution that lies below a length: what :func:`quantile` undoes."""
+    """Return the share of the triangular distribution below a length, the inverse of :func:`quantile`."""
     low, mode, high = extent.least, extent.typical, extent.greatest
     at = min(max(length, low), high)
     if high == low:

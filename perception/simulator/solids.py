@@ -1,4 +1,7 @@
-"""Solids as closed meshes: of revolution, skins over rings, thick sheets. Faces are counter-clockwise from outside."""
+"""Build closed meshes: solids of revolution, skins over rings and thick sheets.
+
+Faces are counter-clockwise as seen from outside.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,21 @@ from numpy.typing import ArrayLike, NDArray
 from deixis.perception.clouds.mesh import Mesh
 
 SEGMENTS = 96
-"""Sides of a round thing."""
+"""Number of sides of a round thing."""
 
 
 def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -> Mesh:
     """Return the solid that a profile (radius, height) sweeps around the z axis.
 
     The profile runs counter-clockwise, from the axis (radius 0) below outwards and back to the axis above, so that
-    the solid lies on its left. Raises ValueError where an end is not on the axis.
+    the solid lies on its left. Raises ValueError if an end is not on the axis.
 
     >>> revolved([(0, 0), (1, 0), (1, 2), (0, 2)], segments=4).vertices.shape
     (10, 3)
     """
     points = np.asarray(profile, dtype=np.float64)
     if points[0, 0] != 0 or points[-1, 0] != 0 or (points[1:-1, 0] <= 0).any():
-        raise ValueError("a profile starts and ends on the axis, and only there")
+        raise ValueError("a profile must have its ends, and no other points, on the axis")
     angles = 2 * np.pi * np.arange(segments) / segments
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1)
     rings = np.empty((len(points) - 2, segments, 3))
@@ -55,8 +58,10 @@ def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: Arr
 
 
 def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16) -> Mesh:
-    """Return a bar of elliptic section along a path (s, 3) in the plane x = 0; ``depth`` is across the path in that
-    plane."""
+    """Return a bar of elliptic section along a path (s, 3) in the plane x = 0.
+
+    ``depth`` is the diameter across the path in that plane, and ``width`` the one along x, in metres.
+    """
     along = np.gradient(path, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     across = np.stack([np.zeros(len(path)), along[:, 2], -along[:, 1]], axis=1)
@@ -73,10 +78,10 @@ def thick_sheet(
     top: NDArray[np.float64],
     cells: NDArray[np.bool_] | None = None,
 ) -> Mesh:
-    """Return what lies between two surfaces over one grid in the plan: cutlery, cloth.
+    """Return the solid between two surfaces over one grid in plan, such as cutlery or cloth.
 
-    ``x``, ``y``, ``bottom`` and ``top`` have shape (rows, columns); x grows with the column and y with the row, or
-    the faces turn inwards. ``cells`` (rows - 1, columns - 1) says which cells of the grid are there; all without it.
+    ``x``, ``y``, ``bottom`` and ``top`` have shape (rows, columns); x must grow with the column and y with the row, or
+    else the faces point inwards. ``cells`` (rows - 1, columns - 1) is True for the cells that exist; by default all.
 
     >>> x, y = np.meshgrid([0.0, 1.0], [0.0, 1.0])
     >>> len(thick_sheet(x, y, 0 * x, 0 * x + 1).faces)
@@ -103,14 +108,14 @@ def thick_sheet(
 
 
 def joined(*meshes: Mesh) -> Mesh:
-    """Return several meshes as one; where they overlap the inner faces stay."""
+    """Return several meshes as one; inner faces stay where they overlap."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
 
 
 def fitted(mesh: Mesh, width: float, length: float, height: float) -> Mesh:
-    """Return the mesh stretched to an extent on x, y and z; its box is centred on the z axis and stands on z = 0."""
+    """Return the mesh scaled to an extent along x, y and z; its box is centred on the z axis and stands on z = 0."""
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     unit = (mesh.vertices - low) / np.where(high > low, high - low, 1.0)
     return Mesh((unit - (0.5, 0.5, 0.0)) * (width, length, height), mesh.faces)
@@ -124,7 +129,7 @@ def moved(mesh: Mesh, yaw: float = 0.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh
 
 
 def _turn(yaw: float) -> tuple[float, float]:
-    """Return cosine and sine; exact for quarter turns, so that what was fitted into a box keeps to it."""
+    """Return cosine and sine; exact for quarter turns, so that a fitted mesh stays in its box."""
     quarters = yaw / (np.pi / 2)
     if abs(quarters - round(quarters)) < 1e-12:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]

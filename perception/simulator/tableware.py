@@ -1,4 +1,4 @@
-"""Tableware of every kind: which shape a kind has, of what size and colour, varied from a seed."""
+"""Make tableware of every kind: shapes, sizes and colours, varied by a seed."""
 
 from __future__ import annotations
 
@@ -38,10 +38,11 @@ WINE_RED, NAVY, MOSS, SAND = (140, 44, 52), (50, 66, 110), (98, 120, 78), (206, 
 
 @dataclass(frozen=True)
 class Form:
-    """A shape that a kind of things has.
+    """Shape of a kind of things.
 
-    ``handle`` is whether it has the one that its kind may have, which the usual sizes do not count. ``height`` replaces
-    the usual heights where a shape is only some of what the kind can be. What is ``soft`` drapes.
+    ``handle`` is True if the shape has a handle, which the usual sizes do not include. ``height`` replaces the usual
+    heights if the shape is only one form of the kind. A ``soft`` shape drapes. ``generic`` is True for a shape that
+    represents kinds without their own.
     """
 
     name: str
@@ -78,17 +79,17 @@ FORMS: dict[str, Form] = {
     "Bottle": Form("bottle", bottle, (GREEN_GLASS, BLUE_GLASS)),
     "Carafe": Form("bottle", bottle, _GLASS),
 }
-"""The shape of a kind, by its name in the TBox, and of all kinds below it that have none of their own."""
+"""Shapes by the name of the kind in the TBox; they also apply to narrower kinds without a shape of their own."""
 
 _OTHER = (SAND, GREY_WARE, MOSS, CREAM)
 CYLINDER = Form("cylinder", cylinder, _OTHER, generic=True)
 BLOCK = Form("block", block, _OTHER, generic=True)
-"""What stands for a kind without a shape."""
+"""Shape for kinds without their own that are not round."""
 
 
 @dataclass(frozen=True, eq=False)
 class Instance:
-    """One thing: its mesh stands on z = 0, its box centred on the z axis, its head or handle towards y."""
+    """A generated thing: its mesh stands on z = 0, centred on the z axis, with its head or handle along y."""
 
     mesh: Mesh
     colour: Colour
@@ -97,15 +98,15 @@ class Instance:
 
 
 def kind_named(word: str, ontology: Ontology) -> Kind:
-    """Return the kind that a word or a name stands for; raises SimulationError where there is none."""
+    """Return the kind that a word or a name stands for; raise SimulationError for an unknown word."""
     kind = ontology.kinds.of_word(word)
     if kind is None:
-        raise SimulationError(f"'{word}' is no kind of thing that the ontology knows; try 'dinner plate' or 'fork'")
+        raise SimulationError(f"the ontology has no kind of thing called '{word}'; try 'dinner plate' or 'fork'")
     return kind
 
 
 def form_of(kind: Kind | None, ontology: Ontology) -> Form:
-    """Return the shape of the nearest kind that has one, else a cylinder or a block, by the outline of the kind.
+    """Return the shape of the nearest broader kind with one, or else a cylinder or a block, by the kind's outline.
 
     >>> ontology = default_ontology()
     >>> [form_of(ontology.kinds.of_word(word), ontology).name for word in ("salad fork", "vase")]
@@ -121,7 +122,7 @@ def form_of(kind: Kind | None, ontology: Ontology) -> Form:
 
 
 def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
-    """Return how large things of a kind are made: as large as they usually are, some forms within a part of that."""
+    """Return the range of sizes of generated things: the usual sizes of the kind, with the height of its shape."""
     usual = ontology.sizes.of(kind.iri if kind else None)
     form = form_of(kind, ontology)
     return usual if form.height is None else replace(usual, height=form.height)
@@ -130,12 +131,26 @@ def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
 def make(
     kind: str | None, seed: int, plan: tuple[float, float] | None = None, ontology: Ontology | None = None
 ) -> Instance:
-    """Return one thing of a kind (None: of unknown kind, a block), varied from the seed: the same seed gives the same
-    thing.
+    """Make one thing of a kind.
 
-    ``plan`` gives its width and its length (with the handle) in metres; else both are drawn from the usual sizes,
-    as its height is. Raises SimulationError where the ontology does not know the kind, or a plan is no size.
+    Parameters
+    ----------
+    kind
+        Word for the kind; None for an unknown kind.
+    seed
+        Seed of shape, size and colour: equal seeds give equal things.
+    plan
+        Width and length (with the handle) in metres; by default both are drawn from the usual sizes, as the height is.
+    ontology
+        Kinds and their sizes; by default :func:`default_ontology`.
 
+    Raises
+    ------
+    SimulationError
+        If the kind is not known, or the sides of ``plan`` are not above 0.
+
+    Examples
+    --------
     >>> thing = make("dinner plate", seed=1)
     >>> 0.229 <= thing.size.width <= 0.305, thing.form.name
     (True, 'plate')
@@ -143,7 +158,7 @@ def make(
     ontology = ontology or default_ontology()
     found = None if kind is None else kind_named(kind, ontology)
     if plan is not None and not all(0 < side < np.inf for side in plan):
-        raise SimulationError(f"a thing's width and length are above 0, not {plan[0]:g} and {plan[1]:g}")
+        raise SimulationError(f"a thing's width and length must be above 0, got {plan[0]:g} and {plan[1]:g}")
     form, rng = form_of(found, ontology), np.random.default_rng(seed)
     size = _size(form, usual_size(found, ontology), rng, plan)
     red, green, blue = np.clip(
@@ -157,7 +172,7 @@ def make(
 
 
 def drawn_plan(kind: Kind | None, seed: int, ontology: Ontology) -> tuple[float, float]:
-    """Return width and length of the thing that :func:`make` gives for a seed."""
+    """Return width and length in metres of the thing that :func:`make` returns for a seed."""
     size = _size(form_of(kind, ontology), usual_size(kind, ontology), np.random.default_rng(seed), None)
     return size.width, size.length
 

@@ -1,4 +1,4 @@
-"""Views of single things, for learning to recognise them."""
+"""Simulate views of single things, for learning to recognise them."""
 
 from __future__ import annotations
 
@@ -14,26 +14,47 @@ from deixis.perception.simulator.laying import stood
 from deixis.perception.simulator.rays import RayCaster
 
 CAMERA_DISTANCES = (0.7, 1.0)
-"""Metres from the camera to the middle of the thing."""
+"""Range of distances in metres from the camera to the centre of the thing."""
 
 CAMERA_ELEVATIONS = (np.deg2rad(15.0), np.deg2rad(80.0))
-"""Angles between the line of sight and the table's plane."""
+"""Range of angles in radians between the line of sight and the table's plane."""
 
 MAX_THING_SIZE = 1.0
-"""Metres that a thing may measure, so that all of it is before the camera."""
+"""Maximum extent of a thing in metres, so that all of it is in front of the camera."""
 
 
 def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0, upright: bool = False) -> list[PointCloud]:
-    """Return so many views of a thing by itself, as a depth camera at other places sees it: only its points, without a
-    table.
+    """Simulate views of a single thing by depth cameras around it: only its points, without a table.
 
-    The mesh is in metres, z up, wherever it stands. Cameras are spread evenly over the part of the upper hemisphere
-    that ``CAMERA_ELEVATIONS`` leaves, at ``CAMERA_DISTANCES`` from the middle of the thing, and look there. Each cloud
-    is in its camera's frame, with the camera as origin; with ``upright`` it is in the table's, z up, with the camera
-    where it stood. ``noise`` multiplies that of :class:`DepthSensor`, and 0 takes away all that is wrong with the
-    sensor. The same seed gives the same views, and more views begin with fewer's. Raises SimulationError for a mesh
-    without faces or larger than ``MAX_THING_SIZE``.
+    Parameters
+    ----------
+    mesh
+        The thing, in metres, z up; its position does not matter.
+    count
+        Number of views.
+    seed
+        Seed of cameras and noise. Equal seeds give equal views, and a larger ``count`` only adds views.
+    noise
+        Factor on the noise of :class:`DepthSensor`; 0 for an ideal sensor.
+    upright
+        Return clouds in the table's frame, z up, with the camera's position as origin, instead of the camera's frame.
 
+    Returns
+    -------
+    A cloud for each view.
+
+    Raises
+    ------
+    SimulationError
+        If the mesh has no faces, or is larger than ``MAX_THING_SIZE``.
+
+    Notes
+    -----
+    The cameras are uniformly distributed over the part of the upper hemisphere within ``CAMERA_ELEVATIONS``, at
+    ``CAMERA_DISTANCES`` from the centre of the thing, and look at it.
+
+    Examples
+    --------
     >>> from deixis.perception.simulator.tableware import make
     >>> views = views_of(make("mug", seed=1).mesh, count=2, seed=3)
     >>> [bool(view.finite.all()) for view in views], min(map(len, views)) > 1000
@@ -42,7 +63,10 @@ def views_of(mesh: Mesh, count: int, seed: int, noise: float = 1.0, upright: boo
     standing = stood(mesh)
     low, high = standing.vertices.min(axis=0), standing.vertices.max(axis=0)
     if (high - low).max() > MAX_THING_SIZE:
-        raise SimulationError(f"the mesh measures {(high - low).max():g} m; is its unit the metre?")
+        size = (high - low).max()
+        raise SimulationError(
+            f"a mesh must be at most {MAX_THING_SIZE:g} m long, got {size:g} m; is its unit the metre?"
+        )
     caster, sensor = RayCaster([standing]), DepthSensor(noise=noise) if noise > 0 else DepthSensor.ideal()
     middle = (low + high) / 2
     return [
@@ -59,7 +83,7 @@ def _view(
     rng: np.random.Generator,
     upright: bool,
 ) -> PointCloud:
-    height = rng.uniform(*np.sin(CAMERA_ELEVATIONS))  # even on the sphere, by Archimedes
+    height = rng.uniform(*np.sin(CAMERA_ELEVATIONS))  # uniform on the sphere (Archimedes)
     azimuth, distance = rng.uniform(0, 2 * np.pi), rng.uniform(*CAMERA_DISTANCES)
     aside = np.sqrt(1 - height**2)
     eye = middle + distance * np.array([aside * np.cos(azimuth), aside * np.sin(azimuth), height])

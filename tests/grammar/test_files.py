@@ -1,4 +1,4 @@
-"""Reading files: includes, and files that are none."""
+"""Script files: includes, and files that cannot be read."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from deixis.grammar.parser import read_script
 
 
 def write(folder: Path, **texts: str) -> Path:
-    """Files called NAME.layout; the path of the first one."""
+    """Write files called NAME.layout, and return the path of the first."""
     for name, text in texts.items():
         (folder / f"{name}.layout").write_text(text, encoding="utf-8")
     return folder / f"{next(iter(texts))}.layout"
@@ -36,7 +36,7 @@ def test_include(tmp_path: Path) -> None:
     assert format_script(script) == 'include "b.layout"\nFork on plate\n'
 
 
-def test_a_file_counts_once(tmp_path: Path) -> None:
+def test_a_file_is_included_once(tmp_path: Path) -> None:
     path = write(
         tmp_path, a='include "b.layout"; include "b.layout"; include "c.layout"', b="x on y", c='include "b.layout"'
     )
@@ -48,12 +48,12 @@ def test_the_header_of_an_included_file(tmp_path: Path) -> None:
     assert read_script(path).name == "a"
     write(tmp_path, b="layout b seen from door\nx on y")
     assert message(path) == (
-        "b.layout:1:1: this is seen from 'door', but included where all is seen from 'chair'\n"
+        "b.layout:1:1: this file is seen from 'door', but the script that includes it from 'chair'\n"
         "layout b seen from door\n^^^^^^^^^^^^^^^^^^^^^^^"
     )
 
 
-def test_problems_of_included_files_are_told_with_the_others(tmp_path: Path) -> None:
+def test_errors_of_included_files_are_reported(tmp_path: Path) -> None:
     path = write(tmp_path, a='fork\ninclude "b.layout"\nspoon', b="x on x")
     with pytest.raises(ScriptError) as caught:
         read_script(path)
@@ -61,24 +61,24 @@ def test_problems_of_included_files_are_told_with_the_others(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("include", "told"),
+    ("include", "expected"),
     [
         ("../x.layout", "'../x.layout' is outside the folder of the script"),
         ("/etc/passwd", "'/etc/passwd' is outside the folder of the script"),
         ("link.layout", "'link.layout' is outside the folder of the script"),
         ("a.layout", "'a.layout' includes itself"),
         ("none.layout", "none.layout: there is no such file"),
-        (".", ".: this is a directory, not a layout script"),
-        ("", "an include needs the name of a file"),
-        ("x\0y", r"'x\u0000y' cannot be a file's name"),
+        ("sub", "sub: this is a directory, not a layout script"),
+        ("", "an include needs a file name"),
+        ("x\0y", r"'x\u0000y' is not a valid file name"),
     ],
 )
-def test_includes_out_of_bounds(tmp_path: Path, include: str, told: str) -> None:
+def test_includes_out_of_bounds(tmp_path: Path, include: str, expected: str) -> None:
     folder = tmp_path / "folder"
-    folder.mkdir()
+    (folder / "sub").mkdir(parents=True)
     (tmp_path / "x.layout").write_text("x on y")
     (folder / "link.layout").symlink_to(tmp_path / "x.layout")
-    assert message(write(folder, a=f'include "{include}"')).split("\n")[0] == f"a.layout:1:9: {told}"
+    assert message(write(folder, a=f'include "{include}"')).split("\n")[0] == f"a.layout:1:9: {expected}"
 
 
 def test_cycle(tmp_path: Path) -> None:
@@ -101,21 +101,21 @@ def test_includes_are_bounded(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "told"),
+    ("data", "expected"),
     [
         ("a on b".encode("utf-16"), "this file is UTF-16, not UTF-8; save it as UTF-8"),
         ("a on b\nä on b".encode("latin-1"), "line 2 is not UTF-8; save the file as UTF-8"),
     ],
 )
-def test_wrong_encodings(tmp_path: Path, data: bytes, told: str) -> None:
+def test_wrong_encodings(tmp_path: Path, data: bytes, expected: str) -> None:
     path = tmp_path / "a.layout"
     path.write_bytes(data)
     with pytest.raises(ScriptFileError) as caught:
         read_script(path)
-    assert str(caught.value) == f"{path}: {told}"
+    assert str(caught.value) == f"{path}: {expected}"
 
 
-def test_files_that_are_none(tmp_path: Path) -> None:
+def test_unreadable_files(tmp_path: Path) -> None:
     assert message(tmp_path / "none.layout") == "none.layout: there is no such file"
     with pytest.raises(ScriptFileError, match="this is a directory, not a layout script"):
         read_script(tmp_path)

@@ -1,4 +1,4 @@
-"""The canonical form: what it looks like, and that reading it back changes nothing."""
+"""The canonical form of a script: its text, and that reading it back changes nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The language's reference: every example is run, and its table of relation words is in step with the ontology."""
+"""The reference of the language: its examples run, and its relation words are those of the ontology."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXAMPLES = [(tag, text, BLOCKS[i + 1]) for i, (tag, text) in enumerate(BLOCKS) i
 
 
 def relation_table() -> str:
-    """The table of relation words, as the reference should have it."""
+    """Return the table of relation words that the reference must contain."""
     rows = ["| relation | written | also |", "|---|---|---|"]
     for relation in default_ontology().relations.values():
         also = sorted({*relation.words} - {relation.phrase})
@@ -26,13 +26,13 @@ def relation_table() -> str:
     return "\n".join(rows)
 
 
-def test_the_table_of_relations_is_in_step() -> None:
+def test_the_table_of_relations_is_current() -> None:
     found = re.search(r"<!-- relations: begin -->\n(.*?)\n<!-- relations: end -->", TEXT, re.DOTALL)
     assert found is not None
     assert found[1] == relation_table()
 
 
-def test_the_hedges_are_in_step() -> None:
+def test_the_hedges_are_documented() -> None:
     for hedge in default_ontology().hedges:
         assert re.search(rf"\b{hedge}\b", TEXT), hedge
 

@@ -1,6 +1,6 @@
-"""The catalogue of malformed scripts, each with the whole message that it gets (malformed.txt).
+"""The catalogue of malformed scripts, malformed.txt, each with its whole error message.
 
-A case is the script, a line ``----`` and the message; a line ``====`` parts two cases.
+A case is the script, a line ``----`` and the message; a line ``====`` separates two cases.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ CASES = [
 ]
 
 
-def test_the_catalogue_is_whole() -> None:
+def test_the_catalogue_is_complete() -> None:
     assert len(CASES) >= 100
     assert len({script for script, _ in CASES}) == len(CASES)
 

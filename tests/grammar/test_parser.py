@@ -1,4 +1,4 @@
-"""Every construct of the language, with the facts that it states and where they were written."""
+"""Every construct of the language, with the facts that it states and their places in the text."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_figure_7() -> None:
         ("# nothing", []),
     ],
 )
-def test_what_is_stated(text: str, stated: list[str]) -> None:
+def test_stated_facts(text: str, stated: list[str]) -> None:
     assert facts(text) == stated
 
 
@@ -119,7 +119,7 @@ def test_declarations() -> None:
     assert script.objects == ("soup_spoon", "f1", "f2", "x_1", "x_2", "a", "k")
 
 
-def test_the_narrower_declaration_stays() -> None:
+def test_the_narrower_declaration_holds() -> None:
     assert declared(parse_script("x is a DinnerFork; x is a Fork; x is a thing")) == {"x": "DinnerFork"}
 
 
@@ -127,7 +127,7 @@ def coloured(script: Script) -> dict[str, str]:
     return {name: colour.label for name, colour in script.colours.items()}
 
 
-def test_colours_are_declared_as_kinds_are() -> None:
+def test_colours_are_declared_like_kinds() -> None:
     script = parse_script("napkin is red; the plate is dark blue; x is a white mug; 2 y are gray; x, z are white")
     colours = {"napkin": "red", "plate": "blue", "x": "white", "y_1": "grey", "y_2": "grey", "z": "white"}
     assert coloured(script) == colours
@@ -135,12 +135,12 @@ def test_colours_are_declared_as_kinds_are() -> None:
     assert script.facts == ()
 
 
-def test_kind_and_colour_may_stand_in_statements_of_their_own() -> None:
+def test_kind_and_colour_in_separate_statements() -> None:
     script = parse_script("x is a mug; x is red; x is a red thing; x left of y")
     assert (coloured(script), declared(script)) == ({"x": "red"}, {"x": "Mug"})
 
 
-def test_a_colour_at_the_head_of_a_name_is_meant_unless_the_name_is_a_kind_or_declared_otherwise() -> None:
+def test_a_name_may_begin_with_its_colour() -> None:
     script = parse_script(
         "the red mug left of red_wine_glass; 2 green_plate on mat; orange on mat; white_wine is yellow"
     )
@@ -148,13 +148,13 @@ def test_a_colour_at_the_head_of_a_name_is_meant_unless_the_name_is_a_kind_or_de
     assert coloured(script) == colours
 
 
-def test_a_name_s_colour_leaves_the_kind_of_the_rest() -> None:
+def test_the_kind_of_a_name_after_its_colour() -> None:
     graph = parse_script("the red mug left of blue thingummy").graph()
     assert [kind and kind.rpartition("#")[2] for kind in graph.kinds] == ["Mug", None]
     assert [colour and colour.rpartition("#")[2] for colour in graph.colours] == ["red", "blue"]
 
 
-def test_a_script_without_colours_gives_a_graph_without_any() -> None:
+def test_no_colours_in_the_script_give_none_in_the_graph() -> None:
     assert parse_script("fork left of plate").graph().colours == ()
 
 
@@ -209,15 +209,15 @@ def test_comments() -> None:
     ]
 
 
-def test_all_problems_are_told_at_once() -> None:
+def test_all_errors_are_reported_at_once() -> None:
     with pytest.raises(ScriptError) as caught:
         parse_script("fork\na on b\na on a\nc ? d; e on\nf on g")
     assert [(p.source.line, p.source.column) for p in caught.value.problems] == [(1, 1), (3, 6), (4, 3), (4, 12)]
 
 
-def test_fifty_problems_are_shown_and_the_rest_is_counted() -> None:
+def test_fifty_errors_are_shown_and_the_rest_counted() -> None:
     with pytest.raises(ScriptError) as caught:
         parse_script("fork\n" * 60)
     assert len(caught.value.problems) == 60
     assert str(caught.value).endswith("\n… and 10 more")
-    assert str(caught.value).count("nothing is said") == 50
+    assert str(caught.value).count("this statement says nothing") == 50

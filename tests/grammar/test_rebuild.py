@@ -1,4 +1,4 @@
-"""A learned layout as a script again: reading it gives the same facts."""
+"""A learned layout written as a script: reading it gives the same facts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from deixis.ontology.tbox import default_ontology
 
 @settings(deadline=None, max_examples=100)
 @given(scripts())
-def test_parse_learn_show_parse_gives_the_same_facts(script: Script) -> None:
+def test_a_learned_layout_is_read_back_unchanged(script: Script) -> None:
     concept = layout_concept(script, "x-1")
     again = parse_script(layout_script(concept, default_ontology()))
     said = [(str(f), f.positive, f.optional, f.weight) for f in script.graph().facts()]
@@ -27,13 +27,13 @@ def test_parse_learn_show_parse_gives_the_same_facts(script: Script) -> None:
 
 
 @pytest.mark.parametrize("text", ["red_fork is red", "red_fork is red; knife left of spoon", "fork is a plate"])
-def test_what_was_declared_and_never_related_is_still_there(text: str) -> None:
+def test_unrelated_declared_objects_are_kept(text: str) -> None:
     again = parse_script(layout_script(layout_concept(parse_script(text), "x-1"), default_ontology()))
     assert again.colours == parse_script(text).colours
     assert again.objects == parse_script(text).objects
 
 
-def test_the_layout_is_written_a_fact_a_line() -> None:
+def test_the_layout_has_one_fact_per_line() -> None:
     script = parse_script(
         'layout t "T" seen from chair\nx is a Fork\n2 glass above x; maybe x not left of y', file="t.layout"
     )

@@ -1,1 +1,1 @@
-"""Learners of words for things: each begins with none, and is taught and corrected a view at a time."""
+"""Open-ended learners of categories: each starts without any, and is taught and corrected one view at a time."""

@@ -1,4 +1,4 @@
-"""Several learners side by side, combined, and the one that did best lately gives the answer."""
+"""A committee of learners: the member or combination with the best recent success rate answers."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ VOTE, BELIEF = "majority vote", "Dempster-Shafer"
 
 
 class Committee:
-    """Learners over different representations, their majority vote and their Dempster-Shafer combination.
+    """Learner that combines others by majority vote and by Dempster-Shafer evidence, and follows the best of all.
 
-    Taken from L. Seabra Lopes, A. Chauhan: Open-ended category learning for language acquisition, Connection Science
-    20(4), 2008: each classifier has a representation of its own; combinations stand beside the classifiers as further
-    ones; after every answer that the teacher confirms or corrects the success of each over the last ``window`` such
-    answers is known, combinations are made from the ``best`` most successful classifiers, and attention goes to
-    whichever, classifier or combination, was the most successful lately (before any answer, and among equals, to the
-    first in the order of ``outlook``). Changed: members are whole learners, so that any can join. Left out: their
-    features of 2-D images and their pyramid match.
+    The method is that of L. Seabra Lopes, A. Chauhan: Open-ended category learning for language acquisition, Connection
+    Science 20(4), 2008. Each classifier has its own representation, and combinations count as further classifiers. The
+    success of each over the last ``window`` answers that the teacher confirmed or corrected is recorded. Combinations
+    are made from the ``best`` most successful classifiers, and the most successful classifier or combination answers
+    (before any answer, and among equals, the first in the order of ``outlook``). Changed: members are whole learners,
+    so that any can join. Omitted: features of 2-D images, and the pyramid match.
 
-    A member whose recent success rate is r (successes + 1 over answers + 2) lends mass r to its first choice and
-    leaves 1 - r to ignorance; Dempster's rule of these. Unknown is the first member's.
+    A member with the recent success rate r = (successes + 1) / (answers + 2) gives mass r to its first choice and 1 - r
+    to ignorance; these are combined by Dempster's rule. ``unknown`` is that of the first member.
     """
 
     name = "committee"
@@ -34,8 +33,8 @@ class Committee:
         names = [member.name for member in members]
         if not members or len(set(names)) < len(names) or window < 1 or best < 1:
             raise RecognitionError(
-                f"a committee has one member or more, each with a name of its own, not {names}; "
-                f"its window ({window}) and its combinations ({best}) are 1 or more"
+                f"a committee must have at least one member, with distinct names, got {names}; "
+                f"`window` ({window}) and `best` ({best}) must be at least 1"
             )
         self._members, self._best = tuple(members), best
         self._lately = {name: deque[bool](maxlen=window) for name in (BELIEF, VOTE, *names)}
@@ -43,27 +42,27 @@ class Committee:
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """The first member's, which are everybody's."""
+        """Names of the categories, which all members share."""
         return self._members[0].categories
 
     @property
     def stored(self) -> int:
-        """The first member's: all are taught the same views."""
+        """Number of instances that the first member stores."""
         return self._members[0].stored
 
     @property
     def outlook(self) -> dict[str, float]:
-        """The recent success rate of every member and combination; (successes + 1) / (answers + 2)."""
+        """Recent success rate of every member and combination, (successes + 1) / (answers + 2)."""
         return {name: (sum(lately) + 1) / (len(lately) + 2) for name, lately in self._lately.items()}
 
     @property
     def attended(self) -> str:
-        """The member or combination that answers now."""
+        """Name of the member or combination that answers now."""
         outlook = self.outlook
         return max(outlook, key=lambda name: outlook[name])
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return what the attended one says."""
+        """Return the prediction of the member or combination that answers now."""
         return self._opinions(view)[self.attended]
 
     def learn(self, category: str, view: ViewFeatures) -> None:
@@ -73,19 +72,19 @@ class Committee:
             member.learn(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Note who was right, and correct every member."""
+        """Record which members were right, and correct every member."""
         self._watch(category, view)
         for member in self._members:
             member.correct(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Note who was right, and tell every member."""
+        """Record which members were right, and confirm the answer to every member."""
         self._watch(category, view)
         for member in self._members:
             member.confirm(category, view)
 
     def forget(self, category: str) -> None:
-        """Forget the category in every member; success goes on being counted."""
+        """Forget the category in every member, but keep the record of success."""
         self._changed()
         for member in self._members:
             member.forget(category)
@@ -111,8 +110,7 @@ class Committee:
         self._changed()
 
     def _opinions(self, view: ViewFeatures) -> dict[str, Prediction]:
-        """Return what everybody says of the view; kept, since a teacher tells about the view that was just asked
-        for."""
+        """Return all predictions for a view; cached, since the teacher answers for the view of the last question."""
         if self._asked is None or self._asked[0] is not view:
             said = {member.name: member.predict(view) for member in self._members}
             unknown = next(iter(said.values())).unknown
@@ -134,7 +132,7 @@ class Committee:
 
 
 def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Return votes by category; of as many votes the earlier voter's category is ahead, by less than a vote.
+    """Return the votes by category; ties go to the category of the earlier voter, by less than one vote.
 
     >>> votes = majority([("cup", 0.9), ("mug", 0.6), ("mug", 0.5)])
     >>> max(votes, key=votes.__getitem__)
@@ -146,8 +144,9 @@ def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
 
 
 def dempster_shafer(support: Sequence[tuple[str, float]]) -> dict[str, float]:
-    """Return combined masses of categories, each of (category, mass) leaving the rest of its mass to ignorance; masses
-    < 1.
+    """Return the masses of categories combined by Dempster's rule.
+
+    ``support`` holds pairs of a category and its mass, below 1; the rest of each mass goes to ignorance.
 
     >>> masses = dempster_shafer([("cup", 0.5), ("mug", 0.5)])
     >>> round(masses["cup"], 3), round(masses["mug"], 3)

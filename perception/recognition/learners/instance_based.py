@@ -1,4 +1,4 @@
-"""The paper's learner: a category is its instances, and the nearest category, by equations 1 to 4, is the answer."""
+"""The instance-based learner of the paper: the answer is the nearest category by equations 1 to 4."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from deixis.perception.recognition.recogniser import Recogniser
 from deixis.perception.recognition.settings import DEFAULT, RecognitionSettings
 
 INSTANCES = "equations 1-4, ICD of things"
-"""What the learner is called as it is by default."""
+"""Default name of the learner."""
 
 
 class InstanceBased(TaughtViews):
-    """Equations 1 to 4 over one descriptor; a score is minus ND, and unknown is the least ND.
+    """Learner by equations 1 to 4 over one descriptor; a score is minus ND, and ``unknown`` is the least ND.
 
-    Taken from the paper (and Kasaei et al., Interactive open-ended learning for 3D object recognition, 2015):
-    equations 1 to 4; an instance more at each teaching and at each correction. Added, each of which can be left out:
+    Equations 1 to 4, and a new instance at each teaching and each correction, are those of the paper (and of Kasaei et
+    al., Interactive open-ended learning for 3D object recognition, 2015). There are three optional additions:
 
-    - Descriptors are replaced by their square roots, so that the distance of equation 1 is Hellinger's between spin
-      images, which sum to 1 (``root`` False: as they are).
-    - Equation 3 is over pairs of views of different things, and drawn to the median ICD of all categories; why:
-      :mod:`deixis.perception.recognition.spread` (``settings`` :data:`.PAPER`: equations 3 and 4 as they stand).
-    - ``by_distance`` names the category of least D_C (equation 2), and leaves ND to say what is unknown.
+    - Descriptors are replaced by their square roots, so that the distance of equation 1 is the Hellinger distance
+      between spin images, which sum to 1 (not with ``root`` False).
+    - Equation 3 is over pairs of views of different things, and shrunk towards the median ICD of all categories, for
+      the reasons in :mod:`deixis.perception.recognition.spread` (not with ``settings`` :data:`.PAPER`).
+    - ``by_distance`` ranks categories by D_C (equation 2), and uses ND only for ``unknown``.
 
-    Left out: the threshold and probabilities, which belong to recognition as a whole.
+    Omitted: the threshold and probabilities, which belong to recognition as a whole.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class InstanceBased(TaughtViews):
         self._number = 0
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Rank the categories by ND, or by D_C; categories without a view that can be compared are left out."""
+        """Rank the categories by ND, or by D_C, without categories that have no comparable view."""
         found = self._recogniser.recognise(self._described(view)).candidates
         usable = [candidate for candidate in found if candidate.nearest is not None]
         if not usable:

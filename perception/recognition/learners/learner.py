@@ -1,4 +1,4 @@
-"""What every learner looks like from outside, and what those share that keep the views they were taught."""
+"""The protocol of all learners, and the base class of those that store the taught views."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 @dataclass(frozen=True)
 class Prediction:
-    """What a learner takes a view for: known categories with their scores, the likeliest first, and a doubt.
+    """Prediction for a view: known categories with scores, the most likely first, and a score for unknown.
 
-    A higher ``score`` is likelier; a higher ``unknown`` says that the view is rather of no known category. Both compare
-    within a learner, not between two. Without a category, or a view that can be described, nothing is ranked and
-    ``unknown`` is infinite.
+    Higher scores are more likely; a higher ``unknown`` means that the view is more likely of no known category. Both
+    are comparable within a learner only. Without categories, or for a view without descriptors, ``ranked`` is empty and
+    ``unknown`` infinite.
 
     >>> Prediction.of({"cup": -1.2, "mug": -0.8}, unknown=0.8).best
     'mug'
@@ -28,68 +28,72 @@ class Prediction:
 
     @classmethod
     def of(cls, scores: dict[str, float], unknown: float) -> Prediction:
-        """Return the categories by score; of equal scores the first name goes first."""
+        """Return a prediction from the categories' scores; equal scores are ordered by name."""
         ranked = sorted(scores.items(), key=lambda item: (-item[1], item[0]))
         return cls(tuple(ranked), unknown) if ranked else cls()
 
     @property
     def best(self) -> str | None:
-        """The likeliest category; None where nothing is ranked."""
+        """Most likely category; None without categories."""
         return self.ranked[0][0] if self.ranked else None
 
 
 class Learner(Protocol):
-    """Categories that come into being when a teacher names a view; none is there before.
+    """Learner of categories, which begin when a teacher names a view.
 
-    Whatever names a category that is not known raises RecognitionError, but for ``learn`` and ``correct``, which begin
-    a new one. The same calls in the same order give the same predictions.
+    All methods raise RecognitionError for an unknown category, except ``learn`` and ``correct``, which begin a new one.
+    The same calls in the same order give the same predictions.
     """
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the learner."""
+        ...
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """The names of what is known, in the order in which it was taught."""
+        """Names of the known categories, in the order of teaching."""
         ...
 
     @property
     def stored(self) -> int:
-        """Instances, or prototypes, that are kept of all categories together."""
+        """Number of instances, or prototypes, that are stored for all categories together."""
         ...
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Learn what a view shows, as the teacher says it."""
+        """Learn that a view shows the category."""
         ...
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return what the view may be; nothing is learnt from being asked."""
+        """Return the prediction for a view, without learning from it."""
         ...
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Learn that the answer to the view was wrong: it shows the category."""
+        """Learn that the prediction for a view was wrong: it shows the category."""
         ...
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Learn that the answer to the view was right: it shows the category."""
+        """Learn that the prediction for a view was right: it shows the category."""
         ...
 
-    def forget(self, category: str) -> None: ...
+    def forget(self, category: str) -> None:
+        """Remove a category."""
+        ...
 
     def rename(self, category: str, name: str) -> None:
-        """Raise RecognitionError where the new name is another category's."""
+        """Rename a category; raise RecognitionError if the new name is that of another one."""
         ...
 
     def merge(self, category: str, into: str) -> None:
-        """Move what is known of one category to another."""
+        """Move the knowledge of one category to another, and remove the first."""
         ...
 
 
 class TaughtViews(ABC):
-    """Views by category. A learner builds upon them what it predicts from, and is told when a category changes.
+    """Base class of learners that store views by category, and are notified when a category changes.
 
-    A view is kept when it is taught and when an answer is corrected, as in the open-ended protocol of Seabra Lopes and
-    Chauhan (2007) and in the paper; a right answer adds nothing.
+    A view is stored when it is taught and when a prediction is corrected, as in the open-ended protocol of Seabra Lopes
+    and Chauhan (2007) and in the paper; a right prediction adds nothing.
     """
 
     name = ""
@@ -99,42 +103,42 @@ class TaughtViews(ABC):
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """In the order in which they were taught first."""
+        """Names of the known categories, in the order of teaching."""
         return tuple(self._views)
 
     @property
     def stored(self) -> int:
-        """Views that are kept."""
+        """Number of stored views."""
         return sum(map(len, self._views.values()))
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Keep the view."""
+        """Store the view."""
         self._views[category] = (*self._views.get(category, ()), view)
         self._added(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Keep the view, as if it had been taught."""
+        """Store the view, as if it had been taught."""
         self.learn(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Keep nothing; raise RecognitionError where the category is not known."""
+        """Store nothing; raise RecognitionError if the category is not known."""
         require_known(category, self._views)
 
     def forget(self, category: str) -> None:
-        """Drop the category with all its views."""
+        """Remove the category with all its views."""
         require_known(category, self._views)
         del self._views[category]
         self._rebuilt(category, ())
 
     def rename(self, category: str, name: str) -> None:
-        """Keep the category's place in the order."""
+        """Rename the category, which keeps its place in the order."""
         require_free(category, name, self._views)
         self._views = {name if old == category else old: views for old, views in self._views.items()}
         self._rebuilt(category, ())
         self._rebuilt(name, self._views[name])
 
     def merge(self, category: str, into: str) -> None:
-        """Keep the views of the second category, and then those of the first."""
+        """Append the views of the first category to those of the second."""
         require_two(category, into, self._views)
         self._views[into] += self._views.pop(category)
         self._rebuilt(category, ())
@@ -142,32 +146,32 @@ class TaughtViews(ABC):
 
     @abstractmethod
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return what the view may be."""
+        """Return the prediction for a view."""
 
     @abstractmethod
     def _added(self, category: str, view: ViewFeatures) -> None:
-        """Take in one more view of a category."""
+        """Process one more view of a category."""
 
     @abstractmethod
     def _rebuilt(self, category: str, views: tuple[ViewFeatures, ...]) -> None:
-        """Replace the views of a category; without any it is gone."""
+        """Replace the views of a category; without views it is removed."""
 
 
 def require_known(category: str, known: Collection[str]) -> None:
-    """Raise RecognitionError, with the names there are, where the category is none of them."""
+    """Raise RecognitionError, with the known names, if the category is not known."""
     if category not in known:
-        raise RecognitionError(f"there is no category '{category}'; known are: {', '.join(known) or 'none'}")
+        raise RecognitionError(f"unknown category '{category}'; the categories are: {', '.join(known) or 'none'}")
 
 
 def require_free(category: str, name: str, known: Collection[str]) -> None:
-    """Raise RecognitionError unless the category is known and the name is its own or nobody's."""
+    """Raise RecognitionError unless the category is known, and the name is its own or not in use."""
     require_known(category, known)
     if name in known and name != category:
         raise RecognitionError(f"there is a category '{name}' already; merge '{category}' into it instead")
 
 
 def require_two(category: str, into: str, known: Collection[str]) -> None:
-    """Raise RecognitionError unless two different known categories are named."""
+    """Raise RecognitionError unless both categories are known and different."""
     require_known(category, known)
     require_known(into, known)
     if category == into:

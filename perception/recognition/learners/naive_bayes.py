@@ -1,7 +1,4 @@
-"""A view as a bag of words, and naive Bayes over them.
-
-Words for local shapes are clusters of descriptors that nobody named.
-"""
+"""Naive Bayes over bags of visual words, which are clusters of descriptors of local shapes."""
 
 from __future__ import annotations
 
@@ -17,14 +14,14 @@ from deixis.perception.recognition.learners.learner import Prediction, TaughtVie
 from deixis.perception.recognition.learners.view_features import ViewFeatures, roots
 
 SAMPLE = 8000
-"""Descriptors that clusters are found from, at most."""
+"""Maximum number of descriptors from which clusters are computed."""
 
 ROUNDS = 15
 
 
 @dataclass(frozen=True, eq=False)
 class Codebook:
-    """The centres (w, d) of w words, in square roots of one descriptor."""
+    """Codebook of w words: the centres (w, d) of clusters, in square roots of one descriptor."""
 
     descriptor: str
     centres: NDArray[np.float64]
@@ -33,9 +30,9 @@ class Codebook:
     def of(
         cls, views: Iterable[ViewFeatures], words: int = 80, descriptor: str = "spin_images", seed: int = 0
     ) -> Codebook:
-        """Return clusters of the views' descriptors, by k-means from k-means++ (Arthur and Vassilvitskii 2007).
+        """Return a codebook of the views' descriptors, by k-means from k-means++ (Arthur and Vassilvitskii 2007).
 
-        No categories are asked for. There are fewer words where there are fewer different descriptors. Raises
+        It does not use categories. There are fewer words if there are fewer distinct descriptors. Raises
         RecognitionError for a number of words below 1, and for views without a descriptor.
         """
         from scipy.cluster.vq import kmeans2
@@ -57,24 +54,25 @@ class Codebook:
         return len(self.centres)
 
     def counts(self, view: ViewFeatures) -> NDArray[np.float64]:
-        """Return how often each word occurs in a view, (w,): each descriptor is its nearest word."""
+        """Return the counts (w,) of the words in a view; each descriptor counts as its nearest word."""
         rows = roots(view[self.descriptor])
         distances = (self.centres**2).sum(axis=1) - 2.0 * rows @ self.centres.T
         return np.bincount(distances.argmin(axis=1), minlength=len(self)).astype(np.float64)
 
 
 class NaiveBayes(TaughtViews):
-    """Multinomial naive Bayes over the words of a codebook.
+    """Learner by multinomial naive Bayes over the words of a codebook.
 
-    Taken from S. H. Kasaei, M. Oliveira, G. H. Lim, L. Seabra Lopes, A. M. Tome: Towards lifelong assistive robotics: a
-    tight coupling between object perception and manipulation, Neurocomputing 291, 2018: spin images become words of a
-    codebook that is learnt unsupervised beforehand; a category is the counts of its views' words, with Laplace
-    smoothing, and a prior by the number of its views; a view updates them at no more than the cost of counting.
-    Changed: ``prior`` 0 takes all categories for equally likely, since a teacher corrects, and so shows, hard ones more
-    often; ``smoothing`` is what each word is counted beforehand. Left out: the grasps.
+    The method is that of S. H. Kasaei, M. Oliveira, G. H. Lim, L. Seabra Lopes, A. M. Tome: Towards lifelong assistive
+    robotics: a tight coupling between object perception and manipulation, Neurocomputing 291, 2018. Spin images become
+    words of a codebook that is learnt in advance without supervision. A category is the counts of its views' words,
+    with Laplace smoothing, and a prior by the number of its views; an update costs no more than counting. Changed: a
+    ``prior`` of 0 makes all categories equally likely, since a teacher corrects hard ones, and so shows them, more
+    often; ``smoothing`` is the initial count of each word. Omitted: grasps.
 
-    A score is the mean log-likelihood of a word; unknown is how far the best of them lies below that of the view's own
-    shares of words, the most that any can have: the Kullback-Leibler divergence of the view from the category.
+    A score is the mean log-likelihood of a word. ``unknown`` is the difference between the largest possible score, that
+    of the view's own shares of words, and the best score: the Kullback-Leibler divergence of the view from the
+    category.
     """
 
     name = "naive Bayes"
@@ -82,12 +80,14 @@ class NaiveBayes(TaughtViews):
     def __init__(self, codebook: Codebook, smoothing: float = 0.5, prior: float = 0.0) -> None:
         super().__init__()
         if not smoothing > 0.0 or prior < 0.0:
-            raise RecognitionError(f"smoothing is above 0 and a prior's weight not below, not {smoothing:g}, {prior:g}")
+            raise RecognitionError(
+                f"`smoothing` must be above 0 and `prior` at least 0, got {smoothing:g} and {prior:g}"
+            )
         self._codebook, self._smoothing, self._prior = codebook, smoothing, prior
         self._counts: dict[str, NDArray[np.float64]] = {}  # (w,) each
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Rank the categories by the posterior."""
+        """Rank the categories by posterior probability."""
         if not self._counts or not view.has(self._codebook.descriptor):
             return Prediction()
         words = self._codebook.counts(view)

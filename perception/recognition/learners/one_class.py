@@ -1,4 +1,4 @@
-"""A description of each word's own views, learnt without any other's: one-class learning."""
+"""One-class learning: a description of each category from its own views only."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from deixis.perception.recognition.learners.learner import Prediction, TaughtVie
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
 
 POOLED_DESCRIBERS = ("spin_images", "good", "d2_extents")
-"""What a view's vector is pooled from."""
+"""Names of the descriptors that are pooled into a view's vector."""
 
 
 class SupportVectorDescription(TaughtViews):
-    """A support vector data description (SVDD) per word over a view's pooled descriptors, with an RBF kernel.
+    """Learner with a support vector data description (SVDD) per category, over pooled descriptors, with an RBF kernel.
 
-    Taken from L. Seabra Lopes, A. Chauhan: How many words can my robot learn? An approach and experiments with
-    one-class learning, Interaction Studies 8(1), 2007: a word is described by its own instances alone, so that a new
-    word disturbs no other; it is retrained when an instance is added; a view belongs to the word whose boundary it is
-    deepest within, or least outside, distances being over the size of the description. Left out: their features of 2-D
-    contours, and the words' names in speech.
+    The method is that of L. Seabra Lopes, A. Chauhan: How many words can my robot learn? An approach and experiments
+    with one-class learning, Interaction Studies 8(1), 2007. A category is described by its own instances only, so that
+    a new category changes no other; it is retrained when an instance is added. A view belongs to the category in whose
+    boundary it is deepest, or least outside, relative to the size of the description. Omitted: features of 2-D
+    contours, and spoken names.
 
-    scikit-learn's one-class SVM is used: with a kernel whose k(x, x) is constant, as of the RBF, it finds the same
-    support vectors as the smallest ball of SVDD (Schoelkopf et al. 2001). With f(x) = sum of a_i k(x_i, x), which is
-    rho on the boundary, scores are f(x) / rho: 1 there, more inside. ``outliers`` is nu, the share of a word's own
-    views that may lie outside; ``reach`` is the width of the kernel, exp(-|x - y|^2 / reach^2).
+    scikit-learn's one-class SVM is used: for a kernel with constant k(x, x), such as the RBF, it has the same support
+    vectors as the smallest ball of SVDD (Schoelkopf et al. 2001). With f(x) = sum of a_i k(x_i, x), which is rho on the
+    boundary, scores are f(x) / rho: 1 on the boundary, and more inside. ``outliers`` is nu, the share of a category's
+    own views that may lie outside; ``reach`` is the width of the kernel, exp(-|x - y|^2 / reach^2).
 
-    Raises MissingExtraError where scikit-learn is not installed, RecognitionError for settings that describe nothing.
+    Raises MissingExtraError if scikit-learn is not installed, and RecognitionError for settings out of range.
     """
 
     name = "SVDD"
@@ -42,12 +42,12 @@ class SupportVectorDescription(TaughtViews):
         super().__init__()
         require("sklearn", "the learner SVDD")
         if not 0.0 < outliers < 1.0 or not reach > 0.0:
-            raise RecognitionError(f"a share of outliers in (0, 1) and a reach above 0, not {outliers:g} and {reach:g}")
+            raise RecognitionError(f"`outliers` must be in (0, 1) and `reach` above 0, got {outliers:g} and {reach:g}")
         self._descriptors, self._outliers, self._gamma = tuple(descriptors), outliers, reach**-2
         self._machines: dict[str, Any] = {}
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Rank the categories by how deep within their descriptions the view lies; unknown is 1 - the best score."""
+        """Rank the categories by the depth of the view in their descriptions; ``unknown`` is 1 - the best score."""
         vector = pooled(view, self._descriptors)
         if vector is None or not self._machines:
             return Prediction()

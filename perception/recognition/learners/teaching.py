@@ -1,4 +1,4 @@
-"""The protocol of open-ended learning: a simulated teacher names, asks and corrects, until nothing more is learnt.
+"""The teaching protocol of open-ended learning: a simulated teacher names, asks and corrects until progress ends.
 
 A. Chauhan, L. Seabra Lopes: Using spoken words to guide open-ended category formation, Cognitive Processing 12, 2011;
 measures as in S. H. Kasaei et al.: Interactive open-ended learning for 3D object recognition, Journal of Intelligent
@@ -21,12 +21,12 @@ from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 @dataclass(frozen=True)
 class Teaching:
-    """How a teacher teaches: a category more is introduced once the share of right answers is above ``threshold``.
+    """Settings of the teacher, who introduces a new category when the share of right answers is above ``threshold``.
 
-    The share is that over the last ``window`` * n answers, n being the categories known, of those given since the last
-    category was introduced, and counts once there are n of them: each category was asked for once. After ``patience``
-    answers since then without success the teacher gives up. ``first`` views introduce a category: three, since
-    equation 3 needs two, and with two rests on a single pair.
+    The share is that of the last ``window`` * n answers since the last introduction, for n known categories, and counts
+    after n answers, when each category was asked for once. The teacher gives up after ``patience`` answers without
+    success. ``first`` is the number of views that introduce a category: three, since equation 3 needs two, and would
+    then depend on a single pair.
     """
 
     threshold: float = 0.67
@@ -37,12 +37,13 @@ class Teaching:
     def __post_init__(self) -> None:
         if not 0.0 <= self.threshold < 1.0 or min(self.window, self.patience, self.first) < 1:
             raise RecognitionError(
-                f"a teacher's threshold lies in [0, 1), and window, patience and first views are 1 or more, not {self}"
+                "a teacher's `threshold` must be in [0, 1), and `window`, `patience` and `first` at least 1,"
+                f" got {self}"
             )
 
 
 class End(Enum):
-    """Why a course ended: all categories were learnt, patience ran out, or a category had no view left."""
+    """Reason for the end of a course: all categories were learnt, patience ran out, or a category had no view left."""
 
     LEARNT = "all learnt"
     FRUITLESS = "no progress"
@@ -51,9 +52,12 @@ class End(Enum):
 
 @dataclass(frozen=True)
 class TaughtAnswer:
-    """One question: what was shown, what the learner said and its doubt that it was any known category, how many
-    categories it knew, how many instances it had stored afterwards, and the share of right answers that the teacher
-    watches."""
+    """Answer to one question.
+
+    ``category`` was shown, ``said`` is the answer, and ``unknown`` the score for no known category. ``known`` is the
+    number of known categories, ``stored`` the number of instances stored afterwards, and ``accuracy`` the share of
+    right answers that the teacher compares with the threshold.
+    """
 
     category: str
     said: str | None
@@ -64,14 +68,17 @@ class TaughtAnswer:
 
     @property
     def right(self) -> bool:
+        """True if the answer is the category shown."""
         return self.said == self.category
 
 
 @dataclass(frozen=True)
 class Course:
-    """A course of teaching from beginning to end. ``introduced`` holds, for each category, the answers given before;
-    ``doubts`` the learner's doubt about each view that introduced a category, before it was taught any of these; the
-    first category has none, as nothing was known."""
+    """A course of teaching from beginning to end.
+
+    ``introduced`` holds, for each category, the number of answers before its introduction. ``doubts`` holds the scores
+    for unknown of the views that introduced a category, before they were taught; the first category has none.
+    """
 
     learner: str
     order: tuple[str, ...]
@@ -84,28 +91,30 @@ class Course:
 
     @property
     def iterations(self) -> int:
-        """QCI: question and correction iterations."""
+        """Number of question and correction iterations (QCI)."""
         return len(self.answers)
 
     @property
     def instances(self) -> float:
-        """Instances stored per category that was introduced; their mean over courses is AIC."""
+        """Number of stored instances per introduced category; its mean over courses is AIC."""
         return self.stored / len(self.introduced)
 
     @property
     def global_accuracy(self) -> float:
-        """GCA: the share of all answers that were right; nan without one."""
+        """Global classification accuracy (GCA), the share of right answers; nan without answers."""
         return float(np.mean([answer.right for answer in self.answers])) if self.answers else float("nan")
 
     @property
     def protocol_accuracy(self) -> float:
-        """APA: the mean over iterations of the accuracy that the teacher watches; nan without one."""
+        """Average protocol accuracy (APA), the mean of the answers' ``accuracy``; nan without answers."""
         return float(np.mean([answer.accuracy for answer in self.answers])) if self.answers else float("nan")
 
     @property
     def unknown_auroc(self) -> float:
-        """How well the learner's doubt tells views of categories not yet taught from those it was asked about: the
-        probability that it is greater of one of the former; nan where no category came after another."""
+        """Area under the ROC curve of the scores for unknown: views of new categories against views of known ones.
+
+        It is nan if only one category was introduced.
+        """
         return auroc(np.array([answer.unknown for answer in self.answers]), np.array(self.doubts))
 
 
@@ -117,12 +126,30 @@ def teach(
     seed: int = 0,
     tick: Callable[[], None] = lambda: None,
 ) -> Course:
-    """Teach categories in that order; each view is shown once at most, those of a category in the order given.
+    """Teach categories to a learner by the protocol, and return the course.
 
-    Questions go round: each known category is asked for once, in random order, then again. A wrong answer is
-    corrected, a right one confirmed. ``tick`` is called after each answer. Raises RecognitionError where the order is
-    empty, names a category twice, or one that has not a view to introduce and one to ask for, and where the learner
-    knows something already.
+    The teacher asks for each known category once per round, in random order, corrects wrong answers and confirms right
+    ones.
+
+    Parameters
+    ----------
+    learner
+        A learner without categories.
+    views
+        Views by category; each is shown at most once, in the order given.
+    order
+        Categories in the order of their introduction.
+    teaching
+        Settings of the teacher.
+    seed
+        Seed of the order of questions.
+    tick
+        Callback after each answer.
+
+    Raises
+    ------
+    RecognitionError
+        If the order is empty or repeats a category, a category has too few views, or the learner has categories.
     """
     settings = teaching or Teaching()
     _require(learner, views, order, settings)
@@ -157,7 +184,7 @@ def _practise(
     answers: list[TaughtAnswer],
     tick: Callable[[], None],
 ) -> End | None:
-    """Ask about the known categories until the share of right answers passes; else why it did not."""
+    """Ask for the known categories until the share of right answers passes; return the reason if it does not."""
     right: list[bool] = []
     while len(right) < settings.patience or len(right) < len(known):
         for place in rng.permutation(len(known)):
@@ -185,12 +212,14 @@ def _require(
     learner: Learner, views: Mapping[str, Sequence[ViewFeatures]], order: Sequence[str], settings: Teaching
 ) -> None:
     if not order or len(set(order)) < len(order):
-        raise RecognitionError(f"a course teaches one category or more, each once, not {list(order)}")
+        raise RecognitionError(f"a course must teach at least one category, each once, got {list(order)}")
     if learner.categories:
-        raise RecognitionError(f"a course begins from nothing, and the learner knows {', '.join(learner.categories)}")
+        raise RecognitionError(
+            f"a course must begin without categories, but the learner knows {', '.join(learner.categories)}"
+        )
     for name in order:
         if len(views.get(name, ())) <= settings.first:
             raise RecognitionError(
-                f"'{name}' has {len(views.get(name, ()))} views; {settings.first} to introduce it are needed, and one"
-                " to ask about"
+                f"'{name}' must have at least {settings.first + 1} views, {settings.first} to introduce it and one to"
+                f" ask about, got {len(views.get(name, ()))}"
             )

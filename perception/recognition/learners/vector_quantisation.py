@@ -1,4 +1,4 @@
-"""Prototypes that move and multiply where answers are wrong, and features that each category chooses for itself."""
+"""Learning vector quantisation, with prototypes that move and multiply at errors, and features for each category."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(eq=False)
 class _Moments:
-    """Count, sum and sum of squares of vectors."""
+    """Number, sum and sum of squares of vectors."""
 
     count: int
     total: Vector
@@ -43,7 +43,7 @@ class _Moments:
 
 @dataclass(eq=False)
 class _Prototypes:
-    """A category's: places (m, d), and how often each was moved (m,)."""
+    """Prototypes of a category: places (m, d), and the number of moves of each (m,)."""
 
     moments: _Moments
     places: Vector
@@ -51,18 +51,19 @@ class _Prototypes:
 
 
 class VectorQuantisation:
-    """Incremental learning vector quantisation with features selected per category; no view is kept.
+    """Learner by incremental vector quantisation with features selected per category; it stores no views.
 
-    Taken from S. Kirstein, H. Wersing, H.-M. Gross, E. Koerner: A life-long learning vector quantization approach for
-    interactive learning of multiple categories, Neural Networks 28, 2012: a prototype more where an answer was wrong;
-    the winner moves toward a view that it was right about, and away from one that it was wrongly taken for, at a rate
-    of its own that decays with its moves, which keeps what was learnt; a category measures distances in those
-    features only that set it apart. Changed: features are selected by their score alone, from running moments (the
-    squared difference of means over the variances, of the category and of all else), in place of their wrapper, which
-    tries combinations on stored views; a prototype belongs to one category. Left out: the short-term store of views.
+    The method is that of S. Kirstein, H. Wersing, H.-M. Gross, E. Koerner: A life-long learning vector quantization
+    approach for interactive learning of multiple categories, Neural Networks 28, 2012. A wrong answer adds a prototype.
+    The winner moves towards a view that it named rightly, and away from one that it named wrongly, at its own rate,
+    which decays with its moves and so preserves earlier learning. A category measures distances only in the features
+    that separate it from others. Changed: features are selected by their score alone, from running moments (the squared
+    difference of means over the variances, of the category and of all others), instead of by a wrapper that tries
+    combinations on stored views; a prototype belongs to one category. Omitted: the short-term store of views.
 
-    Scores are minus the mean squared distance to the nearest prototype over the category's features, each over its
-    variance among all views; unknown is the least of these distances. ``features`` is how many a category selects.
+    Scores are minus the mean squared distance to the nearest prototype over the category's features, each divided by
+    its variance over all views; ``unknown`` is the least of these distances. ``features`` is the number of features
+    that a category selects.
     """
 
     name = "LVQ"
@@ -76,19 +77,20 @@ class VectorQuantisation:
     ) -> None:
         if features < 1 or not 0.0 <= rate <= 1.0 or not decay > 0.0:
             raise RecognitionError(
-                f"1 feature or more, a rate in [0, 1] and a decay above 0, not {features}, {rate:g} and {decay:g}"
+                "`features` must be at least 1, `rate` in [0, 1] and `decay` above 0,"
+                f" got {features}, {rate:g} and {decay:g}"
             )
         self._descriptors, self._features, self._rate, self._decay = tuple(descriptors), features, rate, decay
         self._known: dict[str, _Prototypes | None] = {}
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """In the order in which they were taught first."""
+        """Names of the known categories, in the order of teaching."""
         return tuple(self._known)
 
     @property
     def stored(self) -> int:
-        """Prototypes."""
+        """Number of prototypes."""
         return sum(len(one.places) for one in self._known.values() if one is not None)
 
     def predict(self, view: ViewFeatures) -> Prediction:
@@ -102,14 +104,14 @@ class VectorQuantisation:
         )
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Correct with a view that would be named wrongly, else confirm."""
+        """Correct with a view that would be named wrongly, or else confirm."""
         if category in self._known and self.predict(view).best == category:
             self.confirm(category, view)
         else:
             self.correct(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Add a prototype where the view is, and move the one that it was taken for away."""
+        """Add a prototype at the view, and move the wrong winner away from it."""
         vector = pooled(view, self._descriptors)
         if vector is None:
             self._known.setdefault(category, None)
@@ -124,7 +126,7 @@ class VectorQuantisation:
             known.moved = np.append(known.moved, 0)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Move the category's nearest prototype toward the view."""
+        """Move the category's nearest prototype towards the view."""
         require_known(category, self.categories)
         vector = pooled(view, self._descriptors)
         if vector is None:
@@ -135,17 +137,17 @@ class VectorQuantisation:
             self._move(category, found[1], vector, 1.0)
 
     def forget(self, category: str) -> None:
-        """Drop its prototypes and its features."""
+        """Remove the category with its prototypes and features."""
         require_known(category, self.categories)
         del self._known[category]
 
     def rename(self, category: str, name: str) -> None:
-        """Keep the category's place in the order."""
+        """Rename the category, which keeps its place in the order."""
         require_free(category, name, self.categories)
         self._known = {name if old == category else old: one for old, one in self._known.items()}
 
     def merge(self, category: str, into: str) -> None:
-        """Join the prototypes of both, and the features that set both apart."""
+        """Join the prototypes and the moments of both categories."""
         require_two(category, into, self.categories)
         one, other = self._known[into], self._known.pop(category)
         if one is None or other is None:
@@ -164,7 +166,7 @@ class VectorQuantisation:
             known.moments = _Moments.sum([known.moments, seen])
 
     def _nearest(self, vector: Vector) -> dict[str, tuple[float, int]]:
-        """Return the nearest prototype of each category: its distance and its place."""
+        """Return the distance and the index of each category's nearest prototype."""
         known = {name: one for name, one in self._known.items() if one is not None}
         if not known:
             return {}
@@ -178,7 +180,7 @@ class VectorQuantisation:
         return found
 
     def _selected(self, own: _Moments, everything: _Moments) -> NDArray[np.int64]:
-        """Return the features (f,) that set a category apart; all of them while there is nothing else."""
+        """Return the features (f,) that separate a category from others; all of them if there are no others."""
         others, size = everything.without(own), len(own.total)
         if not others.count or self._features >= size:
             return np.arange(size)

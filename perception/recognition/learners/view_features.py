@@ -1,4 +1,4 @@
-"""What learners are told of a view: its descriptors, by the name of what described it."""
+"""Features of a view for learners: its descriptors by name."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from deixis.perception.features.describer import Describer
 
 @dataclass(frozen=True, eq=False)
 class ViewFeatures:
-    """Descriptors (k, d) of one view by name, k = 1 for global ones and k = 0 where nothing could be described.
+    """Descriptors (k, d) of one view by name; k is 1 for global ones, and 0 if the view could not be described.
 
-    ``thing`` tells things apart where it is known which one a view shows, as a robot knows that follows a thing with
-    its eyes; views of None show things of their own.
+    ``thing`` identifies the thing that the view shows, which a robot knows that tracks it; a view with None shows a
+    thing of its own.
 
     >>> view = ViewFeatures({"good": np.ones((1, 675), np.float32)})
     >>> view["good"].shape, view.has("good"), view.has("spin_images")
@@ -32,40 +32,39 @@ class ViewFeatures:
     def __post_init__(self) -> None:
         wrong = [name for name, array in self.descriptors.items() if array.ndim != 2 or not array.shape[1]]
         if wrong:
-            raise RecognitionError(f"the descriptors '{wrong[0]}' of a view have shape (k, d), d of 1 or more")
+            raise RecognitionError(f"the descriptors '{wrong[0]}' of a view must have shape (k, d) with d at least 1")
         object.__setattr__(self, "descriptors", MappingProxyType(dict(self.descriptors)))
 
     def __getitem__(self, name: str) -> NDArray[np.float32]:
-        """Return the descriptors of that name; raises RecognitionError, with the names there are, where there are
-        none."""
+        """Return the descriptors of a name; raise RecognitionError, with the known names, for an unknown one."""
         if name not in self.descriptors:
             known = ", ".join(self.descriptors) or "nothing"
-            raise RecognitionError(f"the view was not described by '{name}', only by {known}")
+            raise RecognitionError(f"the view has no descriptor '{name}'; it has {known}")
         return self.descriptors[name]
 
     def has(self, name: str) -> bool:
-        """Return whether there is at least one descriptor of that name."""
+        """Return True if there is at least one descriptor of a name."""
         return name in self.descriptors and len(self.descriptors[name]) > 0
 
 
 def features_of(cloud: PointCloud, describers: Iterable[Describer], thing: str | None = None) -> ViewFeatures:
-    """Return a view of one thing as every describer describes it."""
+    """Return the features of a view of one thing by all describers."""
     return ViewFeatures({describer.name: describer.describe(cloud) for describer in describers}, thing)
 
 
 def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the square roots of descriptors; numbers below 0, which no histogram has, count as 0.
+    """Return the square roots of descriptors; numbers below 0, which histograms do not have, count as 0.
 
-    The Euclidean distance between square roots of histograms is Hellinger's, in which a few full bins do not drown
-    the others.
+    The Euclidean distance between square roots of histograms is the Hellinger distance, in which a few full bins do not
+    dominate the others.
     """
     return np.sqrt(np.maximum(descriptors, np.float32(0.0)))
 
 
 def pooled(view: ViewFeatures, names: Iterable[str]) -> NDArray[np.float64] | None:
-    """Return one vector for a view: the mean over keypoints of the roots of its descriptors, one name after the other.
+    """Return one vector for a view: the means over keypoints of the square roots of its descriptors, concatenated.
 
-    None where a name has no descriptor.
+    Returns None if a name has no descriptor.
 
     >>> pooled(ViewFeatures({"a": np.array([[4.0], [16.0]]), "b": np.array([[1.0, 0.0]])}), ["a", "b"])
     array([3., 1., 0.])

@@ -1,4 +1,4 @@
-"""Calculi in GQR's files: what is read is what was meant, laws are checked, and errors name their place."""
+"""Calculi in GQR's files: they are read correctly, their laws are checked, and errors name their place."""
 
 from __future__ import annotations
 
@@ -40,11 +40,12 @@ def write(folder: Path, name: str, found: TableCalculus, more: str = "", signs: 
 
 
 def branching_time() -> TableCalculus:
-    """Moments in a tree that branches to the future: before, equal, after, and on different branches.
+    """Return the calculus of moments in a tree that branches towards the future: <, =, > and | for other branches.
 
-    Three moments and where their branches part are at most five moments: all trees of five show every way.
+    Three moments and the points where their branches part are at most five moments, so that the trees of five moments
+    show every composition.
     """
-    codes = np.full((120, 120), -1)  # of 24 trees, nothing between them
+    codes = np.full((120, 120), -1)  # 24 trees; no relation between moments of different trees
     for tree, parents in enumerate(np.ndindex(1, 1, 2, 3, 4)):
         above = np.eye(5, dtype=bool)
         for node in range(1, 5):
@@ -58,9 +59,9 @@ def branching_time() -> TableCalculus:
 
 
 def occlusion() -> TableCalculus:
-    """What one sees of things at different depths (Köhler 2002): identical, disjoint, and in front of or behind.
+    """Return the occlusion calculus (Köhler 2002) of things at different depths in a picture.
 
-    Three regions of a picture are known by which of their seven common parts there are; things have an order of depth.
+    The relations of three regions follow from which of their seven parts are present, and from their order of depth.
     """
     signs = ("I", "D", "O", "OT", "F", "FT", "B", "BT")
     cells = np.arange(1, 8)
@@ -75,7 +76,7 @@ def occlusion() -> TableCalculus:
         if not both:
             return "D"
         if not only_a and not only_b:
-            return None  # only a thing itself has its region
+            return None  # only the thing itself has the same region
         front = depth[a] < depth[b]
         if only_a and only_b:
             return "O" if front else "OT"
@@ -89,7 +90,7 @@ def occlusion() -> TableCalculus:
         first, second, third = (atom(parts, depth, a, b) for a, b in ((0, 1), (1, 2), (0, 2)))
         if first and second and third:
             table[signs.index(first), signs.index(second)] |= np.uint64(1 << signs.index(third))
-        if first:  # the third thing is the first one, or the second
+        if first:  # the third thing is the first or the second thing
             back = atom(parts, depth, 1, 0)
             assert back
             table[signs.index(first), signs.index(back)] |= np.uint64(1)
@@ -99,7 +100,7 @@ def occlusion() -> TableCalculus:
     return TableCalculus("occ", signs, np.array([0, 1, 3, 2, 5, 4, 7, 6]), table, 0, decided_by_closure=False)
 
 
-def test_the_occlusion_calculus_is_brought(tmp_path: Path) -> None:
+def test_the_occlusion_calculus_is_read(tmp_path: Path) -> None:
     text = read_calculus(write(tmp_path, "occ", occlusion()))
     occ = text.calculus
     assert not text.notes
@@ -117,7 +118,7 @@ def test_the_occlusion_calculus_is_brought(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("m", "atoms"), [(1, 20), (2, 72)])
-def test_opra_is_brought_and_refutes(m: int, atoms: int, tmp_path: Path) -> None:
+def test_opra_is_read_and_refutes(m: int, atoms: int, tmp_path: Path) -> None:
     text = read_calculus(write_opra(m, tmp_path))
     opra = text.calculus
     assert not text.notes and len(opra.atoms) == atoms
@@ -149,8 +150,8 @@ def test_the_command_solves_in_opra(tmp_path: Path) -> None:
     assert (code, err) == (1, "") and "inconsistent; 3 things, 3 constraints in opra2" in out
 
 
-def test_branching_time_is_brought_and_refutes(tmp_path: Path) -> None:
-    """The table is that of Broxvall and Jonsson 1999: the past of a moment is a line, its future is not."""
+def test_branching_time_is_read_and_refutes(tmp_path: Path) -> None:
+    """Compare with the table of Broxvall and Jonsson (1999): the past of a moment is linear, its future is not."""
     text = read_calculus(write(tmp_path, "branching", branching_time()))
     brought = text.calculus
     assert not text.notes and brought.name == "branching"
@@ -169,13 +170,13 @@ def test_branching_time_is_brought_and_refutes(tmp_path: Path) -> None:
     assert solution.scenario is not None and len(solution.scenario.constraints) == 3
 
 
-def test_a_calculus_says_that_closure_decides_its_atoms(tmp_path: Path) -> None:
+def test_a_file_may_state_that_closure_decides_atoms(tmp_path: Path) -> None:
     brought = read_calculus(write(tmp_path, "branching", branching_time(), "closure_decides atoms\n")).calculus
     some = brought.relation(["<", "|"])
     assert solve(Network(brought, 3, (Constraint(0, 1, some), Constraint(1, 2, some)))).verdict is Verdict.CONSISTENT
 
 
-def test_a_calculus_lists_the_relations_that_closure_decides(tmp_path: Path) -> None:
+def test_a_file_may_list_relations_that_closure_decides(tmp_path: Path) -> None:
     found = branching_time()
     relations = [1 << code for code in range(4)] + [found.universal, 0b0111, 0b1001, 0b1100, 0b0101, 0b1101]
     closed = set(relations)
@@ -195,7 +196,7 @@ def test_a_calculus_lists_the_relations_that_closure_decides(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("name", ["point", "allen", "rcc5", "rcc8", "cd"])
-def test_what_has_the_tables_of_a_known_calculus_is_that_calculus(name: str, tmp_path: Path) -> None:
+def test_the_tables_of_a_known_calculus_are_recognised(name: str, tmp_path: Path) -> None:
     known = calculus(name)
     atoms = known.atoms
     table = [[known.compose(1 << i, 1 << j) for j in range(len(atoms))] for i in range(len(atoms))]
@@ -214,20 +215,20 @@ def test_what_has_the_tables_of_a_known_calculus_is_that_calculus(name: str, tmp
     assert text.calculus is known and name in text.notes[-1]
 
 
-def test_a_table_that_contradicts_itself_is_read_in_every_way(tmp_path: Path) -> None:
+def test_a_contradictory_table_is_repaired_with_a_note(tmp_path: Path) -> None:
     found = branching_time()
     wrong = found.composition.copy()
-    wrong[0, 0] |= np.uint64(0b1000)  # before before may be beside, and its converse may not
+    wrong[0, 0] |= np.uint64(0b1000)  # < : < may be |, but the converse > : > may not
     table = TableCalculus("wrong", found.atoms, found.converses, wrong, found.identity)
     text = read_calculus(write(tmp_path, "wrong", table))
-    assert any("break the law 'converse of composition', < : < first" in note for note in text.notes)
+    assert any("break the law 'converse of composition', first < : <" in note for note in text.notes)
     assert isinstance(text.calculus, TableCalculus)
     assert (text.calculus.composition == found.composition).all()
 
 
 LINES = {
     "spec": ["comp_table_file a.comp", "converse_file a.conv", "identity =", "calculus_size 2"],
-    "conv": ["= :: =", "# :: is no comment where it stands first", "! :: !"],
+    "conv": ["= :: =", "# :: at the start of a line begins a comment", "! :: !"],
     "comp": ["= : = :: ( = )", "= : ! :: ( ! )", "! : = :: ( ! )", "! : ! :: ( = ! )"],
 }
 
@@ -237,24 +238,22 @@ LINES = {
     [
         ("spec", 0, "comp_table a.comp", "a.spec:4:1", "ends without 'comp_table_file'"),
         ("spec", 0, "comp_table_file b.comp", "a.spec:1:17", "there is no file 'b.comp'"),
-        ("spec", 2, "identity EQ", "a.spec:3:10", "is no atom"),
+        ("spec", 2, "identity EQ", "a.spec:3:10", "is not an atom"),
         ("spec", 3, "calculus_size two", "a.spec:4:15", "must be a number"),
         ("spec", 3, "calculus_size 3", "a.spec:4:15", "has 2 atoms"),
-        ("spec", 3, "calculus_size 400", "a.spec:4:15", "up to 320"),
-        ("spec", 3, "identity =", "a.spec:4:1", "said twice"),
+        ("spec", 3, "calculus_size 400", "a.spec:4:15", "must be at most 320"),
+        ("spec", 3, "identity =", "a.spec:4:1", "given twice"),
         ("conv", 2, "! : !", "a.conv:3:1", "expected an atom"),
-        ("conv", 2, "! :: ?", "a.conv:3:6", "no converse of its own"),
+        ("conv", 2, "! :: ?", "a.conv:3:6", "no line states the converse of '?'"),
         ("conv", 2, "= :: =", "a.conv:3:1", "stated twice"),
         ("conv", 2, "! :: =", "a.conv:3:1", "converse of a converse"),
         ("comp", 1, "= : ! = ( ! )", "a.comp:2:1", "expected a composition"),
-        ("comp", 1, "= : ! :: ( ? )", "a.comp:2:12", "is no atom"),
+        ("comp", 1, "= : ! :: ( ? )", "a.comp:2:12", "is not an atom"),
         ("comp", 1, "= : = :: ( = )", "a.comp:2:1", "stated twice"),
-        ("comp", 1, "", "a.comp:4:1", "1 compositions are missing, that of = and ! first"),
+        ("comp", 1, "", "a.comp:4:1", "1 compositions are missing; the first is that of = and !"),
     ],
 )
-def test_what_is_wrong_is_said_with_its_place(
-    file: str, line: int, text: str, place: str, message: str, tmp_path: Path
-) -> None:
+def test_errors_name_their_place(file: str, line: int, text: str, place: str, message: str, tmp_path: Path) -> None:
     for ending, lines in LINES.items():
         changed = [text if (ending, k) == (file, line) else each for k, each in enumerate(lines)]
         (tmp_path / f"a.{ending}").write_text("\n".join(changed), encoding="utf-8")
@@ -277,13 +276,13 @@ def test_the_command_reads_a_specification_and_a_folder(tmp_path: Path) -> None:
     assert code == 2 and "no such file" in err and "Traceback" not in err
 
 
-def test_a_folder_without_one_specification_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(DeixisError, match="it has none"):
+def test_a_folder_needs_one_specification(tmp_path: Path) -> None:
+    with pytest.raises(DeixisError, match="it has no specification"):
         read_calculus(tmp_path)
 
 
 def folders() -> list[Path]:
-    """The specifications in the data for measuring."""
+    """Return the specifications in the folder that DEIXIS_DATA names."""
     root = os.environ.get("DEIXIS_DATA")
     return sorted(Path(root).glob("gqr/**/*.spec")) if root else []
 

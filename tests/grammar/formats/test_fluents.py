@@ -1,4 +1,4 @@
-"""Files of fluents: what is written is read again, and what is wrong is told with its place."""
+"""Files of fluents: a written file is read back unchanged, and each error names its place."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def content(draw: st.DrawFn) -> FluentFile:
 
 
 @given(content())
-def test_what_is_written_is_read_again(written: FluentFile) -> None:
+def test_written_files_are_read_back(written: FluentFile) -> None:
     text = format_fluents(written)
     assert parse_fluents(text) == written
     assert format_fluents(parse_fluents(text)) == text
@@ -71,28 +71,28 @@ def test_the_example_reads_and_writes() -> None:
     assert parse_fluents(format_fluents(found)) == found
 
 
-def test_sources_lead_to_the_place() -> None:
+def test_sources_name_the_place_in_the_file() -> None:
     found = read_fluents(example("serving.fluents.json"))
     assert found.fluents[1].source == f"{example('serving.fluents.json')}: fluents[1]"
     assert found.relations[2].source == f"{example('serving.fluents.json')}: relations[2]"
 
 
 @pytest.mark.parametrize(("unit", "seconds"), [("s", 90.0), ("ms", 0.09), ("min", 5400.0), ("h", 324000.0)])
-def test_units_are_told(unit: str, seconds: float) -> None:
+def test_units_are_converted(unit: str, seconds: float) -> None:
     text = json.dumps(
         {"origin": "o", "unit": unit, "fluents": [{"id": "f", "statement": ["a", "b"], "start": [90, 90]}]}
     )
     assert parse_fluents(text).fluents[0].start == Bounds(seconds, seconds)
 
 
-def test_symbols_of_allen_are_understood() -> None:
+def test_symbols_of_allen_are_accepted() -> None:
     fluents = [{"id": id, "statement": ["a", "b"]} for id in "fg"]
     relations = [{"a": "f", "allen": ["<", "mi", "equals"], "b": "g"}]
     stated = parse_fluents(json.dumps({"origin": "o", "fluents": fluents, "relations": relations})).relations[0]
     assert str(stated) == "before or equals or met_by(f, g)"
 
 
-def test_bounds_may_say_that_an_end_is_open() -> None:
+def test_bounds_with_open_ends() -> None:
     assert bounds_to_json(Bounds(0, 5, upper_open=True)) == {
         "lower": 0,
         "upper": 5,
@@ -116,36 +116,36 @@ WRONG = [
     ('{"origin": "o",\n "fluents": [,]}', ":2:14: this is not valid JSON"),
     ("", ":1:1: this is not valid JSON"),
     ("[" * 100_000, "nested too deeply"),
-    ("[]", "an object {…} is expected here, not a list"),
+    ("[]", "must be an object {…}, got a list"),
     ("{}", "'origin' is missing"),
     ('{"origin": "o"}', "'fluents' is missing"),
     ('{"origin": "o", "origin": "p", "fluents": []}', "the key 'origin' occurs twice"),
-    ('{"origin": "o", "fluent": []}', "'fluent' is no key here; did you mean 'fluents'?"),
-    ('{"origin": "o", "unit": "day", "fluents": []}', "unit: 'day' is not known; use one of s, ms, min, h"),
-    ('{"origin": " ", "fluents": []}', "origin: a text in one line is expected"),
-    ('{"origin": "o", "fluents": {}}', "fluents: a list is expected, not an object"),
-    ('{"origin": "o", "fluents": [7]}', "fluents[0]: an object {…} is expected here, not a number"),
-    (with_fluent(start=[float("nan"), 1]), "NaN is no time; write null"),
-    (with_fluent(start=[float("inf"), 1]), "Infinity is no time"),
-    (with_fluent(id=7), "fluents[0].id: a text is expected, not a number"),
-    (with_fluent(id="a\nb"), "fluents[0].id: a text in one line"),
-    (with_fluent(statement=["cup"]), "fluents[0].statement: subject, predicate"),
-    (with_fluent(statement=["cup", "on", None]), "fluents[0].statement[2]: a text is expected, not null"),
-    (with_fluent(start=[True, 1]), "fluents[0].start[0]: a number or null is expected, not true"),
-    (with_fluent(start=["1", 1]), "fluents[0].start[0]: a number or null is expected, not a text"),
-    (with_fluent(start=[1]), "fluents[0].start: two bounds are expected"),
-    (with_fluent(start=5), "fluents[0].start: a list is expected, not a number"),
+    ('{"origin": "o", "fluent": []}', "unknown key 'fluent'; did you mean 'fluents'?"),
+    ('{"origin": "o", "unit": "day", "fluents": []}', "unit: must be one of s, ms, min, h, got 'day'"),
+    ('{"origin": " ", "fluents": []}', "origin: must be one line of printable text"),
+    ('{"origin": "o", "fluents": {}}', "fluents: must be a list, got an object"),
+    ('{"origin": "o", "fluents": [7]}', "fluents[0]: must be an object {…}, got a number"),
+    (with_fluent(start=[float("nan"), 1]), "NaN is not a time; write null"),
+    (with_fluent(start=[float("inf"), 1]), "Infinity is not a time"),
+    (with_fluent(id=7), "fluents[0].id: must be a string, got a number"),
+    (with_fluent(id="a\nb"), "fluents[0].id: must be one line"),
+    (with_fluent(statement=["cup"]), "fluents[0].statement: must be a subject, a predicate"),
+    (with_fluent(statement=["cup", "on", None]), "fluents[0].statement[2]: must be a string, got null"),
+    (with_fluent(start=[True, 1]), "fluents[0].start[0]: must be a number or null, got true"),
+    (with_fluent(start=["1", 1]), "fluents[0].start[0]: must be a number or null, got a string"),
+    (with_fluent(start=[1]), "fluents[0].start: must be two bounds"),
+    (with_fluent(start=5), "fluents[0].start: must be a list, got a number"),
     (with_fluent(start=[2, 1]), "fluents[0].start: no time lies in [2, 1]"),
-    (with_fluent(start=[0, 10**20]), "fluents[0].start[1]: the time is beyond 4e+09 s"),
-    (with_fluent().replace('"f1"', '"f1", "start": [0, 1e999]'), "fluents[0].start[1]: the time is beyond"),
+    (with_fluent(start=[0, 10**20]), "fluents[0].start[1]: must be at most 4e+09 s"),
+    (with_fluent().replace('"f1"', '"f1", "start": [0, 1e999]'), "fluents[0].start[1]: must be at most"),
     (with_fluent().replace('"f1"', '"f1", "start": [0, 1%s]' % ("0" * 5000)), "a number of 5001 digits is too large"),
-    (with_fluent(start={"lower": 0, "uper": 1}), "fluents[0].start: 'uper' is no key here; did you mean 'upper'?"),
-    (with_fluent(start={"lower": 0, "upper": 1, "upper_open": 1}), "start.upper_open: true or false is expected"),
+    (with_fluent(start={"lower": 0, "uper": 1}), "fluents[0].start: unknown key 'uper'; did you mean 'upper'?"),
+    (with_fluent(start={"lower": 0, "upper": 1, "upper_open": 1}), "start.upper_open: must be true or false"),
     (with_fluent(start=[5, 6], finish=[1, 5]), "fluents[0]: the fluent 'f1' must start before it finishes"),
-    (with_fluent(stop=[1, 5]), "fluents[0]: 'stop' is no key here"),
+    (with_fluent(stop=[1, 5]), "fluents[0]: unknown key 'stop'"),
     (with_relation(ALLEN | {"a": "fetsch"}), "relations[0].a: there is no fluent 'fetsch'; did you mean 'fetch'?"),
     (with_relation(ALLEN | {"allen": ["befor"]}), "allen[0]: there is no relation 'befor'; did you mean 'before'?"),
-    (with_relation(ALLEN | {"allen": []}), "relations[0].allen: at least one relation is expected"),
+    (with_relation(ALLEN | {"allen": []}), "relations[0].allen: must have at least one relation"),
     (with_relation(ALLEN | {"b": "fetch"}), "relations[0]: the fluent 'fetch' is related to itself"),
     (with_relation(BETWEEN | {"from": "fetch"}), "relations[0].from: there is no point 'fetch'"),
     (with_relation(BETWEEN | {"to": "serve.end"}), "there is no point 'serve.end'; did you mean 'serve.finish'?"),
@@ -155,7 +155,7 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("text", "message"), WRONG, ids=[message[:40] for _, message in WRONG])
-def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
+def test_errors_name_their_place(text: str, message: str) -> None:
     with pytest.raises(DeixisError) as caught:
         parse_fluents(text, "t.json")
     assert str(caught.value).startswith("t.json:")
@@ -163,13 +163,13 @@ def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
     assert len(str(caught.value)) < 300
 
 
-def test_ids_are_used_once() -> None:
+def test_an_id_is_used_only_once() -> None:
     twice = json.dumps({"origin": "o", "fluents": [{"id": "f", "statement": ["a", "b"]}] * 2})
     with pytest.raises(FluentFileError, match=r"t: fluents\[1\]\.id: 'f' is used twice"):
         parse_fluents(twice, "t")
 
 
-def refusal(text: str) -> str | None:
+def error_message(text: str) -> str | None:
     try:
         parse_fluents(text)
     except DeixisError as error:
@@ -181,13 +181,13 @@ VALUES = st.none() | st.booleans() | st.floats() | st.text()
 
 
 @given(st.recursive(VALUES, lambda inner: st.lists(inner) | st.dictionaries(TEXTS, inner), max_leaves=10))
-def test_any_json_is_read_or_refused(data: Any) -> None:
+def test_any_json_is_read_or_rejected(data: Any) -> None:
     for text in (json.dumps(data), json.dumps({"origin": "o", "fluents": data}), with_fluent(start=data)):
-        message = refusal(text)
+        message = error_message(text)
         assert message is None or message.startswith("<fluents>:")
 
 
-def test_files_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+def test_unreadable_files_are_named(tmp_path: Path) -> None:
     with pytest.raises(ScriptFileError, match="no such file"):
         read_fluents(tmp_path / "missing.json")
     with pytest.raises(FluentFileError, match="this is a directory"):

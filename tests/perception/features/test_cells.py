@@ -1,4 +1,4 @@
-"""Runs hold every point within reach, and not much else."""
+"""Runs of cells hold every point within reach, and few others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from deixis.perception.features.kernels import ball_runs, cell_grid, cylinder_ru
 @settings(max_examples=80, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from([0.02, 0.1, 0.5]), st.booleans(), st.booleans())
 def test_no_point_within_reach_is_missed(seed: int, cell: float, upright: bool, flat: bool) -> None:
-    """Also for axes along the grid, where the bounds of a cylinder have special cases."""
+    """Include axes along the grid, where the bounds of a cylinder have special cases."""
     rng = np.random.default_rng(seed)
     points = rng.uniform(-1, 1, (400, 3)) * [1.0, 0.6, 0.0 if flat else 0.3]
     axis = np.eye(3)[seed % 3] if upright else rng.normal(size=3)
@@ -32,7 +32,7 @@ def test_no_point_within_reach_is_missed(seed: int, cell: float, upright: bool, 
         assert set(wanted) <= set(held)
 
 
-def test_runs_leave_out_most_of_a_large_cloud() -> None:
+def test_runs_hold_a_small_part_of_a_large_cloud() -> None:
     points = np.random.default_rng(0).uniform(0, 1, (20_000, 3))
     grid = cell_grid(points, 0.02)
     runs = np.empty((grid.shape[0] * grid.shape[1], 2), np.int64)

@@ -1,4 +1,4 @@
-"""What all describers promise, and what each sees."""
+"""Properties that all describers share, and the values of each."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ POSE_FREE = [describer for describer in ALL if not describer.local and describer
 
 
 def mug(seed: int = 0, n: int = 4000) -> NDArray[np.float32]:
-    """The front of a cylinder with a handle to one side, a metre before the sensor."""
+    """Return the front of a cylinder with a handle to one side, 1 m in front of the sensor."""
     rng = np.random.default_rng(seed)
     angle, height = rng.uniform(-1.4, 1.4, n), rng.uniform(0, 0.1, n)
     wall = np.column_stack([0.04 * np.sin(angle), height, 1.0 - 0.04 * np.cos(angle)])
@@ -34,7 +34,7 @@ def mug(seed: int = 0, n: int = 4000) -> NDArray[np.float32]:
 
 
 @pytest.mark.parametrize("describer", ALL, ids=lambda d: d.name)
-def test_what_a_describer_promises(describer: Describer) -> None:
+def test_the_protocol_of_describers(describer: Describer) -> None:
     found = describer.describe(PointCloud(mug()))
     assert DESCRIBERS[describer.name]() == describer
     assert found.shape[1] == describer.size and found.dtype == np.float32 and np.isfinite(found).all()
@@ -43,7 +43,7 @@ def test_what_a_describer_promises(describer: Describer) -> None:
 
 
 @pytest.mark.parametrize("describer", ALL, ids=lambda d: d.name)
-def test_neither_lost_points_nor_the_order_of_points_count(describer: Describer) -> None:
+def test_lost_points_and_their_order_do_not_matter(describer: Describer) -> None:
     points = mug()
     shuffled = np.random.default_rng(1).permutation(np.concatenate([points, np.full((50, 3), np.nan, np.float32)]))
     expected = describer.describe(PointCloud(points))
@@ -65,7 +65,7 @@ def test_neither_lost_points_nor_the_order_of_points_count(describer: Describer)
     ],
     ids=["none", "lost", "one", "one place", "two", "three", "line", "huge"],
 )
-def test_tiny_and_odd_clouds_give_finite_descriptors_or_none(describer: Describer, points: NDArray[np.float64]) -> None:
+def test_odd_clouds_give_finite_descriptors_or_none(describer: Describer, points: NDArray[np.float64]) -> None:
     found = describer.describe(PointCloud(points.astype(np.float32)))
     assert found.shape[1] == describer.size and found.dtype == np.float32 and np.isfinite(found).all()
     if len(np.unique(points[np.isfinite(points).all(axis=1)], axis=0)) < 2:
@@ -75,7 +75,7 @@ def test_tiny_and_odd_clouds_give_finite_descriptors_or_none(describer: Describe
 @pytest.mark.parametrize("describer", POSE_FREE, ids=lambda d: d.name)
 @pytest.mark.parametrize("seed", range(5))
 def test_global_descriptors_hardly_change_with_pose(describer: Describer, seed: int) -> None:
-    """Beside the distance to a flat thing of the same size."""
+    """Compare the change with the distance to a flat thing of the same size."""
     points = mug()
     rotation = Rotation.random(random_state=seed).as_matrix()
     flat = points * [1, 1, 0.02] + [0, 0, 1]
@@ -85,7 +85,7 @@ def test_global_descriptors_hardly_change_with_pose(describer: Describer, seed: 
     assert np.linalg.norm(here - there) < 0.25 * np.linalg.norm(here - other)
 
 
-def test_good_is_scale_free_and_its_three_views_sum_to_one() -> None:
+def test_good_ignores_scale_and_each_view_sums_to_one() -> None:
     small = GoodDescriber(threshold=0).describe(PointCloud(mug()))
     large = GoodDescriber(threshold=0).describe(PointCloud(mug() * np.float32(4)))
     np.testing.assert_allclose(small, large, atol=0.002)
@@ -93,7 +93,7 @@ def test_good_is_scale_free_and_its_three_views_sum_to_one() -> None:
 
 
 def test_good_of_a_slab_by_hand() -> None:
-    """A slab of 4 x 2 x 0 in cells of 1, centred: each plane's view is the slab, its long edge, its short edge."""
+    """Check a centred slab of 4 x 2 x 0 in cells of 1: the views are the slab, its long edge and its short edge."""
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(4) - 1.5, np.arange(2) - 0.5))
     corners = np.array([[2, 1, 0], [-2, -1, 0], [2, -1, 0], [-2, 1, 0]]) * 0.999999
     points = np.concatenate([np.repeat(np.column_stack([x, y, 0 * x]), 500, axis=0), corners])
@@ -104,7 +104,7 @@ def test_good_of_a_slab_by_hand() -> None:
         np.testing.assert_allclose(edge.sum(axis=1), shares, atol=0.001)
 
 
-def test_d2_ends_with_the_extents_longest_first() -> None:
+def test_d2_ends_with_the_extents_in_falling_order() -> None:
     found = D2ExtentsDescriber().describe(PointCloud(mug()))[0]
     assert found[:-3].sum() == pytest.approx(1.0)
     assert 0.13 > found[-3] > found[-2] > found[-1] > 0.01
@@ -117,7 +117,7 @@ def test_d2_of_two_points_is_one_distance() -> None:
     np.testing.assert_allclose(found, [0, 0, 0, 1, 0.3, 0, 0], atol=1e-6)
 
 
-def test_spin_images_use_the_normals_that_a_cloud_has() -> None:
+def test_spin_images_use_the_normals_of_the_cloud() -> None:
     points = mug()
     upward = np.tile(np.array([0, 1, 0], np.float32), (len(points), 1))
     about = SpinImageDescriber().describe(PointCloud(points, normals=upward))
@@ -129,12 +129,14 @@ def test_spin_images_with_angles_estimate_normals_everywhere() -> None:
     assert found.shape[1] == 45 and 0.5 < found.max() < math.pi
 
 
-def test_an_unknown_name_lists_those_there_are() -> None:
-    with pytest.raises(UnknownTermError, match="no descriptor 'shot'; choose one of spin_images, fpfh, good, d2_ext"):
+def test_an_unknown_name_lists_the_known_ones() -> None:
+    with pytest.raises(
+        UnknownTermError, match="unknown descriptor 'shot'; choose one of spin_images, fpfh, good, d2_ext"
+    ):
         describer_named("shot")
 
 
-def test_naming_a_descriptor_imports_nothing_heavy() -> None:
+def test_naming_a_descriptor_imports_no_heavy_library() -> None:
     code = (
         "import sys; from deixis.perception.features.registry import describer_named; describer_named('fpfh');"
         "sys.exit(any(name in sys.modules for name in ('numba', 'scipy', 'open3d')))"

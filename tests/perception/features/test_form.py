@@ -1,4 +1,4 @@
-"""The form of a view: what counts (cavities, necks, blades, handles) and what does not (place, turn, density, size)."""
+"""The form descriptor: cavities, necks, blades and handles matter; place, turn, density and size do not."""
 
 from __future__ import annotations
 
@@ -24,25 +24,25 @@ def parts(points: Points, eye: tuple[float, float, float] = EYE) -> dict[str, Po
 
 
 def front(radius: float = 0.04, height: float = 0.12, top: float | None = None, n: int = 4000) -> Points:
-    """The front of a pillar, or of a cone where the top has another radius."""
+    """Return the front of a pillar, or of a cone if the top has another radius."""
     rng = np.random.default_rng(0)
     share, angle = rng.uniform(0, 1, n), rng.uniform(-np.pi, 0, n)
     wide = radius + ((radius if top is None else top) - radius) * share
     return np.column_stack([wide * np.cos(angle), wide * np.sin(angle), height * share])
 
 
-def test_the_axis_of_what_is_round_is_found_from_its_front() -> None:
+def test_the_axis_of_a_round_thing_from_its_front() -> None:
     inner, outer = parts(front())["radii"].reshape(LEVELS, 2).T
     np.testing.assert_allclose(outer, 0.04 / 0.12, atol=0.03)
     np.testing.assert_allclose(inner, outer, atol=0.05)
 
 
-def test_radii_say_where_a_thing_narrows() -> None:
+def test_radii_show_where_a_thing_narrows() -> None:
     outer = parts(front(top=0.01))["radii"].reshape(LEVELS, 2)[:, 1]
     assert outer[0] > 2 * outer[-1]
 
 
-def test_a_hollow_has_walls_that_face_its_axis() -> None:
+def test_the_walls_of_a_hollow_face_its_axis() -> None:
     def inward(kind: str) -> float:
         (cloud,) = views_of(make(kind, seed=1).mesh, 1, seed=1, upright=True)
         found = form_parts(cloud)
@@ -54,7 +54,7 @@ def test_a_hollow_has_walls_that_face_its_axis() -> None:
     assert inward("bowl") > 0.15 > inward("bottle")
 
 
-def test_widths_run_from_the_wider_half_to_the_narrower_one() -> None:
+def test_widths_begin_with_the_wider_half() -> None:
     rng = np.random.default_rng(0)
     along = rng.uniform(0, 0.2, 3000)
     spoon = np.column_stack([along, rng.uniform(-1, 1, 3000) * np.where(along > 0.15, 0.02, 0.004), 0 * along])
@@ -63,7 +63,7 @@ def test_widths_run_from_the_wider_half_to_the_narrower_one() -> None:
         assert widths[1] > 2 * widths[STATIONS - 2]
 
 
-def test_a_gap_shows_in_how_much_of_its_hull_a_thing_fills() -> None:
+def test_a_gap_reduces_the_filling_of_the_hull() -> None:
     angle = np.random.default_rng(0).uniform(0, 2 * np.pi, 4000)
     radius = np.random.default_rng(1).uniform(0.07, 0.08, 4000)
     ring = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), 0 * angle])
@@ -73,7 +73,7 @@ def test_a_gap_shows_in_how_much_of_its_hull_a_thing_fills() -> None:
 
 @settings(deadline=None, max_examples=20)
 @given(st.tuples(st.floats(-1, 1), st.floats(-1, 1)), st.floats(0, 360))
-def test_neither_place_nor_turn_counts(place: tuple[float, float], degrees: float) -> None:
+def test_place_and_turn_do_not_matter(place: tuple[float, float], degrees: float) -> None:
     cosine, sine = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]])
     box = np.stack(np.meshgrid(*(np.arange(0, side, 0.004) for side in (0.2, 0.08, 0.05))), -1).reshape(-1, 3)
@@ -84,7 +84,7 @@ def test_neither_place_nor_turn_counts(place: tuple[float, float], degrees: floa
     assert np.linalg.norm(apart) < 0.6 * np.sqrt(len(PARTS))
 
 
-def test_a_finer_camera_sees_the_same_form() -> None:
+def test_the_resolution_hardly_changes_the_form() -> None:
     rough, fine = (
         FormDescriber().describe(PointCloud(front(n=n).astype(np.float32), origin=EYE)) for n in (3000, 12000)
     )
@@ -92,7 +92,7 @@ def test_a_finer_camera_sees_the_same_form() -> None:
     assert np.linalg.norm(rough - fine) < 0.5 * np.linalg.norm(rough - cone)
 
 
-def test_the_vector_holds_each_part_by_its_scale() -> None:
+def test_the_vector_holds_the_parts_over_their_scales() -> None:
     describer, cloud = FormDescriber(), PointCloud(front().astype(np.float32), origin=EYE)
     found, expected = describer.describe(cloud), form_parts(cloud)
     assert expected is not None and found.shape == (1, describer.size)

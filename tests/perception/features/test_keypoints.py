@@ -1,4 +1,4 @@
-"""One keypoint a voxel, nearest to its points' centroid, whatever their order."""
+"""Voxel keypoints: one per voxel, nearest to the centroid of its points, whatever their order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from deixis.perception.features.keypoints import voxel_keypoints
 
 
 def plain(points: NDArray[np.floating], size: float) -> list[int]:
-    """The same by a loop over voxels."""
+    """Return the keypoints by a loop over voxels, as a reference."""
     voxels: dict[tuple[int, ...], list[int]] = {}
     finite = [i for i, point in enumerate(points) if np.isfinite(point).all()]
     low = points[finite].min(axis=0).astype(float)
@@ -29,7 +29,7 @@ def plain(points: NDArray[np.floating], size: float) -> list[int]:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("size", [0.05, 0.3, 10.0])
-def test_a_loop_over_voxels_finds_the_same(seed: int, size: float) -> None:
+def test_a_loop_over_voxels_finds_the_same_keypoints(seed: int, size: float) -> None:
     points = np.random.default_rng(seed).normal(size=(400, 3)).astype(np.float32)
     points[::17] = np.nan
     assert voxel_keypoints(points, size).tolist() == plain(points, size)
@@ -40,7 +40,7 @@ whole = st.lists(st.tuples(*[st.integers(-6, 6)] * 3), min_size=1, max_size=40)
 
 @given(whole, st.randoms(use_true_random=False))
 def test_the_order_of_points_does_not_matter(places: list[tuple[int, int, int]], random: object) -> None:
-    """On a grid of whole numbers, where many points are equally near to a centroid."""
+    """Shuffle points on a grid of whole numbers, where many are equally near to a centroid."""
     points = np.array(places, np.float64)
     shuffled = list(range(len(points)))
     random.shuffle(shuffled)  # type: ignore[attr-defined]
@@ -55,7 +55,7 @@ def test_moving_the_cloud_moves_the_keypoints(places: list[tuple[int, int, int]]
     np.testing.assert_array_equal(voxel_keypoints(points + shift, 2.5), voxel_keypoints(points, 2.5))
 
 
-def test_of_points_in_one_place_the_first_is_taken() -> None:
+def test_the_first_of_coinciding_points_is_taken() -> None:
     assert voxel_keypoints(np.ones((5, 3)), 0.1).tolist() == [0]
 
 
@@ -67,16 +67,16 @@ def test_points_without_depth_are_ignored() -> None:
 
 
 @pytest.mark.parametrize("size", [0.0, -1.0, float("nan"), float("inf")])
-def test_an_edge_that_is_no_length_is_refused(size: float) -> None:
-    with pytest.raises(CloudError, match="a voxel's edge is a length above 0"):
+def test_an_edge_must_be_a_positive_length(size: float) -> None:
+    with pytest.raises(CloudError, match="a voxel's edge must be a length above 0"):
         voxel_keypoints(np.zeros((1, 3)), size)
 
 
-def test_a_voxel_too_small_for_the_cloud_is_refused() -> None:
+def test_a_voxel_too_small_for_the_cloud_is_an_error() -> None:
     with pytest.raises(CloudError, match="too small for a cloud of 1e"):
         voxel_keypoints(np.array([[0, 0, 0], [1e20, 0, 0]]), 1e-3)
 
 
-def test_points_of_a_wrong_shape_are_refused() -> None:
-    with pytest.raises(CloudError, match=r"shape \(n, 3\), not \(4, 2\)"):
+def test_points_of_a_wrong_shape_are_an_error() -> None:
+    with pytest.raises(CloudError, match=r"shape \(n, 3\), got \(4, 2\)"):
         voxel_keypoints(np.zeros((4, 2)), 0.1)

@@ -1,7 +1,7 @@
-"""Spin images against a plain reference that follows the definition, by hand, and under rigid motion.
+"""Spin images: compared with a plain reference implementation, with values by hand, and under rigid motion.
 
-The golden values beside this file are the reference's; ``python tests/perception/features/test_spin_images.py`` writes
-them anew.
+The golden values beside this file are those of the reference; ``python tests/perception/features/test_spin_images.py``
+writes them again.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def reference(
     radial: bool = False,
     angular: bool = False,
 ) -> NDArray[np.float64]:
-    """The definition, point by point, in double precision; as slow as it is plain."""
+    """Compute spin images by the definition, point by point, in double precision."""
     counts, angles = np.zeros((width + 1, 2 * width + 1)), np.zeros((width + 1, 2 * width + 1))
     bin_size = support / width if radial else support / width / math.sqrt(2.0)
     place, axis = points[keypoint].astype(float), normals[keypoint].astype(float)
@@ -83,7 +83,7 @@ def reference(
 
 
 def cup() -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Points and normals of a wall, a bottom and a handle; no two keypoints look alike."""
+    """Return points and normals of a wall, a bottom and a handle; no two keypoints are alike."""
     points, normals = [], []
     for i in range(40):
         for j in range(12):
@@ -124,7 +124,7 @@ def test_random_clouds_agree_with_the_definition(name: str, seed: int) -> None:
 
 
 def test_a_point_adds_to_its_four_bins_by_hand() -> None:
-    """Bins of 1 m: a point 0.25 m off the axis and 0.5 m up lies in row 0, half-way between columns 2 and 3."""
+    """Use bins of 1 m: a point 0.25 m off the axis and 0.5 m up is in row 0, half-way between columns 2 and 3."""
     points = np.array([[0, 0, 0], [0.25, 0, 0.5]], np.float32)
     image = spin_images(points, np.array([[0, 0, 1.0]] * 2), np.array([0]), support=2 * math.sqrt(2), width=2)
     expected = np.zeros((3, 5))
@@ -132,8 +132,8 @@ def test_a_point_adds_to_its_four_bins_by_hand() -> None:
     np.testing.assert_allclose(image[0].reshape(3, 5), expected, atol=1e-7)
 
 
-def test_the_border_of_the_cylinder_is_outside_and_the_keypoint_does_not_count() -> None:
-    """The cylinder's radius is 1: of the points at 1 and 0.5 on the axis and across it only those at 0.5 count."""
+def test_the_cylinder_excludes_its_border_and_the_keypoint() -> None:
+    """Use a cylinder of radius 1: of points at 1 and 0.5, along the axis and across it, only those at 0.5 count."""
     points = np.array([[0, 0, 0], [0, 0, 0], [1, 0, 0], [0, 0, -1], [0.5, 0, 0], [0, 0, -0.5]])
     image = spin_images(points, np.array([[0, 0, 1.0]] * 6), np.array([0]), support=math.sqrt(2), width=2)[0]
     expected = np.zeros((3, 5))
@@ -149,7 +149,7 @@ def test_the_border_of_the_ball_is_outside() -> None:
     np.testing.assert_allclose(image.reshape(3, 5), expected, atol=1e-7)
 
 
-def test_without_a_neighbour_an_image_is_zero() -> None:
+def test_an_image_without_neighbours_is_zero() -> None:
     points, normals = np.array([[0, 0, 0], [9, 9, 9.0]]), np.array([[0, 0, 1.0]] * 2)
     for options in ({}, {"radial": True}, {"angular": True}):
         assert not spin_images(points, normals, np.array([0, 1]), support=0.1, **options).any()
@@ -171,7 +171,7 @@ def test_points_without_depth_change_nothing() -> None:
         np.testing.assert_array_equal(spin_images(holed, filled, CUP_KEYPOINTS, **options), expected)
 
 
-def test_a_point_without_a_normal_is_left_out_where_normals_count() -> None:
+def test_points_without_a_normal_are_ignored_if_needed() -> None:
     points, normals = cup()
     lost = normals.copy()
     lost[100:200] = np.nan
@@ -190,7 +190,7 @@ def test_threads_do_not_change_a_bit(name: str) -> None:
     np.testing.assert_array_equal(spin_images(points, normals, keypoints, threads=3, **OPTIONS[name]), alone)
 
 
-def test_a_far_outlier_changes_nothing_but_the_grid() -> None:
+def test_a_far_outlier_changes_only_the_grid() -> None:
     points, normals = cup()
     far = np.concatenate([points, np.array([[1e6, -1e6, 1e6]], np.float32)])
     images = spin_images(far, np.concatenate([normals, normals[:1]]), CUP_KEYPOINTS, support=0.08)
@@ -218,7 +218,7 @@ def test_rigid_motion_changes_no_image(
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.01, 100), st.sampled_from(["rectangular", "radial"]))
-def test_cloud_and_support_scaled_alike_give_one_image(seed: int, scale: float, name: str) -> None:
+def test_scaling_cloud_and_support_keeps_the_image(seed: int, scale: float, name: str) -> None:
     points, normals = random_cloud(seed, 60)
     keypoints = np.arange(5)
     options = OPTIONS[name]
@@ -227,29 +227,29 @@ def test_cloud_and_support_scaled_alike_give_one_image(seed: int, scale: float, 
     np.testing.assert_allclose(spin_images(points * scale, normals, keypoints, **scaled), images, atol=1e-6)
 
 
-def test_too_few_neighbours_are_an_error_where_some_are_asked_for() -> None:
-    """The keypoint itself counts, as in the Point Cloud Library."""
+def test_too_few_neighbours_are_an_error() -> None:
+    """Count the keypoint itself, as the Point Cloud Library does."""
     points, normals = np.array([[0, 0, 0], [0.5, 0, 0], [9, 9, 9.0]]), np.array([[0, 0, 1.0]] * 3)
     assert len(spin_images(points, normals, np.array([0]), support=1.0, min_points=2)) == 1
-    with pytest.raises(CloudError, match="keypoint 2 has 1 points within 1 m, and 2 are asked for"):
+    with pytest.raises(CloudError, match="keypoint 2 must have at least 2 points within 1 m, got 1"):
         spin_images(points, normals, np.array([0, 2]), support=1.0, min_points=2)
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"support": 0.0}, "support is a length above 0"),
-        ({"support": math.nan}, "support is a length above 0"),
-        ({"width": 0}, "1 bin wide or more"),
-        ({"support_angle_cos": 1.5}, "between 0 and 1"),
-        ({"threads": 0}, "1 thread or more"),
-        ({"keypoints": np.array([480 + 80])}, "between 0 and 559"),
-        ({"keypoints": np.array([-1])}, "between 0 and 559"),
+        ({"support": 0.0}, "support must be a length above 0"),
+        ({"support": math.nan}, "support must be a length above 0"),
+        ({"width": 0}, "width must be at least 1 bin"),
+        ({"support_angle_cos": 1.5}, "must be from 0 to 1"),
+        ({"threads": 0}, "`threads` must be at least 1"),
+        ({"keypoints": np.array([480 + 80])}, "must be from 0 to 559"),
+        ({"keypoints": np.array([-1])}, "must be from 0 to 559"),
         ({"keypoints": np.array([0.5])}, "whole numbers"),
         ({"normals": np.zeros((3, 3))}, "shape of their points"),
-        ({"normals": np.zeros((560, 3))}, "keypoint 3 has length 0"),
+        ({"normals": np.zeros((560, 3))}, "keypoint 3 must be a unit vector, got length 0"),
         ({"points": np.zeros(5)}, r"shape \(n, 3\)"),
-        ({"points": np.full((560, 3), np.nan)}, "contain 3, a point without depth"),
+        ({"points": np.full((560, 3), np.nan)}, "must be points with a depth, got 3"),
     ],
 )
 def test_bad_input_is_a_cloud_error(change: dict[str, Any], message: str) -> None:
@@ -259,7 +259,7 @@ def test_bad_input_is_a_cloud_error(change: dict[str, Any], message: str) -> Non
         spin_images(**given_)
 
 
-def test_no_keypoints_no_images() -> None:
+def test_no_keypoints_give_no_images() -> None:
     none = np.empty((0, 3), np.float32)
     assert spin_images(none, none, np.empty(0, np.int64), support=0.1, width=2).shape == (0, 15)
 

@@ -1,4 +1,4 @@
-"""Descriptors of what stands upright: what counts (height, size, build) and what does not (where it stands, a turn)."""
+"""The upright descriptor: height, size and build matter; place and turn do not."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ EYE = (0.0, -1.0, 0.8)
 
 
 def cone(tip: float, n: int = 6000) -> NDArray[np.float64]:
-    """The surface of a cone, 12 cm high and 8 cm wide, wide where its tip (0 or 1, as a share of the height) is not."""
+    """Return the surface of a cone, 12 cm high and 8 cm wide, with its tip at the bottom (0) or at the top (1)."""
     rng = np.random.default_rng(0)
     share, angle = rng.uniform(0, 1, n), rng.uniform(0, 2 * np.pi, n)
     radius = 0.04 * np.abs(share - tip)
@@ -30,26 +30,24 @@ def box(length: float, width: float, height: float, turned: float = 0.0) -> NDAr
     )
 
 
-def test_extents_are_height_and_the_sides_of_the_smallest_rectangle_in_plan() -> None:
+def test_extents_are_height_length_and_width() -> None:
     for turned in (0.0, np.deg2rad(35)):
         shape = upright_shape(box(0.2, 0.1, 0.05, turned))
         assert shape is not None
         np.testing.assert_allclose(np.exp(shape.extents) - EXTENT_OFFSET, [0.05, 0.2, 0.1], atol=0.002)
 
 
-def test_a_profile_says_at_which_height_a_thing_is_wide() -> None:
+def test_the_profile_shows_at_which_height_a_thing_is_wide() -> None:
     (below, _), (above, _) = upright_shape(cone(1)), upright_shape(cone(0))  # type: ignore[misc]
     shares = np.stack([below, above]).reshape(2, HISTOGRAM_CELLS, HISTOGRAM_CELLS) ** 2
     np.testing.assert_allclose(shares.sum(axis=(1, 2)), 1.0)
-    outside = shares[:, :, HISTOGRAM_CELLS // 2 :].sum(axis=2)  # by height: what is far from the middle
+    outside = shares[:, :, HISTOGRAM_CELLS // 2 :].sum(axis=2)  # by height: shares far from the centre
     assert outside[0, 0] > 0.1 > outside[0, -1] == 0
     assert outside[1, -1] > 0.1 > outside[1, 0] == 0
 
 
 @given(st.tuples(st.floats(-2, 2), st.floats(-2, 2)), st.sampled_from([5.0, 40.0, 90.0, 180.0]))
-def test_neither_where_a_thing_stands_nor_which_way_it_is_turned_counts_for_its_shape(
-    place: tuple[float, float], degrees: float
-) -> None:
+def test_place_and_turn_do_not_change_the_shape(place: tuple[float, float], degrees: float) -> None:
     turned = box(0.2, 0.1, 0.05, np.deg2rad(degrees))
     here, there = upright_shape(box(0.2, 0.1, 0.05)), upright_shape(turned + np.array([*place, 0.0]))
     assert here is not None and there is not None
@@ -57,7 +55,7 @@ def test_neither_where_a_thing_stands_nor_which_way_it_is_turned_counts_for_its_
     assert np.linalg.norm(there.profile - here.profile) < 0.4
 
 
-def test_height_is_that_above_the_table() -> None:
+def test_height_is_measured_from_the_table() -> None:
     tray = box(0.2, 0.1, 0.02)
     low, high = upright_shape(tray), upright_shape(tray + np.array([0, 0, 0.08]))
     assert low is not None and high is not None
@@ -65,20 +63,20 @@ def test_height_is_that_above_the_table() -> None:
     assert not high.profile.reshape(HISTOGRAM_CELLS, HISTOGRAM_CELLS)[:4].any()
 
 
-def test_where_the_table_is_not_at_0_a_thing_below_it_has_its_own_foot() -> None:
+def test_a_thing_below_0_is_measured_from_its_own_foot() -> None:
     here, there = upright_shape(box(0.2, 0.1, 0.05)), upright_shape(box(0.2, 0.1, 0.05) - np.array([0, 0, 0.7]))
     assert here is not None and there is not None
     np.testing.assert_allclose(there.extents, here.extents, atol=0.05)
 
 
-def test_a_thing_on_its_head_is_another_thing_to_it() -> None:
+def test_an_upside_down_thing_has_another_descriptor() -> None:
     below, above = upright_shape(cone(1)), upright_shape(cone(0))
     assert below is not None and above is not None
     np.testing.assert_allclose(below.extents, above.extents, atol=0.05)
     assert np.linalg.norm(below.profile - above.profile) > 0.8
 
 
-def test_a_descriptor_is_two_images_and_then_the_weighted_whole() -> None:
+def test_a_descriptor_is_two_images_and_the_shape() -> None:
     describer = UprightDescriber()
     cloud = PointCloud(box(0.1, 0.06, 0.04).astype(np.float32), origin=EYE)
     found, shape = describer.describe(cloud), upright_shape(cloud.points)
@@ -89,7 +87,7 @@ def test_a_descriptor_is_two_images_and_then_the_weighted_whole() -> None:
     np.testing.assert_allclose(found[:, 168:], np.tile(0.1 * shape.extents, (len(found), 1)), atol=1e-6)
 
 
-def test_without_the_whole_it_is_the_roots_of_spin_images() -> None:
+def test_with_weights_0_it_is_the_roots_of_spin_images() -> None:
     from deixis.perception.features.spin_images import SpinImageDescriber
 
     cloud = PointCloud(box(0.1, 0.06, 0.04).astype(np.float32), origin=EYE)

@@ -1,4 +1,4 @@
-"""The threshold and the probabilities, by hand, beside brute force, and from held-out views."""
+"""Calibration: threshold and probabilities by hand, compared with brute force, and from held-out views."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_probabilities_by_hand() -> None:
 
 @settings(deadline=None)
 @given(st.lists(st.one_of(st.floats(0, 1e6), st.just(np.inf)), min_size=1, max_size=6).map(np.array))
-def test_probabilities_sum_to_one_and_are_in_the_order_of_distances(normalised: NDArray[np.float64]) -> None:
+def test_probabilities_sum_to_one_in_order_of_distance(normalised: NDArray[np.float64]) -> None:
     *named, unknown = SHIPPED.probabilities(normalised)
     assert sum(named) + unknown == pytest.approx(1.0)
     assert np.isfinite(named).all()
@@ -90,7 +90,7 @@ def test_slips_spread_a_share_of_the_answers_evenly() -> None:
     assert sure.probabilities(np.array([np.inf])).tolist() == [0.0, 1.0]
 
 
-def test_several_descriptors_weigh_by_how_well_they_told_held_out_views_apart() -> None:
+def test_weights_follow_the_success_on_held_out_views() -> None:
     rng = np.random.default_rng(0)
     told, even = drawn(0, 300), replace(SHIPPED, weights=(0.5, 0.5))
     noise = HeldOut(np.exp(rng.normal(0, 0.3, told.normalised.shape)), told.truth)
@@ -99,7 +99,7 @@ def test_several_descriptors_weigh_by_how_well_they_told_held_out_views_apart() 
     assert sum(first) == pytest.approx(1.0)
 
 
-def test_one_descriptor_by_itself_is_calibrated_as_ever() -> None:
+def test_one_descriptor_is_calibrated_without_weights() -> None:
     held = drawn(3, 200)
     assert calibrate_jointly([held], start=SHIPPED) == calibrate(held)
 
@@ -111,7 +111,7 @@ def test_expected_calibration_error_by_hand() -> None:
 
 
 def drawn(seed: int, known: int) -> HeldOut:
-    """Held-out answers drawn from the model itself, with three categories."""
+    """Draw held-out answers from the model itself, with three categories."""
     rng = np.random.default_rng(seed)
     truth = rng.integers(0, 3, known)
     normalised = 1 + rng.exponential(0.8, (known, 3))
@@ -119,7 +119,7 @@ def drawn(seed: int, known: int) -> HeldOut:
     return HeldOut(normalised, truth)
 
 
-def test_probabilities_fitted_to_held_out_answers_are_calibrated_on_fresh_ones() -> None:
+def test_fitted_probabilities_are_calibrated_on_new_answers() -> None:
     calibration, fresh = calibrate(drawn(0, 300)), drawn(1, 2000)
     known, truth = fresh.as_known
     rows = np.concatenate([known, fresh.as_unknown])
@@ -136,10 +136,10 @@ def test_too_few_answers_leave_the_shipped_threshold() -> None:
     assert calibrate(HeldOut(np.empty((0, 0)), np.empty(0, np.int64))) == SHIPPED
 
 
-def test_wrong_settings_are_refused() -> None:
+def test_wrong_settings_are_an_error() -> None:
     with pytest.raises(RecognitionError, match="between 0 and 1"):
         calibrate(drawn(0, 20), prior_unknown=1.0)
-    with pytest.raises(RecognitionError, match="threshold is a number above 0"):
+    with pytest.raises(RecognitionError, match="threshold must be a number above 0"):
         Calibration(threshold=float("nan"), even=1, doubt=1, choice=1)
 
 
@@ -171,7 +171,7 @@ def test_holding_out_equals_recognising_without_the_view(seed: int) -> None:
     assert (5 / 6) ** MAX_SHORTENING - 1e-12 <= shorter[held.truth[row]] <= 1.0 + 1e-12
 
 
-def test_a_category_is_nearer_by_the_power_of_its_number_of_things() -> None:
+def test_distance_falls_with_the_number_of_things() -> None:
     rng = np.random.default_rng(0)
     counts = rng.integers(2, 9, 200)
     falls = -0.15 * np.log(counts / (counts - 1))
@@ -193,7 +193,7 @@ def test_views_of_one_thing_are_held_out_together() -> None:
     assert held.normalised[0, 0] == pytest.approx(wanted * 2**-USUAL_SHORTENING)  # no category has three things
 
 
-def test_among_very_many_views_others_are_searched_as_recognition_searches_them() -> None:
+def test_holding_out_of_many_views_searches_approximately() -> None:
     categories = categories_of(3, count=3, views=40)
     few = replace(DEFAULT, exact_up_to=0, effort=Effort(lists=1, few=1))
     exact, approximate = (hold_out(categories, Recogniser.of(categories).indexes, each) for each in (DEFAULT, few))
@@ -203,13 +203,13 @@ def test_among_very_many_views_others_are_searched_as_recognition_searches_them(
     assert np.array_equal(approximate.normalised[~others], exact.normalised[~others])
 
 
-def test_a_category_of_one_view_gives_an_unknown_answer_and_no_known_one() -> None:
+def test_one_view_gives_only_an_unknown_answer() -> None:
     categories = [*categories_of(1, count=2), categories_of(2, count=3, views=1)[2]]
     held = hold_out(categories, Recogniser.of(categories).indexes, DEFAULT)
     assert (len(held.as_known[0]), len(held.as_unknown)) == (12, 13)
 
 
-def test_calibrating_a_recogniser_separates_its_categories_from_others() -> None:
+def test_a_calibrated_recogniser_separates_known_and_unknown() -> None:
     known = Recogniser.of(categories_of(4)).calibrated()
     assert known.calibration.calibrated and known.calibration.known == 18
     assert known.recognise(known.categories[1].views[0] + np.float32(0.1)).label == "c1"
@@ -227,7 +227,7 @@ def test_auroc_counts_pairs() -> None:
     assert auroc(known, unknown) == pytest.approx(np.mean(pairs))
 
 
-def test_auroc_of_nothing_is_no_number() -> None:
+def test_auroc_of_nothing_is_nan() -> None:
     assert np.isnan(auroc(np.empty(0), np.ones(2))) and np.isnan(auroc(np.ones(2), np.empty(0)))
 
 
@@ -238,7 +238,7 @@ def test_a_few_answers_calibrate_nothing() -> None:
     assert calibrate(many).calibrated
 
 
-def test_colour_begins_with_next_to_no_weight_and_may_move_far() -> None:
+def test_the_weight_of_colour_begins_near_0_and_may_grow() -> None:
     coloured = beside_colour(SHIPPED_JOINT)
     *shapes, colour = coloured.weights
     assert sum(coloured.weights) == pytest.approx(1.0) and colour == COLOUR_WEIGHT
@@ -246,7 +246,7 @@ def test_colour_begins_with_next_to_no_weight_and_may_move_far() -> None:
     assert coloured.weights_widths[-1] > max(coloured.weights_widths[:-1])
 
 
-def test_nothing_is_nearer_than_a_descriptors_floor() -> None:
+def test_no_distance_is_below_the_floor() -> None:
     floored = Calibration(1, 1, 1, 1, weights=(0.5, 0.5), floors=(1e-6, 0.25))
     shape = np.array([1.0, 1.0])
     assert floored.mean([shape, np.array([0.0, 0.2])]).tolist() == [0.5, 0.5]
@@ -255,7 +255,7 @@ def test_nothing_is_nearer_than_a_descriptors_floor() -> None:
 
 @pytest.mark.parametrize("values", [(0.1,), (0.1, 0.0)])
 def test_floors_and_widths_are_one_for_each_weight(values: tuple[float, ...]) -> None:
-    with pytest.raises(RecognitionError, match="floors are above 0"):
+    with pytest.raises(RecognitionError, match="floors must be above 0"):
         Calibration(1, 1, 1, 1, weights=(0.5, 0.5), floors=values)
-    with pytest.raises(RecognitionError, match="weights_widths are above 0"):
+    with pytest.raises(RecognitionError, match="weights_widths must be above 0"):
         Calibration(1, 1, 1, 1, weights=(0.5, 0.5), weights_widths=values)

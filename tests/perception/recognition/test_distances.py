@@ -1,4 +1,4 @@
-"""Equations 1 and 2, by hand and beside a naive double loop."""
+"""Equations 1 and 2, by hand and compared with a naive double loop."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Descriptors = NDArray[np.float32]
 
 
 def naive_view_distance(target: Descriptors, view: Descriptors) -> float:
-    """Equation 1 as it is written."""
+    """Compute equation 1 as it is written."""
     total = 0.0
     for wanted in target:
         total += min(math.dist(wanted.tolist(), other.tolist()) for other in view)
@@ -31,7 +31,7 @@ def rows(*values: list[float]) -> Descriptors:
 
 @st.composite
 def some_views(draw: st.DrawFn, count: int = 4) -> list[Descriptors]:
-    """Views of one length of descriptors, near to each other and far, on scales from tiny to large."""
+    """Draw views with descriptors of one length, near to each other and far, on scales from tiny to large."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     size, scale = draw(st.integers(1, 40)), 10.0 ** draw(st.integers(-6, 6))
     offset = draw(st.sampled_from([0.0, 1.0, 1000.0]))
@@ -42,14 +42,14 @@ def some_views(draw: st.DrawFn, count: int = 4) -> list[Descriptors]:
     return views
 
 
-def test_each_descriptor_of_the_target_goes_to_its_nearest_in_the_view() -> None:
+def test_each_target_descriptor_matches_its_nearest() -> None:
     target = rows([0, 0], [10, 0], [0, 1])
     view = rows([0, 3], [13, 4])
     assert view_distance(target, view) == pytest.approx((3 + 5 + 2) / 3, abs=1e-15)
     assert view_distance(view, target) == pytest.approx((2 + 5) / 2, abs=1e-15)
 
 
-def test_category_distance_is_that_of_the_nearest_view_and_names_it() -> None:
+def test_category_distance_is_that_of_the_nearest_view() -> None:
     views = PackedViews.of([("far", rows([9.0])), ("near", rows([2.0], [7.0])), ("as near", rows([2.0]))])
     assert category_distance(rows([0.0]), views) == (2.0, 1)
 
@@ -58,7 +58,7 @@ def test_a_category_without_views_is_infinitely_far() -> None:
     assert category_distance(rows([0.0]), PackedViews.of([])) == (math.inf, -1)
 
 
-def test_alike_descriptors_far_from_the_origin_are_told_apart() -> None:
+def test_similar_descriptors_far_from_the_origin_differ() -> None:
     target = rows([4096.0, 4096.0])
     view = rows([4096.0, 4096.001], [4096.0, 4096.0005], [4096.0, 4096.002])
     assert view_distance(target, view) == naive_view_distance(target, view) > 0
@@ -81,7 +81,7 @@ def test_distance_to_itself_is_zero(views: list[Descriptors]) -> None:
 
 @settings(deadline=None)
 @given(some_views())
-def test_another_view_never_brings_the_category_further_away(views: list[Descriptors]) -> None:
+def test_another_view_never_increases_the_distance(views: list[Descriptors]) -> None:
     target, *others = views
     packed = [PackedViews.of([(str(i), view) for i, view in enumerate(others[:n])]) for n in range(len(others) + 1)]
     distances = [category_distance(target, pack)[0] for pack in packed]
@@ -103,15 +103,15 @@ def test_the_order_of_views_and_of_descriptors_does_not_matter(views: list[Descr
 @pytest.mark.parametrize(
     ("target", "view", "said"),
     [
-        (np.empty((0, 2), np.float32), rows([0, 0]), "the target view has no descriptor"),
-        (rows([0, 0]), np.empty((0, 2), np.float32), "view 'the view' has no descriptor"),
-        (rows([0, 0, 0]), rows([0, 0]), "have 3 numbers and the remembered views' 2"),
-        (rows([math.nan, 0]), rows([0, 0]), "not finite"),
-        (rows([1e20, 0]), rows([0, 0]), "above 1e"),
-        (np.zeros(3, np.float32), rows([0, 0, 0]), r"\(k, 3\) are wanted"),
+        (np.empty((0, 2), np.float32), rows([0, 0]), "the target view must have at least one"),
+        (rows([0, 0]), np.empty((0, 2), np.float32), "view 'the view' must have at least one"),
+        (rows([0, 0, 0]), rows([0, 0]), "have 3 numbers, and the remembered views' 2"),
+        (rows([math.nan, 0]), rows([0, 0]), "must be finite"),
+        (rows([1e20, 0]), rows([0, 0]), "below 1e"),
+        (np.zeros(3, np.float32), rows([0, 0, 0]), r"must have shape \(k, 3\)"),
     ],
 )
-def test_what_cannot_be_compared_is_refused(target: Descriptors, view: Descriptors, said: str) -> None:
+def test_descriptors_that_do_not_fit_are_an_error(target: Descriptors, view: Descriptors, said: str) -> None:
     with pytest.raises(RecognitionError, match=said):
         view_distance(target, view)
 

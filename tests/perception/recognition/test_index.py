@@ -1,4 +1,4 @@
-"""The nearest view by bounds is the nearest view by comparing all."""
+"""The index finds the nearest view without comparing all views."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from deixis.perception.recognition.views import PackedViews, mapped, open_views,
 
 
 def clustered(seed: int, count: int, size: int = 60, scale: float = 1.0) -> list[NDArray[np.float32]]:
-    """Views of descriptors in a few directions, some of them copies of others."""
+    """Return views of descriptors in a few directions, some of them copies of others."""
     rng = np.random.default_rng(seed)
     directions = rng.normal(size=(6, size)) * scale
     views: list[NDArray[np.float32]] = []
@@ -53,19 +53,19 @@ def test_bounds_never_exceed_distances(seed: int, size: int, offset: float) -> N
     assert (bounds <= view_distances(target, index.views)).all()
 
 
-def test_most_views_are_not_compared_where_descriptors_vary_in_few_directions() -> None:
+def test_few_directions_of_variance_spare_most_comparisons() -> None:
     target, *views = clustered(3, 300)
     index = ViewIndex.of(packed(views))
     assert index.nearest(Target.of(target), index.reduction(target)).compared < 60
 
 
-def test_of_equally_near_views_the_first_is_named() -> None:
+def test_the_first_of_equally_near_views_is_returned() -> None:
     view = clustered(1, 1)[0]
     index = ViewIndex.of(packed([view + 1, view, view]))
     assert index.nearest(Target.of(view), index.reduction(view)).place == 1
 
 
-def test_approximate_search_finds_nearly_always_the_nearest_and_its_exact_distance() -> None:
+def test_approximate_search_mostly_finds_the_nearest() -> None:
     views = clustered(5, 460)
     index = ViewIndex.of(packed(views[:400]))
     assert len(index.filed.centres) > 100
@@ -95,7 +95,7 @@ def test_estimates_from_all_lists_are_the_bounds() -> None:
     np.testing.assert_allclose(index.filed.estimates(reduced, 512), index._bounds(reduced), rtol=1e-3)
 
 
-def test_every_descriptor_is_filed_once_under_its_nearest_centre() -> None:
+def test_each_descriptor_is_in_the_list_of_its_centre() -> None:
     views = packed(clustered(6, 60))
     reduced = ViewIndex.of(views).reduced
     filed = InvertedFile.of(reduced, views.starts)
@@ -107,7 +107,7 @@ def test_every_descriptor_is_filed_once_under_its_nearest_centre() -> None:
     np.testing.assert_allclose(own, apart.min(axis=1), rtol=1e-4, atol=1e-4)
 
 
-def test_approximate_search_among_mapped_views_gives_the_same_answers(tmp_path: Path) -> None:
+def test_approximate_search_works_on_mapped_views(tmp_path: Path) -> None:
     target, *views = clustered(2, 90)
     write_views(tmp_path / "views", ((str(i), view) for i, view in enumerate(views)))
     found = [
@@ -143,7 +143,7 @@ def test_views_mapped_from_a_file_give_the_same_answers(tmp_path: Path) -> None:
     assert opened.ids == packed(views).ids and (opened.squares == packed(views).squares).all()
 
 
-def test_views_kept_out_of_memory_leave_no_file_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_views_on_disk_leave_no_file_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     views = clustered(2, 30)
     found = mapped((str(i), view) for i, view in enumerate(views))
@@ -158,8 +158,8 @@ def test_a_folder_without_room_for_views_is_named(tmp_path: Path, monkeypatch: p
         mapped([("a", np.zeros((2, 3), np.float32))])
 
 
-def test_a_folder_that_holds_no_views_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(RecognitionError, match="holds no views"):
+def test_a_folder_without_views_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(RecognitionError, match="holds no readable views"):
         open_views(tmp_path)
     write_views(tmp_path, [("a", np.zeros((2, 3), np.float32))])
     with pytest.raises(RecognitionError, match="choose another folder"):
@@ -168,12 +168,12 @@ def test_a_folder_that_holds_no_views_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RecognitionError, match="do not belong together"):
         open_views(tmp_path)
     (tmp_path / "descriptors.npy").write_bytes(b"\x93NUMPY")
-    with pytest.raises(RecognitionError, match="holds no views"):
+    with pytest.raises(RecognitionError, match="holds no readable views"):
         open_views(tmp_path)
 
 
 @pytest.mark.parametrize("second", ["a", "b"])
 def test_views_that_cannot_be_compared_are_not_written(tmp_path: Path, second: str) -> None:
     views = [("a", np.zeros((2, 3), np.float32)), (second, np.zeros((2 if second == "a" else 0, 3), np.float32))]
-    with pytest.raises(RecognitionError, match="comes twice" if second == "a" else "no descriptor"):
+    with pytest.raises(RecognitionError, match="occurs twice" if second == "a" else "no descriptor"):
         write_views(tmp_path / "views", views)

@@ -1,4 +1,4 @@
-"""Equation 4 and the decision, by hand; what is said where the equations give nothing."""
+"""Equation 4 and the decision, by hand, and the answers where the equations are undefined."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STRICT = Calibration(threshold=1.5, even=1.5, doubt=3.0, choice=4.0)
 
 
 def seen(*values: float) -> NDArray[np.float32]:
-    """Descriptors that are single numbers."""
+    """Return descriptors that are single numbers."""
     return np.array(values, np.float32)[:, None]
 
 
@@ -35,7 +35,7 @@ WIDE = category("wide", seen(0), seen(8))  # ICD 8
 NARROW = category("narrow", seen(20), seen(22))  # ICD 2
 
 
-def test_the_smallest_normalised_distance_wins_not_the_smallest_distance() -> None:
+def test_the_smallest_normalised_distance_wins() -> None:
     found = recognise(seen(15), [WIDE, NARROW], PAPER, STRICT)
     by_name = {candidate.category: candidate for candidate in found.candidates}
     assert (by_name["wide"].distance, by_name["wide"].spread.value, by_name["wide"].normalised) == (7, 8, 7 / 8)
@@ -55,7 +55,7 @@ def test_at_the_threshold_is_known() -> None:
     assert recognise(seen(25), [NARROW], replace(PAPER, prior_spread=2.0), STRICT).label == "narrow"
 
 
-def test_one_view_is_measured_by_the_median_of_the_others_and_says_so() -> None:
+def test_one_view_is_divided_by_the_median_icd() -> None:
     single = category("single", seen(100))
     found = recognise(seen(101), [WIDE, NARROW, single], PAPER, STRICT)
     assert found.label == "single"
@@ -63,7 +63,7 @@ def test_one_view_is_measured_by_the_median_of_the_others_and_says_so() -> None:
     assert any("'single' has one view" in reason for reason in found.reasons)
 
 
-def test_views_of_one_thing_are_one_thing_and_the_reasons_say_so() -> None:
+def test_views_of_one_thing_count_as_one_thing() -> None:
     near = [("a", seen(20)), ("b", seen(20.5)), ("c", seen(26))]
     two = InstanceCategory.of("two", near, {"a": "x", "b": "x", "c": "y"})  # over things: 6 and 5.5, to and fro
     one = InstanceCategory.of("one", [("d", seen(100)), ("e", seen(101))], {"d": "z", "e": "z"})
@@ -76,7 +76,7 @@ def test_views_of_one_thing_are_one_thing_and_the_reasons_say_so() -> None:
     assert recognise(seen(102), [two, one], PAPER, STRICT).candidates[0].spread.value == 1.0
 
 
-def test_an_icd_is_drawn_to_the_median_one_the_more_the_fewer_things_it_is_from() -> None:
+def test_the_icd_of_few_things_shrinks_most() -> None:
     found = recognise(seen(23), [WIDE, NARROW], RecognitionSettings(shrinkage=2.0), STRICT).candidates[0]
     assert found.spread.value == (2 * 2 + 2 * 5) / 4 and found.spread.source is SpreadSource.SHRUNK
     many = category("narrow", *(seen(20 + 2 * (i % 2)) for i in range(200)))
@@ -84,22 +84,22 @@ def test_an_icd_is_drawn_to_the_median_one_the_more_the_fewer_things_it_is_from(
     assert abs(spread.value - (many.intra_category_distance or 0.0)) < 0.1
 
 
-def test_the_reason_says_what_d_c_was_divided_by() -> None:
+def test_the_reason_names_the_divisor_of_d_c() -> None:
     (plain, *_), (drawn, *_) = (
         recognise(seen(23), [WIDE, NARROW], settings, STRICT).reasons
         for settings in (PAPER, RecognitionSettings(shrinkage=2.0))
     )
     assert "ND 0.5 (D_C 1 to view 'narrow1' / 2: its ICD over 2 views), within" in plain
-    assert "(D_C 1 to view 'narrow1' / 3.5: its ICD over 2 things, 2, drawn to the median one); its" in drawn
+    assert "(D_C 1 to view 'narrow1' / 3.5: its ICD over 2 things, 2, shrunk towards the median); its" in drawn
 
 
-def test_identical_views_are_measured_likewise() -> None:
+def test_identical_views_are_divided_by_the_median_icd() -> None:
     found = recognise(seen(101), [WIDE, category("copies", seen(100), seen(100))], PAPER, STRICT)
     assert found.candidates[0].category == "copies" and found.candidates[0].normalised == 1 / 8
     assert any("no two views that differ" in reason for reason in found.reasons)
 
 
-def test_where_nothing_has_a_spread_a_constant_stands_in() -> None:
+def test_a_constant_replaces_the_icd_if_there_is_no_other() -> None:
     settings = RecognitionSettings(prior_spread=4.0)
     found = recognise(seen(1), [category("only", seen(0))], settings, STRICT)
     assert found.candidates[0].normalised == 0.25 and found.candidates[0].spread.source is SpreadSource.PRIOR
@@ -116,7 +116,7 @@ def test_nothing_taught_is_unknown() -> None:
     assert recognise(seen(1), []).reasons == ("no category has been taught",)
 
 
-def test_a_category_of_empty_views_is_infinitely_far_and_never_the_answer() -> None:
+def test_a_category_of_empty_views_is_never_the_answer() -> None:
     dark = InstanceCategory("dark").with_view("d", np.empty((0, 1), np.float32))
     found = recognise(seen(1), [dark, WIDE], calibration=STRICT)
     assert found.label == "wide"
@@ -158,7 +158,7 @@ def test_equations_as_written_give_the_same_answer(seed: int) -> None:
 
 @settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_learning_and_forgetting_lead_to_the_recogniser_made_at_once(seed: int) -> None:
+def test_learning_and_forgetting_equal_starting_again(seed: int) -> None:
     categories, target = random_categories(seed)
     grown = Recogniser.of(categories[:1]).learned(category("z", seen(*[0.0] * 3).repeat(6, axis=1)))
     for known in categories[1:]:
@@ -176,21 +176,21 @@ def test_the_order_of_categories_does_not_matter(seed: int) -> None:
     assert [known.normalised for known in one.candidates] == [known.normalised for known in other.candidates]
 
 
-def test_many_views_are_searched_approximately_and_the_answer_says_so() -> None:
+def test_an_approximate_search_is_among_the_reasons() -> None:
     found = recognise(seen(7), [WIDE, NARROW], RecognitionSettings(exact_up_to=3))
     assert found.label == "wide" and not found.exact and "approximate" in found.reasons[-1]
 
 
-def test_what_does_not_fit_is_refused() -> None:
-    with pytest.raises(RecognitionError, match="two categories bear one name"):
+def test_wrong_categories_and_settings_are_an_error() -> None:
+    with pytest.raises(RecognitionError, match="names of categories must be distinct"):
         Recogniser.of([WIDE, WIDE])
     with pytest.raises(RecognitionError, match="different lengths: 1 in 'wide', 2 in 'flat'"):
         Recogniser.of([WIDE, category("flat", np.zeros((1, 2), np.float32))])
-    with pytest.raises(RecognitionError, match="there is no category 'x'"):
+    with pytest.raises(RecognitionError, match="unknown category 'x'"):
         Recogniser.of([WIDE]).forgotten("x")
     with pytest.raises(RecognitionError, match="the remembered views' 1"):
         recognise(np.zeros((1, 2), np.float32), [WIDE])
-    with pytest.raises(RecognitionError, match="the prior spread"):
+    with pytest.raises(RecognitionError, match="`prior_spread` must be"):
         RecognitionSettings(prior_spread=0.0)
-    with pytest.raises(RecognitionError, match="shrunk by 0 things or more"):
+    with pytest.raises(RecognitionError, match="`shrinkage` must be at least 0"):
         RecognitionSettings(shrinkage=-1.0)

@@ -1,4 +1,4 @@
-"""The pinhole camera and where it stands."""
+"""The pinhole camera and its pose."""
 
 from __future__ import annotations
 
@@ -16,16 +16,14 @@ coordinate = st.floats(-2, 2)
 place = st.tuples(coordinate, coordinate, coordinate)
 
 
-def test_a_point_is_seen_where_the_pinhole_formula_has_it() -> None:
+def test_pixels_follow_the_pinhole_formula() -> None:
     camera = Camera(looking_pose((0, 0, 1.0), (0, 0, 0)), Intrinsics(100, 80, 50.0, 60.0, 49.5, 39.5))
     (u, v), *_ = camera.pixels(np.array([[0.2, 0.1, 0.5]]))
     assert (u, v) == pytest.approx((49.5 + 50 * 0.2 / 0.5, 39.5 - 60 * 0.1 / 0.5))  # away from the viewer is up
 
 
 @given(place, place)
-def test_the_target_is_in_the_middle_of_the_image_and_the_pose_is_a_rotation(
-    eye: tuple[float, ...], target: tuple[float, ...]
-) -> None:
+def test_the_target_is_in_the_centre_of_the_image(eye: tuple[float, ...], target: tuple[float, ...]) -> None:
     assume(np.linalg.norm(np.subtract(eye, target)) > 1e-3)
     camera = Camera(looking_pose(eye, target))
     turn = camera.pose[:3, :3]
@@ -54,7 +52,7 @@ def setting(*places: tuple[float, float]) -> LaidTable:
     return lay([Placement(f"cup_{i}", "cup", x, y) for i, (x, y) in enumerate(places)])
 
 
-def test_the_chairs_camera_stands_above_the_tables_near_edge_and_looks_at_what_lies_there() -> None:
+def test_the_chair_camera_is_above_the_near_edge() -> None:
     table = setting((-0.2, 0.1), (0.2, 0.3))
     camera = chair_camera(table)
     assert camera.eye == pytest.approx([0.0, table.top.low[1], 0.7], abs=0.01)
@@ -67,7 +65,7 @@ def test_from_the_right_side_the_camera_looks_to_the_left() -> None:
     assert camera.eye[0] > 0.2
 
 
-def test_a_table_too_wide_for_the_image_is_seen_from_farther_away_along_the_same_line() -> None:
+def test_a_wide_table_is_seen_from_farther_away() -> None:
     near, far = chair_camera(setting((-0.2, 0.0), (0.2, 0.0))), chair_camera(setting((-1.2, 0.0), (1.2, 0.0)))
     assert far.eye[2] > 1.2
     assert far.pose[:3, 2] == pytest.approx(near.pose[:3, 2], abs=0.05)
@@ -86,7 +84,7 @@ def test_a_window_shows_the_same_pixels_as_the_whole_image() -> None:
     assert shift == pytest.approx(np.tile(shift[:1], (2, 1)))
 
 
-def test_cameras_that_cannot_be_are_refused() -> None:
+def test_impossible_cameras_are_an_error() -> None:
     empty = LaidTable(TableTop((0.0, 0.0), (1.0, 1.0)), ())
     for height in (0.0, -1.0, np.nan, 1e9):
         with pytest.raises(SimulationError, match="above the table"):

@@ -1,4 +1,4 @@
-"""What the depth camera measures: true without noise, noisy as the paper says, and labelled with what is seen."""
+"""The depth camera: exact without noise, noisy as in the paper, and with true labels."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def above(height: float) -> Camera:
     return Camera(looking_pose((0.0, 0.0, height), (0.0, 0.0, 0.0)))
 
 
-def test_an_ideal_sensor_sees_the_bare_table_where_it_is_row_by_row() -> None:
+def test_an_ideal_sensor_measures_the_bare_table_exactly() -> None:
     camera = Camera(looking_pose((0.0, -0.5, 0.7), (0.0, 0.0, 0.0)))
     cloud = see(BARE, camera, IDEAL)
     assert cloud.organised == (480, 640)
@@ -39,13 +39,13 @@ def test_an_ideal_sensor_sees_the_bare_table_where_it_is_row_by_row() -> None:
 
 
 @pytest.mark.parametrize("z", [0.7, 1.0, 2.0])
-def test_noise_has_the_standard_deviation_of_khoshelham_and_elberink(z: float) -> None:
+def test_noise_has_the_published_standard_deviation(z: float) -> None:
     cloud = see(BARE, above(z), DepthSensor(missing=0.0, grazing=(3.0, 4.0)), seed=1)
     error = cloud.points[:, 2].astype(np.float64) - z
     sigma = 1.425e-3 * z**2
     assert error.std() == pytest.approx(sigma, rel=0.01)
     assert abs(error.mean()) < 5 * sigma / np.sqrt(len(error))
-    assert (np.abs(error) < 2 * sigma).mean() == pytest.approx(0.9545, abs=0.003)  # as a normal distribution has it
+    assert (np.abs(error) < 2 * sigma).mean() == pytest.approx(0.9545, abs=0.003)  # as in a normal distribution
 
 
 def test_noise_moves_points_along_their_rays() -> None:
@@ -55,7 +55,7 @@ def test_noise_moves_points_along_their_rays() -> None:
     assert np.abs(points[:, :2] / points[:, 2:] - rays[:, :2]).max() < 1e-5
 
 
-def test_the_stated_share_of_points_is_missing_where_the_table_is_seen_steeply() -> None:
+def test_the_stated_share_of_points_is_missing() -> None:
     cloud = see(BARE, above(1.0), DepthSensor(missing=0.05), seed=2)
     assert 1 - cloud.finite.mean() == pytest.approx(0.05, abs=0.002)
     assert np.array_equal(labels_of(cloud), np.where(cloud.finite, 0, -1))
@@ -86,7 +86,7 @@ def table() -> LaidTable:
     return lay(scattered(8, 1))
 
 
-def test_points_with_a_things_label_lie_within_noise_of_that_thing(table: LaidTable) -> None:
+def test_labelled_points_are_within_noise_of_their_thing(table: LaidTable) -> None:
     camera = chair_camera(table)
     cloud = see(table, camera, seed=5)
     assert cloud.labels is not None
@@ -100,7 +100,7 @@ def test_points_with_a_things_label_lie_within_noise_of_that_thing(table: LaidTa
     assert ((cloud.labels < 0) == ~cloud.finite).all()
 
 
-def test_what_stands_in_front_hides_what_is_behind() -> None:
+def test_a_thing_in_front_hides_the_one_behind() -> None:
     bottle, fork = Placement("bottle", "bottle", 0.0, 0.0), Placement("fork", "fork", 0.0, 0.16, yaw=np.pi / 2)
     low = Camera(looking_pose((0.0, -0.8, 0.15), (0.0, 0.0, 0.1)))
     hidden, free = see(lay([bottle, fork]), low, IDEAL), see(lay([fork]), low, IDEAL)
@@ -119,7 +119,7 @@ def test_colours_are_those_of_the_things(table: LaidTable) -> None:
         assert np.ptp(ratio) < 0.05  # shaded, and of one tint
 
 
-def test_the_same_seed_sees_the_same_and_another_seed_other_noise(table: LaidTable) -> None:
+def test_the_noise_depends_on_the_seed(table: LaidTable) -> None:
     camera = chair_camera(table)
     one, again, other = (see(table, camera, seed=seed) for seed in (1, 1, 2))
     assert np.array_equal(one.points, again.points, equal_nan=True)
@@ -128,7 +128,7 @@ def test_the_same_seed_sees_the_same_and_another_seed_other_noise(table: LaidTab
     assert not np.array_equal(one.points, other.points, equal_nan=True)
 
 
-def test_in_the_tables_frame_the_points_lie_on_the_table_and_the_camera_is_the_origin(table: LaidTable) -> None:
+def test_a_cloud_in_the_frame_of_the_table(table: LaidTable) -> None:
     camera = chair_camera(table)
     cloud = in_table_frame(see(table, camera, IDEAL), camera)
     assert cloud.origin == pytest.approx(tuple(camera.eye))
@@ -141,16 +141,16 @@ def test_in_the_tables_frame_the_points_lie_on_the_table_and_the_camera_is_the_o
         assert (thing.id, thing.label) == (f"o{label}", table.things[label - 1].name)
 
 
-def test_a_look_at_nothing_measures_nothing() -> None:
+def test_an_image_of_nothing_has_no_points() -> None:
     up = Camera(looking_pose((0.0, 0.0, 1.0), (0.0, 0.0, 2.0)))
     found = look(RayCaster([BARE.top.mesh]), up, DepthSensor(), np.random.default_rng(0))
     assert not np.isfinite(found.points).any()
     assert (found.mesh == -1).all()
 
 
-def test_sensors_that_cannot_be_are_refused() -> None:
+def test_impossible_sensors_are_an_error() -> None:
     for noise, missing in ((-1.0, 0.0), (np.nan, 0.0), (1.0, 1.5), (1.0, np.nan)):
-        with pytest.raises(SimulationError, match="noise is 0 or more"):
+        with pytest.raises(SimulationError, match="`noise` must be from 0"):
             DepthSensor(noise=noise, missing=missing)
     with pytest.raises(SimulationError, match="grazing"):
         DepthSensor(grazing=(1.0, 0.5))

@@ -1,4 +1,4 @@
-"""Laying: things rest on what is below them, and nothing goes through anything."""
+"""Laying: things rest on those below them, and never intersect."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from deixis.perception.simulator.scatter import MAX_THINGS, MIN_GAP, scattered
 from deixis.perception.simulator.solids import thick_sheet
 
 TOUCHING = 0.0003
-"""Metres between things that touch: the clearance, and single precision."""
+"""Maximum gap in metres between things that touch: the clearance, and rounding in single precision."""
 
 
 def brick(width: float, length: float, height: float) -> Mesh:
@@ -32,13 +32,13 @@ def gap(table: LaidTable, upper: int, lower: int) -> float:
     return float(distances(surface_points(table.things[upper].mesh, 8000), table.things[lower].mesh).min())
 
 
-def test_bricks_are_stacked_and_one_beside_them_stands_on_the_table() -> None:
+def test_bricks_are_stacked_or_stand_on_the_table() -> None:
     stack = [Placement(name, None, 0.0, 0.0, mesh=brick(0.1, 0.1, 0.02)) for name in ("a", "b", "c")]
     table = lay([*stack, Placement("d", None, 0.2, 0.0, mesh=brick(0.1, 0.1, 0.02))])
     assert [thing.box[0, 2] for thing in table.things] == pytest.approx([0.0, 0.0202, 0.0404, 0.0], abs=1e-5)
 
 
-def test_a_brick_whose_box_overlaps_a_round_plate_but_not_the_plate_stays_on_the_table() -> None:
+def test_a_brick_beside_a_round_plate_stays_on_the_table() -> None:
     plate = Placement("plate", "dinner plate", 0.0, 0.0, plan=(0.28, 0.28))
     table = lay([plate, Placement("brick", None, 0.125, 0.125, mesh=brick(0.03, 0.03, 0.01))])
     assert table.things[1].box[0, 2] == 0.0
@@ -46,7 +46,7 @@ def test_a_brick_whose_box_overlaps_a_round_plate_but_not_the_plate_stays_on_the
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_what_lies_on_a_plate_touches_it_and_does_not_go_into_it(seed: int) -> None:
+def test_a_thing_on_a_plate_touches_it(seed: int) -> None:
     table = lay(
         [
             Placement("plate", "dinner plate", 0, 0, seed=seed),
@@ -91,7 +91,7 @@ def test_things_scattered_at_random_are_apart_or_on_plates(seed: int) -> None:
         assert not boxes_within(a.mesh, b.mesh, MIN_GAP) or distances(a.mesh.vertices, b.mesh).min() > 0.9 * MIN_GAP
 
 
-def test_random_tables_have_as_many_things_as_asked_for_of_different_kinds_and_depend_on_the_seed_only() -> None:
+def test_random_tables_depend_on_count_and_seed_only() -> None:
     assert scattered(12, 4) == scattered(12, 4)
     assert scattered(12, 4) != scattered(12, 5)
     assert len(scattered(12, 4)) == 12
@@ -99,13 +99,13 @@ def test_random_tables_have_as_many_things_as_asked_for_of_different_kinds_and_d
     assert any(thing.box[0, 2] > 0 for seed in range(4) for thing in lay(scattered(16, seed)).things)
 
 
-def test_too_many_things_or_none_are_refused() -> None:
+def test_too_many_things_or_none_are_an_error() -> None:
     for count in (0, MAX_THINGS + 1):
         with pytest.raises(SimulationError, match="random table"):
             scattered(count, 0)
 
 
-def test_as_many_things_as_are_allowed_find_room() -> None:
+def test_the_maximum_number_of_things_finds_room() -> None:
     table = lay(scattered(MAX_THINGS, 3))
     assert len(table.things) == MAX_THINGS
     boxes = np.array([thing.box for thing in table.things if thing.box[0, 2] == 0])
@@ -119,19 +119,19 @@ def test_laying_is_deterministic() -> None:
         assert np.array_equal(a.mesh.vertices, b.mesh.vertices)
 
 
-def test_the_table_reaches_beyond_everything_on_it_and_its_top_is_at_zero() -> None:
+def test_the_table_extends_beyond_the_things_on_it() -> None:
     table = lay([Placement("plate", "plate", 1.0, 2.0, plan=(0.2, 0.2))])
     assert (*table.top.low, *table.top.high) == pytest.approx((0.75, 1.75, 1.25, 2.25))
     assert table.top.mesh.vertices[:, 2].max() == 0.0
 
 
-def test_bad_placements_and_tables_are_refused() -> None:
+def test_bad_placements_and_tables_are_an_error() -> None:
     fork = Placement("fork", "fork", 0.0, 0.0)
     with pytest.raises(SimulationError, match="placed twice"):
         lay([fork, fork])
-    with pytest.raises(SimulationError, match="no place"):
+    with pytest.raises(SimulationError, match="must be finite"):
         lay([Placement("fork", "fork", np.nan, 0.0)])
-    with pytest.raises(SimulationError, match="no faces"):
+    with pytest.raises(SimulationError, match="must have faces"):
         lay([Placement("fork", None, 0.0, 0.0, mesh=Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.int32)))])
     with pytest.raises(SimulationError, match="empty"):
         TableTop((0.0, 0.0), (0.0, 1.0))

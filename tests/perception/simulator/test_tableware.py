@@ -1,4 +1,4 @@
-"""Tableware: of its usual size, closed, the same from the same seed, and shaped as what it is."""
+"""Tableware: closed, of its usual size and shape, and the same for the same seed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_things_of_every_kind_are_closed_and_of_the_usual_size(kind: str) -> Non
         assert thing.mesh.vertices[:, 2].min() == 0.0
 
 
-def test_the_same_seed_gives_the_same_thing_and_others_give_others() -> None:
+def test_things_depend_on_the_seed() -> None:
     one, again, other = make("soup spoon", 5), make("soup spoon", 5), make("soup spoon", 6)
     assert np.array_equal(one.mesh.vertices, again.mesh.vertices)
     assert np.array_equal(one.mesh.faces, again.mesh.faces)
@@ -71,7 +71,7 @@ def test_shapes_vary_and_not_only_sizes(kind: str) -> None:
     assert not any(same)
 
 
-def test_sizes_spread_over_the_usual_range_about_what_is_typical() -> None:
+def test_sizes_spread_over_the_usual_range() -> None:
     widths = np.array([drawn_plan(kind_named("dinner plate", ONTOLOGY), seed, ONTOLOGY)[0] for seed in range(300)])
     assert abs(np.median(widths) - 0.27) < 0.008
     assert widths.min() < 0.25 < 0.285 < widths.max()
@@ -90,7 +90,7 @@ def test_the_share_below_a_quantile_is_its_share(share: float) -> None:
 
 
 def heights_across(kind: str, at: float) -> NDArray[np.float64]:
-    """How high a thing is along a line across it, at a share of its length from the viewer; NaN where it is not."""
+    """Return heights along a line across a thing, at a share of its length from the viewer; NaN beside it."""
     mesh = make(kind, 1).mesh
     width, length, _ = extents(mesh)
     x = np.linspace(-0.6 * width, 0.6 * width, 2001)
@@ -118,7 +118,7 @@ def test_vessels_are_open_above(kind: str) -> None:
     assert RayCaster([thing.mesh]).tops(np.array([[0.0, middle]]))[0] < 0.65 * thing.size.height
 
 
-def test_a_mug_has_a_handle_with_a_hole_away_from_the_viewer() -> None:
+def test_a_mug_has_a_handle_with_a_hole() -> None:
     thing = make("mug", 1)
     width, length, height = extents(thing.mesh)
     y = np.linspace(-length / 2 + width, length / 2, 200)
@@ -129,7 +129,7 @@ def test_a_mug_has_a_handle_with_a_hole_away_from_the_viewer() -> None:
     assert (sideways.mesh == -1).any()
 
 
-def test_what_has_no_shape_of_its_own_is_a_cylinder_or_a_block_and_says_so() -> None:
+def test_other_kinds_are_cylinders_or_blocks() -> None:
     shapes = {
         kind: form_of(kind_named(kind, ONTOLOGY), ONTOLOGY) for kind in ("candle", "tray", "saucer", "red wine glass")
     }
@@ -142,8 +142,8 @@ def test_what_has_no_shape_of_its_own_is_a_cylinder_or_a_block_and_says_so() -> 
     assert make(None, 0).form.generic
 
 
-def test_an_unknown_kind_and_a_plan_that_is_no_size_are_refused() -> None:
-    with pytest.raises(SimulationError, match="'sporkle' is no kind"):
+def test_an_unknown_kind_or_a_bad_plan_is_an_error() -> None:
+    with pytest.raises(SimulationError, match="no kind of thing called 'sporkle'"):
         make("sporkle", 0)
     with pytest.raises(SimulationError, match="above 0"):
         make("mug", 0, plan=(0.0, 0.1))

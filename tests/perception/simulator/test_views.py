@@ -1,4 +1,4 @@
-"""Views of single things."""
+"""Simulated views of single things."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import CAMERA_DISTANCES, views_of
 
 
-def test_views_are_of_the_thing_alone_at_about_the_stated_distance_in_the_cameras_frame() -> None:
+def test_views_show_only_the_thing_at_the_stated_distance() -> None:
     views = views_of(make("bowl", 1).mesh, 20, seed=1)
     assert len(views) == 20
     for view in views:
@@ -24,7 +24,7 @@ def test_views_are_of_the_thing_alone_at_about_the_stated_distance_in_the_camera
 
 
 @pytest.mark.parametrize("kind", ["mug", "dinner fork", "bottle"])
-def test_without_noise_a_view_is_as_large_as_the_thing_and_with_noise_about_as_large(kind: str) -> None:
+def test_a_view_is_about_as_large_as_the_thing(kind: str) -> None:
     thing = make(kind, 2)
     diagonal = float(np.linalg.norm([thing.size.width, thing.size.length, thing.size.height]))
     for exact, noisy in zip(views_of(thing.mesh, 6, 3, noise=0.0), views_of(thing.mesh, 6, 3), strict=True):
@@ -34,7 +34,7 @@ def test_without_noise_a_view_is_as_large_as_the_thing_and_with_noise_about_as_l
         assert 0.8 * len(exact) < len(noisy) < len(exact)
 
 
-def test_more_views_begin_with_those_of_fewer_and_seeds_differ() -> None:
+def test_more_views_add_to_fewer_and_seeds_differ() -> None:
     mesh = make("cup", 1).mesh
     few, many, other = views_of(mesh, 2, 5), views_of(mesh, 4, 5), views_of(mesh, 2, 6)
     assert all(np.array_equal(a.points, b.points) for a, b in zip(few, many, strict=False))
@@ -53,20 +53,20 @@ def test_cameras_are_all_around_and_above() -> None:
     mesh = make("tumbler", 1).mesh
     for view in views_of(mesh, 40, 7, noise=0.0):
         directions.append(view.points.mean(axis=0) / np.linalg.norm(view.points.mean(axis=0)))
-        assert directions[-1][2] > 0.9  # it is in the middle of the image
+        assert directions[-1][2] > 0.9  # it is in the centre of the image
     heights = [float(np.ptp(view.points[:, 1])) for view in views_of(mesh, 40, 7, noise=0.0)]
     assert max(heights) > 1.15 * min(heights)
 
 
-def test_a_mesh_in_another_unit_or_without_faces_is_refused() -> None:
+def test_a_mesh_too_large_or_without_faces_is_an_error() -> None:
     mesh = make("cup", 1).mesh
     with pytest.raises(SimulationError, match="unit"):
         views_of(Mesh(mesh.vertices * 1000, mesh.faces), 1, 0)
-    with pytest.raises(SimulationError, match="no faces"):
+    with pytest.raises(SimulationError, match="must have faces"):
         views_of(Mesh(mesh.vertices, mesh.faces[:0]), 1, 0)
 
 
-def test_an_upright_view_is_the_same_view_in_the_frame_of_the_table() -> None:
+def test_an_upright_view_is_in_the_frame_of_the_table() -> None:
     mesh = make("mug", seed=1).mesh
     aside, upright = views_of(mesh, 1, seed=3)[0], views_of(mesh, 1, seed=3, upright=True)[0]
     assert abs(float(upright.points[:, 2].min())) < 0.01

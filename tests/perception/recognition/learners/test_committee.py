@@ -1,4 +1,4 @@
-"""Combining and choosing among learners."""
+"""The committee: combinations of learners, and the choice among them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ VIEW = ViewFeatures({})
 
 
 class Stubborn(TaughtViews):
-    """Says the same whatever it sees."""
+    """A learner with a constant answer."""
 
     def __init__(self, name: str, says: str) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class Stubborn(TaughtViews):
     def _rebuilt(self, category: str, views: tuple[ViewFeatures, ...]) -> None: ...
 
 
-def test_attention_goes_to_whoever_was_right_lately() -> None:
+def test_the_member_that_was_right_lately_answers() -> None:
     committee = Committee([Stubborn("a", "cup"), Stubborn("b", "fork"), Stubborn("c", "fork")], window=4)
     for _ in range(4):
         committee.correct("cup", VIEW)
@@ -53,7 +53,7 @@ def test_only_the_best_members_are_combined() -> None:
     assert committee._opinions(VIEW)[VOTE].ranked == (("cup", 1.0),)
 
 
-def test_a_member_is_asked_once_about_a_view_that_is_then_corrected() -> None:
+def test_members_are_asked_once_per_corrected_view() -> None:
     member = Stubborn("a", "cup")
     committee = Committee([member])
     committee.predict(VIEW)
@@ -91,6 +91,6 @@ def test_dempsters_rule_is_that_of_pairs_in_any_order(support: list[tuple[str, f
     assert dempster_shafer(support) == pytest.approx(masses)
 
 
-def test_members_have_names_of_their_own() -> None:
-    with pytest.raises(RecognitionError, match="name of its own"):
+def test_members_need_distinct_names() -> None:
+    with pytest.raises(RecognitionError, match="distinct names"):
         Committee([Stubborn("a", "cup"), Stubborn("a", "fork")])

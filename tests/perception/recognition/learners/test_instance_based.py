@@ -29,7 +29,7 @@ def test_scores_are_equation_4() -> None:
     assert found.best == "loose" and found.unknown == pytest.approx(5 / 8)
 
 
-def test_names_by_distance_leave_the_unknown_to_equation_4() -> None:
+def test_by_distance_uses_equation_4_only_for_unknown() -> None:
     found = learnt(settings=PAPER, by_distance=True).predict(view(5.0))
     assert found.best == "tight" and dict(found.ranked) == pytest.approx({"tight": -3.0, "loose": -5.0})
     assert found.unknown == pytest.approx(5 / 8)
@@ -42,7 +42,7 @@ def test_shrinkage_draws_the_divisors_together() -> None:
     assert dict(found.ranked) == pytest.approx({"tight": -3 / 3.5, "loose": -5 / 6.5})
 
 
-def test_views_of_one_thing_say_nothing_of_how_far_apart_things_are() -> None:
+def test_views_of_one_thing_do_not_enter_the_icd() -> None:
     learner = InstanceBased(root=False, settings=RecognitionSettings(shrinkage=0.0))
     for place, thing in ((0.0, "a"), (1.0, "a"), (4.0, "b")):  # over things: a mean of 4 and 3, to and fro
         learner.learn("cup", view(place, thing=thing))
@@ -52,7 +52,7 @@ def test_views_of_one_thing_say_nothing_of_how_far_apart_things_are() -> None:
     assert dict(learner.predict(view(6.0)).ranked)["mug"] == wanted
 
 
-def test_square_roots_make_it_hellingers_distance() -> None:
+def test_square_roots_give_the_hellinger_distance() -> None:
     learner = InstanceBased(by_distance=True)
     learner.learn("cup", view(4.0))
     assert dict(learner.predict(view(9.0)).ranked) == pytest.approx({"cup": -1.0})

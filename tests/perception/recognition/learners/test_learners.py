@@ -1,4 +1,4 @@
-"""What every learner does, whichever it is."""
+"""Behaviour that all learners share."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from deixis.perception.recognition.settings import PAPER
 
 BINS = 12
 PLACES = {"cup": 1, "fork": 5, "plate": 9}
-"""Where the histograms of each category have their mass."""
+"""Bins in which the histograms of each category have their mass."""
 
 
 def view_of(category: str, seed: int) -> ViewFeatures:
-    """Histograms around the category's place, each with some noise."""
+    """Return histograms around the category's place, with noise."""
     rng = np.random.default_rng([seed, PLACES[category]])
     across = np.arange(BINS)
     rows = np.exp(-0.5 * (across - PLACES[category]) ** 2) + rng.uniform(0, 0.15, (6, BINS))
@@ -64,7 +64,7 @@ def taught(learner: Learner, categories: tuple[str, ...] = tuple(PLACES), views:
     return learner
 
 
-def test_nothing_is_known_before_it_is_taught(learner: Learner) -> None:
+def test_there_are_no_categories_before_teaching(learner: Learner) -> None:
     found = learner.predict(view_of("cup", 1))
     assert learner.categories == () and learner.stored == 0
     assert found.best is None and found.ranked == () and found.unknown == float("inf")
@@ -81,14 +81,14 @@ def test_new_views_get_the_name_of_their_category(learner: Learner) -> None:
     assert [learner.predict(view_of(c, s)).best for c in PLACES for s in (50, 51)] == [c for c in PLACES for _ in "12"]
 
 
-def test_all_that_is_ranked_is_known_once_and_the_likeliest_comes_first(learner: Learner) -> None:
+def test_each_category_is_ranked_once_the_likeliest_first(learner: Learner) -> None:
     found = taught(learner).predict(view_of("fork", 9))
     scores = [score for _, score in found.ranked]
     assert scores == sorted(scores, reverse=True) and np.isfinite([*scores, found.unknown]).all()
     assert {name for name, _ in found.ranked} <= set(PLACES)
 
 
-def test_a_category_that_was_left_out_is_more_unknown_than_those_taught(learner: Learner) -> None:
+def test_an_untaught_category_has_a_higher_unknown_score(learner: Learner) -> None:
     taught(learner, ("cup", "fork"), views=5)
     known = [learner.predict(view_of(category, seed)).unknown for category in ("cup", "fork") for seed in range(20, 30)]
     unknown = [learner.predict(view_of("plate", seed)).unknown for seed in range(20, 30)]
@@ -101,7 +101,7 @@ def test_asking_changes_nothing(learner: Learner) -> None:
     assert learner.predict(view_of("plate", 8)) and learner.predict(view_of("cup", 7)) == first
 
 
-def test_a_correction_is_stored_and_heeded(learner: Learner) -> None:
+def test_a_correction_is_stored_and_followed(learner: Learner) -> None:
     taught(learner)
     before, odd = learner.stored, view_of("plate", 60)
     assert learner.predict(odd).best == "plate"
@@ -118,13 +118,13 @@ def test_a_confirmation_stores_nothing(learner: Learner) -> None:
     assert learner.stored == before
 
 
-def test_what_is_forgotten_is_never_said_again(learner: Learner) -> None:
+def test_a_forgotten_category_is_never_predicted(learner: Learner) -> None:
     taught(learner).forget("cup")
     found = learner.predict(view_of("cup", 5))
     assert learner.categories == ("fork", "plate") and "cup" not in dict(found.ranked) and found.best is not None
 
 
-def test_a_renamed_category_is_what_it_was_under_another_name(learner: Learner) -> None:
+def test_a_renamed_category_keeps_its_views(learner: Learner) -> None:
     before = taught(learner).predict(view_of("cup", 5))
     learner.rename("cup", "beaker")
     after = learner.predict(view_of("cup", 5))
@@ -139,7 +139,7 @@ def test_merged_categories_answer_for_both(learner: Learner) -> None:
     assert {learner.predict(view_of(category, 5)).best for category in ("cup", "plate")} == {"plate"}
 
 
-def test_a_view_that_nothing_describes_is_no_error(learner: Learner) -> None:
+def test_a_view_without_descriptors_is_not_an_error(learner: Learner) -> None:
     taught(learner).learn("cup", EMPTY)
     assert learner.predict(EMPTY).best is None
     learner.learn("shadow", EMPTY)
@@ -150,15 +150,15 @@ def test_a_view_that_nothing_describes_is_no_error(learner: Learner) -> None:
 @pytest.mark.parametrize(
     ("act", "said"),
     [
-        (lambda learner: learner.forget("mug"), "no category 'mug'"),
-        (lambda learner: learner.confirm("mug", view_of("cup", 1)), "no category 'mug'"),
-        (lambda learner: learner.rename("mug", "cup"), "no category 'mug'"),
+        (lambda learner: learner.forget("mug"), "unknown category 'mug'"),
+        (lambda learner: learner.confirm("mug", view_of("cup", 1)), "unknown category 'mug'"),
+        (lambda learner: learner.rename("mug", "cup"), "unknown category 'mug'"),
         (lambda learner: learner.rename("cup", "fork"), "'fork' already"),
         (lambda learner: learner.merge("cup", "cup"), "into itself"),
-        (lambda learner: learner.merge("cup", "mug"), "no category 'mug'"),
+        (lambda learner: learner.merge("cup", "mug"), "unknown category 'mug'"),
     ],
 )
-def test_unknown_or_taken_names_are_refused_and_change_nothing(
+def test_wrong_names_are_an_error_and_change_nothing(
     learner: Learner, act: Callable[[Learner], None], said: str
 ) -> None:
     taught(learner)

@@ -1,4 +1,4 @@
-"""One-class learning: the equivalence that is claimed, and what it promises."""
+"""One-class learning: its equivalence to SVDD, and its properties."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def view(*numbers: float) -> ViewFeatures:
 
 
 def smallest_ball(points: NDArray[np.float64], reach: float, outliers: float) -> tuple[NDArray[np.float64], float]:
-    """The dual of SVDD (Tax and Duin 2004) by a general solver: weights (n,), and f on the boundary."""
+    """Solve the dual of SVDD (Tax and Duin 2004) by a general solver; return weights (n,) and f on the boundary."""
     kernel = np.exp(-((points[:, None] - points[None]) ** 2).sum(axis=2) / reach**2)
     n, most = len(points), 1.0 / (outliers * len(points))
     found = minimize(
@@ -47,7 +47,7 @@ def test_scores_are_those_of_support_vector_data_description() -> None:
         assert found.ranked[0][1] == pytest.approx(float(similar @ weights) / boundary, abs=2e-3)
 
 
-def test_a_word_is_described_by_its_own_views_alone() -> None:
+def test_a_category_depends_on_its_own_views_only() -> None:
     learner = SupportVectorDescription(["good"])
     learner.learn("cup", view(0.5, 0.5))
     before = dict(learner.predict(view(0.6, 0.5)).ranked)["cup"]
@@ -55,7 +55,7 @@ def test_a_word_is_described_by_its_own_views_alone() -> None:
     assert dict(learner.predict(view(0.6, 0.5)).ranked)["cup"] == before
 
 
-def test_what_lies_far_from_every_word_is_unknown() -> None:
+def test_a_view_far_from_every_category_is_unknown() -> None:
     learner = SupportVectorDescription(["good"])
     learner.learn("cup", view(0.5, 0.5))
     assert learner.predict(view(0.5, 0.5)).unknown == pytest.approx(0.0)
@@ -69,6 +69,6 @@ def test_a_missing_scikit_learn_is_named(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 @pytest.mark.parametrize("wrong", [{"outliers": 0.0}, {"outliers": 1.0}, {"reach": 0.0}])
-def test_settings_that_describe_nothing_are_refused(wrong: dict[str, float]) -> None:
-    with pytest.raises(RecognitionError, match="share of outliers"):
+def test_settings_out_of_range_are_an_error(wrong: dict[str, float]) -> None:
+    with pytest.raises(RecognitionError, match="`outliers` must be"):
         SupportVectorDescription(**wrong)  # type: ignore[arg-type]

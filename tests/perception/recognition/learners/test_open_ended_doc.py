@@ -26,7 +26,7 @@ def test_the_page_names_every_learner() -> None:
         assert f"| `{learner.__name__}` |" in PAGE
 
 
-def test_the_page_says_how_the_teacher_teaches_and_what_was_chosen() -> None:
+def test_the_page_states_the_settings_of_the_teacher() -> None:
     usual = Teaching()
     assert (usual.first, usual.window, usual.patience) == (3, 3, 100) and "by three views" in PAGE
     assert f"the last {usual.window}n answers" in PAGE and f"above {usual.threshold:g}" in PAGE

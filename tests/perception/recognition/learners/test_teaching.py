@@ -14,7 +14,7 @@ from deixis.perception.recognition.learners.view_features import ViewFeatures
 
 
 class Scripted(TaughtViews):
-    """Knows what every view shows, and is right as often as its script says; then it always is."""
+    """A learner that is right or wrong as its script says, and right after the end of the script."""
 
     name = "scripted"
 
@@ -47,7 +47,7 @@ def course(
     return teach(learner, shown, list(shown), teaching or Teaching(first=1)), learner
 
 
-def test_who_is_always_right_learns_everything_with_one_question_a_category() -> None:
+def test_a_perfect_learner_needs_one_question_per_category() -> None:
     found, _ = course([])
     assert found.end is End.LEARNT and found.learnt == 3
     assert found.iterations == 1 + 2 + 3 and found.introduced == (0, 1, 3)
@@ -55,13 +55,13 @@ def test_who_is_always_right_learns_everything_with_one_question_a_category() ->
     assert found.global_accuracy == found.protocol_accuracy == 1.0
 
 
-def test_who_is_never_right_is_given_up_after_the_patience() -> None:
+def test_a_learner_that_is_never_right_exhausts_patience() -> None:
     found, learner = course([False] * 500)
     assert found.end is End.FRUITLESS and found.learnt == 0 and found.iterations == 100
     assert found.stored == 1 + 100 == learner.stored and found.global_accuracy == 0.0
 
 
-def test_a_wrong_answer_is_corrected_and_so_stored_and_a_right_one_is_not() -> None:
+def test_only_wrong_answers_are_corrected_and_stored() -> None:
     found, learner = course([False, True, True, True], categories=1)
     # after wrong, right, right: 2 / 3 is not above 0.67; the window of 3 then holds three right ones
     assert [answer.right for answer in found.answers] == [False, True, True, True]
@@ -90,7 +90,7 @@ def test_a_category_is_introduced_by_as_many_views_as_asked_for() -> None:
     assert found.stored == 9 and found.instances == 3.0
 
 
-def test_a_category_is_met_before_it_is_taught_and_the_first_is_not() -> None:
+def test_new_categories_are_met_before_they_are_taught() -> None:
     found, learner = course([], teaching=Teaching(first=3))
     assert learner.met == ["c1"] * 3 + ["c2"] * 3 and found.doubts == (1.0,) * 6
     assert found.unknown_auroc == 1.0
@@ -112,19 +112,24 @@ def test_the_same_seed_asks_in_the_same_order() -> None:
 
 @pytest.mark.parametrize(
     ("order", "said"),
-    [([], "one category or more"), (["a", "a"], "each once"), (["a", "b"], "'b' has 1 views"), (["z"], "'z' has 0")],
+    [
+        ([], "at least one category"),
+        (["a", "a"], "each once"),
+        (["a", "b"], "'b' must have at least 2 views"),
+        (["z"], "'z' must have at least 2 views"),
+    ],
 )
-def test_orders_that_cannot_be_taught_are_refused(order: list[str], said: str) -> None:
+def test_orders_that_cannot_be_taught_are_an_error(order: list[str], said: str) -> None:
     views = {"a": [ViewFeatures({})] * 5, "b": [ViewFeatures({})]}
     with pytest.raises(RecognitionError, match=said):
         teach(Scripted({}, iter([])), views, order, Teaching(first=1))
 
 
-def test_a_course_begins_from_nothing() -> None:
+def test_a_course_begins_without_categories() -> None:
     view = ViewFeatures({})
     learner = Scripted({id(view): "a"}, iter([]))
     learner.learn("a", view)
-    with pytest.raises(RecognitionError, match="begins from nothing"):
+    with pytest.raises(RecognitionError, match="begin without categories"):
         teach(learner, {"a": [view] * 5}, ["a"])
 
 

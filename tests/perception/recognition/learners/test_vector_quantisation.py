@@ -22,7 +22,7 @@ def places(learner: VectorQuantisation, category: str) -> list[list[float]]:
     return rows
 
 
-def test_a_right_answer_draws_the_nearest_prototype_nearer_by_less_each_time() -> None:
+def test_right_answers_attract_the_prototype_ever_less() -> None:
     learner = VectorQuantisation(["good"], rate=0.5, decay=1.0)
     learner.correct("cup", view(1.0, 1.0))
     learner.confirm("cup", view(3.0, 1.0))
@@ -32,7 +32,7 @@ def test_a_right_answer_draws_the_nearest_prototype_nearer_by_less_each_time() -
     assert learner.stored == 1
 
 
-def test_a_wrong_answer_makes_a_prototype_and_pushes_the_wrong_winner_away() -> None:
+def test_a_wrong_answer_adds_a_prototype_and_repels_another() -> None:
     learner = VectorQuantisation(["good"], rate=0.5)
     learner.correct("cup", view(1.0, 1.0))
     learner.correct("mug", view(2.0, 1.0))
@@ -74,6 +74,6 @@ def test_forgetting_takes_its_numbers_away_again() -> None:
     assert said[0] == said[1]
 
 
-def test_settings_that_learn_nothing_are_refused() -> None:
-    with pytest.raises(RecognitionError, match="1 feature or more"):
+def test_settings_out_of_range_are_an_error() -> None:
+    with pytest.raises(RecognitionError, match="`features` must be at least 1"):
         VectorQuantisation(features=0)

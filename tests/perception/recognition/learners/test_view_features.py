@@ -1,4 +1,4 @@
-"""What learners are told of a view."""
+"""Features of a view: its descriptors by name, and the vector pooled from them."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ def test_a_view_has_what_every_describer_says() -> None:
     assert view["good"].shape == (1, 675) and view["d2_extents"].shape == (1, 35)
 
 
-def test_an_unknown_descriptor_is_named_with_those_there_are() -> None:
-    with pytest.raises(RecognitionError, match="'fpfh', only by good"):
+def test_an_unknown_descriptor_names_the_known_ones() -> None:
+    with pytest.raises(RecognitionError, match="no descriptor 'fpfh'; it has good"):
         ViewFeatures({"good": np.ones((1, 2), np.float32)})["fpfh"]
 
 

@@ -26,7 +26,7 @@ def test_a_codebook_finds_clusters_that_nobody_named() -> None:
     assert np.sort(Codebook.of(near, words=3).centres[:, 0]) == pytest.approx([1, 5, 9], abs=0.1)
 
 
-def test_a_codebook_is_the_same_from_the_same_views_and_has_no_more_words_than_there_are_descriptors() -> None:
+def test_a_codebook_is_deterministic_and_bounded() -> None:
     views = [view(1.0, 1.0, 2.0, 3.0)]
     assert np.array_equal(Codebook.of(views, words=2).centres, Codebook.of(views, words=2).centres)
     assert len(Codebook.of(views, words=50)) == 3
@@ -38,7 +38,7 @@ def test_no_codebook_comes_from_nothing(views: list[ViewFeatures]) -> None:
         Codebook.of(views)
 
 
-def test_scores_are_the_mean_log_likelihood_with_laplace_smoothing() -> None:
+def test_scores_are_mean_log_likelihoods() -> None:
     learner = NaiveBayes(BOOK, smoothing=1.0)
     learner.learn("cup", view(0.0, 0.0, 10.0))  # (2 + 1) / 5 and (1 + 1) / 5
     learner.learn("fork", view(10.0))  # 1 / 3 and 2 / 3
@@ -48,7 +48,7 @@ def test_scores_are_the_mean_log_likelihood_with_laplace_smoothing() -> None:
     )
 
 
-def test_a_view_is_as_unknown_as_its_words_diverge_from_the_best_category() -> None:
+def test_unknown_is_the_divergence_from_the_best_category() -> None:
     learner = NaiveBayes(BOOK, smoothing=1.0)
     learner.learn("cup", view(0.0, 10.0))  # one half each
     learner.learn("fork", view(10.0, 10.0))
