@@ -10,7 +10,7 @@ from pathlib import Path
 from deixis.grammar.errors import ScriptFileError, StatementError, shortened
 from deixis.ontology.facts import Source
 
-MAX_FILE_BYTES = 64 * 1024 * 1024  # maximum size of a file
+MAX_FILE_BYTES = 4 * 1024 * 1024  # bytes of one file; reading it takes up to 150 times as much memory
 MAX_INCLUDE_DEPTH = 32  # maximum depth of nested includes
 MAX_INCLUDED_FILES = 1_000  # maximum number of files that one script includes
 
