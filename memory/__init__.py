@@ -1,1 +1,1 @@
-"""What is kept: semantic memory, as RDF in named graphs that one process owns."""
+"""Semantic and perceptual memory in a folder that one process owns."""

@@ -9,19 +9,19 @@ from deixis.errors import DeixisError
 
 
 class MemoryBusyError(DeixisError, BlockingIOError):
-    """Somebody else, or this process already, holds the memory."""
+    """Another process, or this process already, has the memory open."""
 
 
 class MemoryFormatError(DeixisError, ValueError):
-    """A folder that is no memory, a damaged one, or one of a version that this program does not know."""
+    """A folder that is not a memory, a damaged memory, or one of a version that this program does not know."""
 
 
 class MemoryWriteError(DeixisError, OSError):
-    """The disk is full, the folder is read-only, or the store could not be read or written otherwise."""
+    """The disk is full, the folder is read-only, or the store could not be read or written for another reason."""
 
 
 class ReadOnlyMemoryError(MemoryWriteError):
-    """A memory in a folder that cannot be written: it can be read, and nothing else."""
+    """A memory in a folder that cannot be written; it can only be read."""
 
 
 class UnknownLessonError(DeixisError, KeyError):
@@ -29,7 +29,7 @@ class UnknownLessonError(DeixisError, KeyError):
 
 
 class QueryError(DeixisError, ValueError):
-    """A query that cannot be run, or a result asked for in a form that it does not have."""
+    """A query that cannot be run, or a result requested in a form that it does not have."""
 
     several_lines = True
 
@@ -43,11 +43,11 @@ class QueryMemoryError(QueryError, MemoryError):
 
 
 class ImportFormatError(DeixisError, ValueError):
-    """A file that cannot be taken in: of no known format, malformed, too large, or with a DTD."""
+    """A file that cannot be imported: of an unknown format, malformed, too large, or with a DTD."""
 
 
 class ShapesError(DeixisError, ValueError):
-    """SHACL shapes that cannot be checked: not well formed, or with a constraint that is refused."""
+    """SHACL shapes that cannot be checked: malformed, or with a constraint that is refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +63,12 @@ class ShapeResult:
 
     def __str__(self) -> str:
         where = f"{self.focus}, {self.path}" if self.path else self.focus
-        seen = f" (here: {self.value})" if self.value is not None else ""
+        seen = f" (value: {self.value})" if self.value is not None else ""
         return f"{where}: {self.message}{seen} [{self.shape}]"
 
 
 class RejectedWriteError(DeixisError, ValueError):
-    """A write that would have broken the shapes, or contradicts what is there; nothing was written."""
+    """A write that would break the shapes, or contradicts the memory; nothing was written."""
 
     several_lines = True
 
@@ -78,11 +78,11 @@ class RejectedWriteError(DeixisError, ValueError):
 
 
 class RecordError(DeixisError, ValueError):
-    """A view, a category or a batch that cannot be kept: wrong arrays, names or metadata."""
+    """A view, a category or a batch that cannot be stored: wrong arrays, names or metadata."""
 
 
 class DamagedMemoryError(MemoryFormatError):
-    """What is stored is not what was written: bytes have changed, or some are missing."""
+    """Stored data that differs from what was written: bytes have changed or are missing."""
 
 
 class UnknownViewError(DeixisError, KeyError):

@@ -1,7 +1,7 @@
-"""The folder of a memory: telling it from other folders, making one, finishing what a crash left, and migrating.
+"""The folder of a memory: recognise it, make it, migrate it, and finish what a crash interrupted.
 
-``memory.json`` makes a folder a memory; ``semantic/`` is its store. What is new is made beside it in ``semantic.new``
-and swapped in by renaming, so that a crash at any moment leaves something that the next open can finish or undo.
+``memory.json`` makes a folder a memory; ``semantic/`` is its store. A new store is made in ``semantic.new`` and then
+renamed, so that after a crash at any moment the next opening can finish or undo the change.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWr
 from deixis.memory.owner import LOCK_FILE
 
 VERSION = 3
-"""The format that this program writes; ``memory.semantic.migrations`` reads those before it, from 0 on."""
+"""Format that this program writes; ``memory.semantic.migrations`` reads all earlier ones, from 0 on."""
 
 FORMAT = "deixis-memory"
 MARK, STORE, NEW, OLD = "memory.json", "semantic", "semantic.new", "semantic.old"
 NEW_MARK = MARK + ".new"
 SNAPSHOT = "semantic.snapshot"
-"""What queries are answered from, while a memory is open: see ``memory.semantic.queries.snapshot``."""
+"""Folder of the snapshot that queries run on; see ``memory.semantic.queries.snapshot``."""
 
 PERCEPTUAL = "perceptual"
-"""The perceptual memory, which may be there before anything else is."""
+"""Folder of the perceptual memory, which may exist before the semantic store."""
 
 Migration = Callable[[ox.Store, ox.Store], None]
-"""Fills a new store from one of an older format."""
+"""A function that fills a new store from one of an older format."""
 
 
 class FolderState(Enum):
-    """What is at a path."""
+    """State of the folder at a path."""
 
     ABSENT = auto()
     EMPTY = auto()
@@ -47,17 +47,20 @@ class FolderState(Enum):
 
 
 def inspect(folder: Path) -> FolderState:
-    """Return what is there, by looking only. Raises MemoryFormatError for what is no memory, or a damaged one."""
+    """Return the state of a folder, without opening its store.
+
+    Raises MemoryFormatError for something other than a memory, or a damaged one.
+    """
     if not folder.exists():
         if folder.is_symlink():
-            raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
+            raise MemoryFormatError(f"{folder} is a broken link; remove or repair it")
         nearest = next(parent for parent in folder.absolute().parents if parent.exists())
         if not nearest.is_dir():
-            raise MemoryFormatError(f"{folder} cannot be: {nearest} is a file; name another path")
+            raise MemoryFormatError(f"{folder} cannot exist: {nearest} is a file; name another path")
         return FolderState.ABSENT
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
-    names = set(os.listdir(folder))
+    names = {entry.name for entry in folder.iterdir()}
     if MARK in names:
         read_mark(folder)
         return FolderState.MEMORY
@@ -70,13 +73,13 @@ def inspect(folder: Path) -> FolderState:
             f"the memory at {folder} is damaged: {MARK} is missing; put it back from a copy of the folder"
         )
     raise MemoryFormatError(
-        f"{folder} is no memory: it holds other things ({', '.join(sorted(names)[:3])}) and no {MARK}; "
+        f"{folder} is not a memory: it has other files ({', '.join(sorted(names)[:3])}) and no {MARK}; "
         "name an empty or a new folder"
     )
 
 
 def read_mark(folder: Path) -> dict[str, Any]:
-    """Return what ``memory.json`` says. Raises MemoryFormatError where it cannot be believed."""
+    """Return the content of ``memory.json``. Raises MemoryFormatError where it is invalid."""
     file = folder / MARK
     try:
         mark = json.loads(file.read_text(encoding="utf-8"))
@@ -98,16 +101,18 @@ def read_mark(folder: Path) -> dict[str, Any]:
 
 
 def store_in(folder: Path) -> Path:
-    """Return where the store is: after a swap that was cut short, and until :func:`finish` puts it back, beside its
-    place."""
+    """Return the path of the store.
+
+    After an interrupted swap the store is beside its place, until :func:`finish` moves it back.
+    """
     aside = not (folder / STORE).is_dir() and (folder / OLD).is_dir()
     return folder / (OLD if aside else STORE)
 
 
 def check_store_opens(folder: Path) -> None:
-    """Open the store for reading only, which changes nothing, and let go. Raises MemoryFormatError.
+    """Open the store for reading and close it, which changes nothing. Raises MemoryFormatError.
 
-    To be called by the owner: another process may be about to replace the files.
+    The caller must own the folder, as another process could replace the files.
     """
     store = store_in(folder)
     current = store / "CURRENT"
@@ -133,7 +138,7 @@ def check_store_opens(folder: Path) -> None:
 
 
 def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
-    """Make a memory in an empty folder: a store that ``fill`` fills, then the mark."""
+    """Make a memory in an empty folder: a store filled by ``fill``, then ``memory.json``."""
     disk.remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
     try:
@@ -150,12 +155,12 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
 
 
 def finish(folder: Path) -> None:
-    """End or undo what a crash cut short."""
+    """Finish or undo what a crash interrupted."""
     if not (folder / MARK).exists():
         disk.rename(folder / NEW_MARK, folder / MARK)
     if (folder / OLD).is_dir():
         if (folder / STORE).is_dir() and not (folder / NEW_MARK).exists():
-            disk.remove(folder / OLD)  # the swap was done
+            disk.remove(folder / OLD)  # the swap was completed
         else:
             disk.remove(folder / STORE)
             disk.rename(folder / OLD, folder / STORE)
@@ -165,7 +170,7 @@ def finish(folder: Path) -> None:
 
 
 def swap(folder: Path, mark: dict[str, Any]) -> None:
-    """Put ``semantic.new`` in the place of ``semantic``, with the mark that goes with it; nobody has either open."""
+    """Replace ``semantic`` with ``semantic.new``, and ``memory.json`` with ``mark``; neither store may be open."""
     _write(folder / NEW_MARK, mark)
     disk.rename(folder / STORE, folder / OLD)
     disk.rename(folder / NEW, folder / STORE)
@@ -174,7 +179,7 @@ def swap(folder: Path, mark: dict[str, Any]) -> None:
 
 
 def migrate(folder: Path, steps: Mapping[int, Migration]) -> None:
-    """Bring an older memory to this version, one step at a time, each on a copy that is then swapped in."""
+    """Migrate an older memory to this version, one step at a time, each on a copy that is then swapped in."""
     mark = read_mark(folder)
     while mark["version"] != VERSION:
         step = steps[mark["version"]]
@@ -194,7 +199,7 @@ def write_mark(folder: Path, mark: dict[str, Any]) -> None:
 
 
 def size(folder: Path) -> int:
-    """Return the bytes of all files under a folder, but for the snapshot, whose files are the store's."""
+    """Return the bytes of all files under a folder, except the snapshot, whose files are those of the store."""
     files = (file for file in folder.rglob("*") if folder / SNAPSHOT not in file.parents)
     return sum(file.stat().st_size for file in files if file.is_file())
 
@@ -213,23 +218,22 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
 
 @contextmanager
 def committed(folder: Path) -> Iterator[None]:
-    """Turn what a failed write raises into MemoryWriteError."""
-    advice = (
-        "see that the disk has room and the folder is writable, then try again: what was kept before is still there"
-    )
+    """Turn errors of a write into MemoryWriteError."""
+    advice = "check that the disk has room and the folder is writable, then try again: earlier content is unchanged"
     with wrap_storage_errors(folder, "written", advice):
         yield
 
 
 @contextmanager
 def reading(folder: Path) -> Iterator[None]:
-    """Turn what a failed read raises into MemoryWriteError."""
+    """Turn errors of a read into MemoryWriteError."""
     with wrap_storage_errors(folder, "read", "restore the folder from a copy"):
         yield
 
 
 @contextmanager
 def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
+    """Turn errors of the store or the system into MemoryWriteError, or DamagedMemoryError for a corrupt store."""
     try:
         yield
     except (OSError, RuntimeError) as error:

@@ -1,14 +1,14 @@
-"""The journal of a write over both stores: what the perceptual store is to be given if the semantic store commits.
+"""Journal of a write over both stores: the batch for the perceptual store, applied if the semantic store commits.
 
 The commit of the semantic store decides such a write. Before it, the batch for the perceptual store is written to the
-journal and synced. In its transaction, the id of the journal becomes part of the semantic store. After it, the batch is
-applied, and the journal is removed. So a journal that an opening finds is applied if the semantic store has its id, and
-dropped if not: both stores then show all of the write, or nothing of it.
+journal and synced. Its transaction stores the id of the journal in the semantic store. After it, the batch is applied,
+and the journal is removed. So an opening that finds a journal applies it if the semantic store has its id, and drops it
+if not: both stores then have all of the write, or none of it.
 
 An import of views that takes several batches has a journal too, which lists the new views. It is rolled back unless the
-last batch, which holds the id, was written.
+last batch, which has the id, was written.
 
-The journal lies in the folder of the perceptual store, and only the owner of that store reads, writes or removes it.
+The journal is in the folder of the perceptual store, and only the owner of that store reads, writes or removes it.
 
 >>> import tempfile
 >>> folder = Path(tempfile.mkdtemp())
@@ -41,8 +41,7 @@ JOURNAL = "journal"
 NEW_JOURNAL = JOURNAL + ".new"
 
 MARKS = ox.NamedNode("https://w3id.org/deixis/graph/journal")
-"""The graph of the semantic store that holds the id of the last write over both stores. No query and no export sees
-it."""
+"""Graph of the semantic store with the id of the last write over both stores; queries and exports leave it out."""
 
 COMMITTED = ox.NamedNode("https://w3id.org/deixis/graph/journal/committed")
 
@@ -53,10 +52,10 @@ _SUM = hashlib.sha256().digest_size
 
 @dataclass(frozen=True)
 class JournalEntry:
-    """One write that is under way.
+    """One write in progress.
 
-    ``pairs`` are keys of the perceptual store with their new values, None to delete; ``views`` is by how much the
-    number of views changes. ``undo`` are ids of views to forget where the write did not come to its end.
+    ``pairs`` are keys of the perceptual store with their new values, None to delete. ``views`` is the change in the
+    number of views. ``undo`` are the ids of the views to forget if the write was interrupted.
     """
 
     id: str
@@ -66,12 +65,12 @@ class JournalEntry:
 
 
 def new_id() -> str:
-    """Return an id for a journal, different for each write."""
+    """Return a new unique id for a journal."""
     return secrets.token_hex(8)
 
 
 def write_journal(folder: Path, entry: JournalEntry) -> None:
-    """Write the journal in one step; it is on the disk when this returns."""
+    """Write the journal in one step, and sync it to the disk."""
     digest = hashlib.sha256()
     with (folder / NEW_JOURNAL).open("wb") as out:
         for part in _parts(entry):
@@ -94,7 +93,7 @@ def _parts(entry: JournalEntry) -> Iterator[bytes]:
 
 
 def read_journal(folder: Path) -> JournalEntry | None:
-    """Return the write that was under way, or None; one whose journal was cut short had changed nothing yet."""
+    """Return the write in progress, or None; an incomplete journal counts as none, as its write had changed nothing."""
     try:
         data = (folder / JOURNAL).read_bytes()
     except FileNotFoundError:
@@ -116,13 +115,13 @@ def read_journal(folder: Path) -> JournalEntry | None:
 
 
 def clear_journal(folder: Path) -> None:
-    """Remove the journal, where there is one."""
+    """Remove the journal, if there is one."""
     for name in (JOURNAL, NEW_JOURNAL):
         (folder / name).unlink(missing_ok=True)
 
 
 def has_committed(memory: Path, id: str) -> bool:
-    """Return whether the semantic store of a memory has committed the write with that id, by reading only.
+    """Return whether the semantic store of a memory has committed the write with an id; only read the store.
 
     Raises MemoryFormatError where the store cannot be read.
     """
@@ -133,7 +132,7 @@ def has_committed(memory: Path, id: str) -> bool:
         found = list(ox.Store.read_only(str(store)).quads_for_pattern(MARKS, COMMITTED, None, MARKS))
     except (OSError, RuntimeError) as error:
         raise MemoryFormatError(
-            f"the memory at {memory} holds a write that was cut short, and its store cannot be read to finish it "
+            f"the memory at {memory} has an interrupted write, and its store cannot be read to finish it "
             f"({files.one_line(error)}); close it elsewhere and try again, or restore the folder from a copy"
         ) from error
     return any(getattr(quad.object, "value", None) == id for quad in found)

@@ -1,4 +1,4 @@
-"""A memory that is opened by the first call that needs it, and held until its holder is closed."""
+"""A memory that is opened by the first call that needs it, and held until it is closed."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from deixis.memory.errors import MemoryFormatError
 
 
 class Closable(Protocol):
-    """What is held: a memory that can be let go of."""
+    """A memory that can be closed."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Release the memory."""
 
 
 Held = TypeVar("Held", bound=Closable)
 
 
 class OnDemand(Generic[Held]):
-    """A memory at a place, opened by ``open_at(path, create)`` when it is first asked for."""
+    """A memory at a path, opened by ``open_at(path, create)`` on first use."""
 
     def __init__(self, path: Path, open_at: Callable[[Path, bool], Held]) -> None:
         self.path = path
@@ -30,35 +31,35 @@ class OnDemand(Generic[Held]):
 
     @property
     def is_open(self) -> bool:
-        """Whether the memory is held now."""
+        """True while the memory is open."""
         return self._held is not None
 
     def get(self, create: bool = False) -> Held:
-        """Return the open memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
         self.require_usable()
         if self._held is None:
             self._held = self._open_at(self.path, create)
         return self._held
 
     def release(self) -> None:
-        """Close the memory, if it is open, until it is asked for again."""
+        """Close the memory, if it is open, until the next use."""
         if self._held is not None:
             held, self._held = self._held, None
             held.close()
 
     def close(self) -> None:
-        """Close the memory for good: what would need it afterwards raises MemoryFormatError."""
+        """Close the memory for good: a later use raises MemoryFormatError."""
         self._closed = True
         self.release()
 
     def require_usable(self) -> None:
-        """Raise MemoryFormatError where this was closed."""
+        """Raise MemoryFormatError if this is closed."""
         if self._closed:
-            raise MemoryFormatError(f"{self.path}: this session is closed, and holds no memory; open another")
+            raise MemoryFormatError(f"{self.path}: this session is closed; open a new one")
 
 
 def default_memory() -> Path:
-    """Return ``$DEIXIS_MEMORY``, else a folder for the user's data."""
+    """Return ``$DEIXIS_MEMORY``, or the default folder for the user's data."""
     named = os.environ.get("DEIXIS_MEMORY")
     if named:
         return Path(named)

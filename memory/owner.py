@@ -1,5 +1,4 @@
-"""One owner of a memory folder: a lock file that the kernel frees when its owner dies, life cycle, and crash-safe
-renames.
+"""Ownership of a memory folder by one process: a lock file that the kernel frees, and crash-safe renames.
 
 >>> import tempfile
 >>> folder = Path(tempfile.mkdtemp())
@@ -32,7 +31,7 @@ from deixis.memory.errors import MemoryBusyError, MemoryWriteError, ReadOnlyMemo
 
 
 class Closing(ABC):
-    """As a context manager it gives itself, and is closed at the end."""
+    """Base class of objects that are closed when their ``with`` block ends."""
 
     def __enter__(self) -> Self:
         return self
@@ -42,12 +41,12 @@ class Closing(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Let go of what is held; a second time does nothing."""
+        """Release all resources; a second call does nothing."""
 
 
 def rename(old: Path, new: Path) -> None:
-    """Give a file or folder another name, safely on the disk."""
-    os.replace(old, new)
+    """Rename a file or folder, and sync the directory so that the new name survives a crash."""
+    old.replace(new)
     descriptor = os.open(new.parent, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -56,7 +55,7 @@ def rename(old: Path, new: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Remove a folder with all in it, where there is one."""
+    """Remove a folder and its content, if it exists."""
     if path.is_dir():
         shutil.rmtree(path)
 
@@ -68,18 +67,18 @@ _guard = threading.Lock()
 
 
 class OwnerLock:
-    """The lock on one folder, held until it is released or the process ends. A forked child does not have it."""
+    """Exclusive lock on one folder, held until it is released or the process ends. A forked child does not have it."""
 
     def __init__(self, folder: Path, descriptor: int, made: bool) -> None:
         self._folder, self._descriptor, self._made = folder, descriptor, made
-        self._before = os.pread(descriptor, 4096, 0)  # what a failed open puts back
+        self._before = os.pread(descriptor, 4096, 0)  # restored if the opening fails
 
     @classmethod
     def acquire(cls, folder: Path) -> OwnerLock:
-        """Take the lock, without saying so in the file yet: see :meth:`sign`.
+        """Take the lock; :meth:`sign` then writes the owner into the file.
 
-        Raises MemoryBusyError, naming the owner, where somebody has it; ReadOnlyMemoryError where the folder cannot be
-        written, MemoryWriteError where no lock can be made otherwise.
+        Raises MemoryBusyError, naming the owner, where another process has the lock; ReadOnlyMemoryError where the
+        folder cannot be written; MemoryWriteError where the lock file cannot be made for another reason.
         """
         real = Path(os.path.realpath(folder))
         with _guard:
@@ -89,7 +88,7 @@ class OwnerLock:
         return lock
 
     def sign(self) -> None:
-        """Write who the owner is."""
+        """Write the owner's process, command and starting time into the lock file."""
         command = " ".join([Path(sys.argv[0]).name, *sys.argv[1:]])[:200]
         owner = {"pid": os.getpid(), "command": command, "since": datetime.now(UTC).isoformat(timespec="seconds")}
         try:
@@ -99,13 +98,13 @@ class OwnerLock:
             raise MemoryWriteError(f"{self._folder / LOCK_FILE}: cannot be written: {error.strerror}") from error
 
     def release(self, undo: bool = False) -> None:
-        """Let go and take the owner's name away; with ``undo`` the folder is left as it was found."""
+        """Release the lock and erase the owner's name; with ``undo``, restore the folder as it was found."""
         with _guard:
             if _held.get(self._folder) is not self:
                 return  # the lock is the parent's, or was released
             with contextlib.suppress(OSError):
                 if undo and self._made:
-                    os.unlink(self._folder / LOCK_FILE)
+                    (self._folder / LOCK_FILE).unlink()
                 else:
                     os.ftruncate(self._descriptor, 0)
                     os.pwrite(self._descriptor, self._before if undo else b"", 0)
@@ -114,9 +113,9 @@ class OwnerLock:
 
 
 class ReaderLock:
-    """A lock on a folder that cannot be written, which readers share and which keeps no writer's name.
+    """Shared lock of readers on a folder that cannot be written; it records no owner.
 
-    A writer who reaches the folder by another way, and a reader, keep each other out where the folder has a lock file.
+    A reader and a writer that reaches the folder by another path exclude each other if the folder has a lock file.
     """
 
     def __init__(self, descriptor: int | None) -> None:
@@ -124,7 +123,7 @@ class ReaderLock:
 
     @classmethod
     def acquire(cls, folder: Path) -> ReaderLock:
-        """Take the lock as far as there is one. Raises MemoryBusyError where a writer has it."""
+        """Take the lock if the folder has a lock file. Raises MemoryBusyError where a writer has it."""
         real = Path(os.path.realpath(folder))
         with _guard:
             if real in _held:
@@ -142,19 +141,22 @@ class ReaderLock:
         return cls(descriptor)
 
     def release(self, undo: bool = False) -> None:
-        """Let go; there is nothing to undo."""
+        """Release the lock; ``undo`` has no effect."""
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
 
 
-_has_opened = False  # whether this process has opened a store on disk, which starts threads of the library
-_threads_left_behind = False  # whether it was forked from one that had
+_has_opened = False  # True once this process has opened a store on disk, which starts threads of the library
+_threads_left_behind = False  # True if this process was forked from one that had opened a store
 
 
 def begin_opening(folder: Path) -> None:
-    """Note that a store on disk is about to be opened. Raises MemoryBusyError in a process that was forked from one
-    that had opened any: the libraries' threads stayed there, and opening would wait for them for ever."""
+    """Record that a store on disk is about to be opened.
+
+    Raises MemoryBusyError in a process that was forked from one that had opened a store: the libraries' threads stayed
+    in the parent, and opening would wait for them forever.
+    """
     global _has_opened
     if _threads_left_behind:
         raise MemoryBusyError(
@@ -165,7 +167,7 @@ def begin_opening(folder: Path) -> None:
 
 
 def leave_to_parent() -> None:
-    """Let a forked child go of all locks: they are its parent's, which must not lose them by what the child does."""
+    """Drop all locks in a forked child: they belong to its parent, which must not lose them."""
     global _guard, _threads_left_behind
     _threads_left_behind = _has_opened
     _guard = threading.Lock()
@@ -190,9 +192,9 @@ def _held_here(folder: Path) -> MemoryBusyError:
 
 
 class ThreadLock:
-    """A lock for the threads of one process: one at a time, a thread that has it may take it again.
+    """Re-entrant lock for the threads of one process.
 
-    A forked child finds it free, as the thread that had it is not there.
+    A forked child finds it free, as the thread that had it does not exist there.
 
     >>> lock = ThreadLock()
     >>> with lock, lock:
@@ -214,7 +216,7 @@ class ThreadLock:
 
     @classmethod
     def renew_all(cls) -> None:
-        """Free all locks of a forked child."""
+        """Free all thread locks in a forked child."""
         for lock in cls._all:
             lock._lock = threading.RLock()
 
@@ -222,7 +224,7 @@ class ThreadLock:
 os.register_at_fork(after_in_child=ThreadLock.renew_all)
 
 READ_ONLY = {errno.EROFS, errno.EACCES, errno.EPERM}
-"""What the system says where a folder cannot be written."""
+"""Error codes of the system for a folder that cannot be written."""
 
 
 def _locked(folder: Path, file: Path) -> tuple[int, bool]:
@@ -243,7 +245,7 @@ def _locked(folder: Path, file: Path) -> tuple[int, bool]:
             raise MemoryBusyError(message) from error
         if _same_file(descriptor, file):
             return descriptor, made
-        os.close(descriptor)  # its maker took it away between our opening and our locking it
+        os.close(descriptor)  # its maker removed it after it was opened here and before it was locked
 
 
 def _busy(folder: Path, descriptor: int) -> str:
@@ -257,6 +259,6 @@ def _busy(folder: Path, descriptor: int) -> str:
 
 def _same_file(descriptor: int, file: Path) -> bool:
     try:
-        return os.path.samestat(os.fstat(descriptor), os.stat(file))
+        return os.path.samestat(os.fstat(descriptor), file.stat())
     except FileNotFoundError:
         return False

@@ -1,9 +1,9 @@
-"""Reading all of a memory, and saying what is not as it was written: what ``deixis memory verify`` calls.
+"""Verify a memory: read all of it and list what differs from what was written. ``deixis memory verify`` calls it.
 
-The semantic store is opened for reading only, and read through each of its indexes: RocksDB sums up every block that it
-reads. A memory in which nothing was learned, or nothing taught, has but one of the two stores, and is whole with it.
-Then the two stores are compared: the views that lessons taught are there, of the categories that the lessons say, and
-the lessons of the views are there. A write over both that was cut short is finished or taken back before.
+The semantic store is opened for reading only, and read through each of its indexes; RocksDB checks the checksum of
+every block that it reads. A memory without lessons, or without views, has only one of the two stores and is complete.
+At last the two stores are compared: the views that lessons taught exist, in the categories that the lessons name, and
+the lessons of the views exist. An interrupted write over both stores is completed or rolled back first.
 
 >>> import tempfile
 >>> from deixis.memory.semantic.store import SemanticMemory
@@ -39,16 +39,16 @@ _INDEXES = {
     "graph and predicate": (3, 1),
     "graph and object": (3, 2),
 }
-"""What the store looks quads up by, one index each, as places in a quad."""
+"""Indexes of the store, each as the places in a quad that it is looked up by."""
 
 
 Stale = Callable[[ox.Store], Iterable[str]]
-"""What says of a store what in it is not as it would be worked out anew."""
+"""A function that yields a line for each part of a store that differs from what its lessons lead to."""
 
 
 @dataclass(frozen=True)
 class Verified:
-    """Which of the two stores are there and were read, and what in them is not as it was written."""
+    """Result of :func:`verify`: which of the two stores exist, and the findings in them."""
 
     semantic: bool
     perceptual: bool
@@ -56,10 +56,24 @@ class Verified:
 
 
 def verify(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> Verified:
-    """Read both stores of a memory to their end; change neither's content.
+    """Read both stores of a memory completely, without changing their content.
 
-    ``stale`` says of a semantic store that could be read, a line each, what in it does not follow from its lessons.
-    Raises MemoryFormatError for a folder that is no memory, MemoryBusyError where another process has it.
+    Parameters
+    ----------
+    memory
+        Folder of the memory.
+    progress
+        Called with the number of steps done and of all steps.
+    stale
+        Function that yields a line for each part of the semantic store that does not follow from its lessons. It is
+        called if the store could be read.
+
+    Raises
+    ------
+    MemoryFormatError
+        The folder is not a memory.
+    MemoryBusyError
+        Another process has the memory open.
     """
     semantic = files.inspect(memory) not in (FolderState.ABSENT, FolderState.EMPTY)
     perceptual = has_views(memory)
@@ -91,9 +105,9 @@ def _lock(memory: Path) -> OwnerLock | ReaderLock:
 
 
 class _Views(NamedTuple):
-    """What the perceptual store says of each view, by id: its category, and its lesson if it has one; and findings.
+    """Category and lesson of each view in the perceptual store, by the view's id, and the findings in the store.
 
-    ``categories`` is None where not all could be read: then nothing is compared with it.
+    ``categories`` is None where not all views could be read; then the stores are not compared.
     """
 
     categories: Mapping[str, str] | None
@@ -113,30 +127,30 @@ def _verify_views(memory: Path, progress: Progress | None) -> _Views:
 
 
 def _disagreements(store: ox.Store, categories: Mapping[str, str], lessons: Mapping[str, str]) -> Iterator[Finding]:
-    """Find where the two stores say different things of the views of lessons."""
+    """Find where the two stores disagree about the views of lessons."""
     taught = all_links(store)
     for lesson, view, category in taught:
         where = f"lesson '{lesson}'"
         if not ledger.knows(store, lesson):
-            yield Finding(where, f"it taught the view '{view}', and there is no such lesson")
+            yield Finding(where, f"it taught the view '{view}', but the lesson is missing")
         elif view not in categories:
-            yield Finding(where, f"it taught the view '{view}' of '{category}', which is not there")
+            yield Finding(where, f"it taught the view '{view}' of '{category}', which is missing")
         elif categories[view] != category:
-            yield Finding(where, f"it taught the view '{view}' of '{category}', which is of '{categories[view]}'")
+            yield Finding(where, f"it taught the view '{view}' of '{category}', which is now of '{categories[view]}'")
         elif view not in lessons:
-            yield Finding(where, f"it taught the view '{view}', which says that it belongs to no lesson")
+            yield Finding(where, f"it taught the view '{view}', which refers to no lesson")
     said = {(link.lesson, link.view) for link in taught}
     for view, lesson in sorted(lessons.items()):
         if view not in categories:
-            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', and is not there")
+            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', but is missing")
         elif not ledger.knows(store, lesson):
             yield _lessonless(view, lesson)
         elif (lesson, view) not in said:
-            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', which does not say so")
+            yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', which does not list it")
 
 
 def _lessonless(view: str, lesson: str) -> Finding:
-    return Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', and there is no such lesson")
+    return Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', which is missing")
 
 
 def _findings(store: ox.Store, progress: Progress | None) -> Iterator[Finding]:
@@ -144,26 +158,26 @@ def _findings(store: ox.Store, progress: Progress | None) -> Iterator[Finding]:
         quads = list(store)
         graphs = set(store.named_graphs())
     except (OSError, RuntimeError) as error:
-        yield Finding(files.STORE, f"what is known cannot be read to its end: {files.one_line(error)}")
+        yield Finding(files.STORE, f"the store cannot be read completely: {files.one_line(error)}")
         return
     if lost := {quad.graph_name for quad in quads} - graphs - {ox.DefaultGraph()}:
-        yield Finding(files.STORE, f"graphs that hold something are not listed: {', '.join(sorted(map(str, lost)))}")
+        yield Finding(files.STORE, f"non-empty graphs are not listed: {', '.join(sorted(map(str, lost)))}")
     for done, (name, places) in enumerate(_INDEXES.items(), start=1):
         try:
             found = _read_through(store, quads, places)
         except (OSError, RuntimeError) as error:
-            yield Finding(files.STORE, f"the index by {name} cannot be read to its end: {files.one_line(error)}")
+            yield Finding(files.STORE, f"the index by {name} cannot be read completely: {files.one_line(error)}")
         else:
             if found != len(quads):
-                yield Finding(files.STORE, f"{len(quads)} quads are kept, and the index by {name} has {found}")
+                yield Finding(files.STORE, f"the store has {len(quads)} quads, but the index by {name} has {found}")
         if progress is not None:
             progress(done, len(_INDEXES))
 
 
 def _read_through(store: ox.Store, quads: list[ox.Quad], places: tuple[int, ...]) -> int:
-    """Look up everything that there is at those places, and count what comes of it.
+    """Look up every quad by some of its places, and count the results.
 
-    What comes beside it is not counted: Oxigraph 0.5 reads on behind a term of which all bytes are ones, such as -1.
+    Other results are not counted: Oxigraph 0.5 reads on after a term whose bytes are all ones, such as -1.
     """
     found = 0
     for wanted in {tuple(quad[place] for place in places) for quad in quads}:

@@ -1,7 +1,6 @@
-"""Calibrations kept beside the views that they were worked out from, which takes seconds where there are many.
+"""Calibrations stored beside the views that they were computed from, as this takes seconds for many views.
 
-They can always be worked out again: a file that is damaged, of views that are no longer these, or of views that were
-compared in another way, is as good as none.
+A calibration can always be recomputed: so a damaged file, or one for other views or another comparison, is ignored.
 
 >>> import tempfile
 >>> from deixis.perception.recognition.calibration import SHIPPED
@@ -27,14 +26,14 @@ from deixis.memory.perceptual.layout import CALIBRATION
 from deixis.perception.recognition.calibration import Calibration
 
 ViewPlace = tuple[str, str]
-"""A view's category and id."""
+"""Category and id of a view."""
 
 MAX_CHANGED_SHARE = 0.1
-"""Maximum share of the views that may come, go or change their category while a calibration stays valid."""
+"""Maximum share of the views that may be added, removed or moved while a calibration stays valid."""
 
 
 def write_calibrations(folder: Path, calibrations: Sequence[Calibration], views: Set[ViewPlace], compared: str) -> None:
-    """Write them, in one step, with how views were compared; where that cannot be, nothing is kept."""
+    """Write calibrations in one step, with the name of the comparison; ignore errors of the disk."""
     content = {"calibrations": [asdict(each) for each in calibrations], "compared": compared, "views": sorted(views)}
     new = folder / (CALIBRATION + ".new")
     with contextlib.suppress(OSError):
@@ -43,7 +42,7 @@ def write_calibrations(folder: Path, calibrations: Sequence[Calibration], views:
 
 
 def read_calibrations(folder: Path, views: Set[ViewPlace], compared: str) -> tuple[Calibration, ...] | None:
-    """Return what was kept, if it was worked out from about these views, compared in this way."""
+    """Return the stored calibrations, or None where they are for other views or another comparison."""
     try:
         content = json.loads((folder / CALIBRATION).read_text(encoding="utf-8"))
         if content.pop("sum") != _sum(content) or content["compared"] != compared:

@@ -1,8 +1,8 @@
-"""Encode records as the keys and values of the database, and decode them.
+"""Encode records as keys and values of the database, and decode them.
 
-Arrays are safetensors files. Every value is guarded by the 64-bit XXH3 of it, seeded with that of its key, so that a
-value in another's place is noticed too. XXH3 guards against accidents, not against forgers. What comes back wrong
-raises DamagedMemoryError.
+Arrays are safetensors files. Each value has a checksum: its 64-bit XXH3, seeded with that of its key, so that a value
+at the wrong key is noticed too. XXH3 protects against accidents, not against forgery. A value that does not match its
+checksum raises DamagedMemoryError.
 
 >>> sealed = seal(b"key", b"some value")
 >>> unseal(b"key", sealed)
@@ -40,7 +40,7 @@ _NOTE = "deixis"
 
 
 def checksum(key: bytes, value: bytes) -> bytes:
-    """Return the 8 bytes that bind a value to its key."""
+    """Return the 8-byte checksum of a value and its key."""
     return xxh3_64_digest(value, xxh3_64_intdigest(key))
 
 
@@ -50,29 +50,31 @@ def seal(key: bytes, value: bytes) -> bytes:
 
 
 def unseal(key: bytes, sealed: bytes) -> bytes | None:
-    """Return the value again, or None where it is not what was sealed."""
+    """Return the value without its checksum, or None where they do not match."""
     value = sealed[:-_CHECKSUM]
     return value if len(sealed) >= _CHECKSUM and checksum(key, value) == sealed[-_CHECKSUM:] else None
 
 
 def pack(arrays: Mapping[str, NDArray[Any]], note: str) -> bytes:
-    """Return a safetensors file of arrays, with a text in its header."""
+    """Return arrays as a safetensors file, with a text in its header."""
     return save(dict(arrays), {_NOTE: note})
 
 
 def unpack(data: bytes) -> tuple[dict[str, NDArray[Any]], str]:
-    """Return the arrays and the text again. Raises SafetensorError, ValueError or KeyError for other data."""
+    """Return the arrays and the text of a safetensors file.
+
+    Raises SafetensorError, ValueError or KeyError for other data.
+    """
     arrays = load(data)
     header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
     return arrays, header["__metadata__"][_NOTE]
 
 
 class ViewHeader(NamedTuple):
-    """All of a view but its arrays.
+    """A view without its arrays.
 
-    ``key`` is its place in the order of all views. The arrays lie under a key of their own, in the category under which
-    they were first written. ``sum`` is their checksum, so that arrays which lay under the same key before are not taken
-    for them.
+    ``key`` is its place in the order of all views. Its arrays have a key of their own, in the category under which they
+    were first written. ``sum`` is their checksum, so that older arrays at the same key are not mistaken for them.
     """
 
     category: str
@@ -84,12 +86,12 @@ class ViewHeader(NamedTuple):
     metadata: str  # JSON
 
     def moved(self, category: str) -> ViewHeader:
-        """Return the same view in another category; its arrays stay where they are."""
+        """Return the header of the view in another category; its arrays stay where they are."""
         return self._replace(category=category, key=keys.view_key(keys.VIEW, category, self.id, self.time))
 
 
 def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytes]]:
-    """Return key and value of what is said of a view, and of its arrays."""
+    """Return key and value of a view's header, and those of its arrays."""
     arrays = save(arrays_by_name(view.descriptors, view.points))
     key = keys.view_key(keys.VIEW, view.category, view.id, keys.microseconds(view.time))
     arrays_key = keys.ARRAYS + key[1:]
@@ -98,27 +100,25 @@ def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytes]]:
 
 
 def write_about(said: ViewHeader) -> tuple[bytes, bytes]:
-    """Return key and value of what is said of a view: checksum of its arrays; their category, if another; JSON."""
+    """Return key and value of a view's header: checksum of its arrays; their category, if another; JSON."""
     place = keys.split_view_key(said.arrays_key)[0]
     ended = keys.ended("" if place == said.category else place)
     return said.key, seal(said.key, said.sum + ended + said.metadata.encode())
 
 
 def read_about(key: bytes, sealed: bytes) -> ViewHeader:
-    """Return what is said of a view again."""
+    """Return the header of a view from its key and value."""
     value = unseal(key, sealed)
     if value is None:
-        raise DamagedMemoryError(f"{named(key)}: what is said of it is not what was written")
+        raise DamagedMemoryError(f"{named(key)}: its header differs from what was written")
     try:
         return parse_about(key, value)
     except ValueError as error:
-        raise DamagedMemoryError(
-            f"{named(key)}: what is said of it is written as no version of this program does"
-        ) from error
+        raise DamagedMemoryError(f"{named(key)}: its header is of no known format") from error
 
 
 def parse_about(key: bytes, value: bytes) -> ViewHeader:
-    """Return what an unsealed value says of a view. Raises ValueError for other data."""
+    """Return the header of a view from an unsealed value. Raises ValueError for other data."""
     category, view_id, time = keys.split_view_key(key)
     place, metadata = keys.split_ended(value[_CHECKSUM:])
     arrays_key = keys.view_key(keys.ARRAYS, place, view_id, time) if place else keys.ARRAYS + key[1:]
@@ -126,7 +126,7 @@ def parse_about(key: bytes, value: bytes) -> ViewHeader:
 
 
 def named(key: bytes) -> str:
-    """Name the view that a key is of, whatever the key is like."""
+    """Return the name of a view for messages, from any key."""
     try:
         category, view_id, _ = keys.split_view_key(key)
     except ValueError:
@@ -135,11 +135,11 @@ def named(key: bytes) -> str:
 
 
 def read_view(said: ViewHeader, arrays: bytes | None) -> View:
-    """Return a view again, of what is said of it and the value of its arrays."""
+    """Return a view from its header and the value of its arrays."""
     if arrays is None:
         raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
     if checksum(said.arrays_key, arrays) != said.sum:
-        raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are not what was written")
+        raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays differ from what was written")
     loaded = load(arrays)
     for array in loaded.values():
         array.flags.writeable = False
@@ -161,30 +161,30 @@ def write_category(record: CategoryRecord) -> tuple[bytes, bytes]:
 
 
 def read_category(name: str, sealed: bytes) -> CategoryRecord:
-    """Return the record again."""
+    """Return the record of a category from its value."""
     value = unseal(keys.name_key(keys.CATEGORY, name), sealed)
     if value is None:
-        raise DamagedMemoryError(f"what is known of category '{name}' is not what was written")
+        raise DamagedMemoryError(f"the record of category '{name}' differs from what was written")
     state, note = unpack(value)
     return CategoryRecord(name, state, json.loads(note))
 
 
 def write_name(kind: bytes, name: str, value: str) -> tuple[bytes, bytes]:
-    """Return key and value of a text that is kept under a name, such as the lesson of a view."""
+    """Return key and value of a text stored under a name, such as the lesson of a view."""
     key = keys.name_key(kind, name)
     return key, seal(key, value.encode())
 
 
 def read_name(key: bytes, sealed: bytes) -> str:
-    """Return the text again."""
+    """Return the text from a key and its value."""
     value = unseal(key, sealed)
     if value is None:
-        raise DamagedMemoryError(f"what is kept under {key[:60]!r} is not what was written")
+        raise DamagedMemoryError(f"the value of {key[:60]!r} differs from what was written")
     return value.decode()
 
 
 class StoreCounts(NamedTuple):
-    """What is counted in every batch: batches so far, views there are, and batches that were lost."""
+    """Numbers updated by each batch: batches written, views present, and batches lost."""
 
     batches: int = 0
     views: int = 0
@@ -197,10 +197,10 @@ def write_counts(counts: StoreCounts) -> bytes:
 
 
 def read_counts(sealed: bytes | None) -> StoreCounts:
-    """Return the counts again."""
+    """Return the counts from their value."""
     if sealed is None:
         return StoreCounts()
     value = unseal(keys.COUNT, sealed)
     if value is None or len(value) != _COUNTS.size:
-        raise DamagedMemoryError("the counts are not what was written")
+        raise DamagedMemoryError("the counts differ from what was written")
     return StoreCounts(*_COUNTS.unpack(value))

@@ -1,8 +1,8 @@
-"""A perceptual memory as a file, and a file as a memory: the user's data is the user's.
+"""Export a perceptual memory to a file, and import such a file.
 
-The file is a zip archive of safetensors files, which other programs can read too. ``memory.json`` says format, version
-and numbers; then each record is a safetensors file of its own, whose header says in JSON, under ``deixis``, what is not
-an array. Nothing is compressed, and the same content gives the same bytes.
+The file is a zip archive of safetensors files, which other programs can read too. ``memory.json`` has the format, its
+version and the numbers of records; then each record is a safetensors file of its own, whose header has in JSON, under
+``deixis``, what is not an array. Nothing is compressed, and the same content gives the same bytes.
 
 >>> import tempfile
 >>> from deixis.memory.perceptual.transient import TransientMemory
@@ -15,7 +15,6 @@ Imported(views=0, categories=0, relearn=())
 from __future__ import annotations
 
 import json
-import os
 import re
 import zipfile
 from collections import defaultdict
@@ -37,14 +36,14 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View, arrays
 FORMAT, VERSION = "deixis-perceptual-memory", 1
 _HEAD = "memory.json"
 _ENTRY = re.compile(r"(categories|views)/\d{9}\.safetensors")
-_BEGINNING = b"PK\x03\x04"  # of a zip archive with something in it
-_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip archive can say
-_STEP = 64 << 20  # bytes of arrays that are written in one step
+_BEGINNING = b"PK\x03\x04"  # of a zip archive with at least one entry
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the earliest time of an entry in a zip archive
+_STEP = 64 << 20  # bytes of arrays in one batch
 
 
 @dataclass(frozen=True)
 class Imported:
-    """What an import brought: new views, records of categories, and the categories whose state must be learned anew."""
+    """Result of an import: numbers of new views and records, and the categories whose state must be relearned."""
 
     views: int
     categories: int
@@ -52,7 +51,7 @@ class Imported:
 
 
 def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress | None = None) -> None:
-    """Write everything as it is now into one file, the same bytes for the same content. Raises MemoryWriteError."""
+    """Write the content of a memory into one file; the same content gives the same bytes. Raises MemoryWriteError."""
     with memory.snapshot() as now:
         path = Path(file)
         new = path.with_name(path.name + ".new")
@@ -66,7 +65,7 @@ def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress 
                     _add(archive, f"categories/{number:09}.safetensors", category_file(now.category(name)))
                 for number, view in enumerate(counted(now.views(), views, progress)):
                     _add(archive, f"views/{number:09}.safetensors", view_file(view))
-            os.replace(new, path)
+            new.replace(path)
         except OSError as error:
             if isinstance(error, MemoryWriteError):
                 raise
@@ -76,12 +75,17 @@ def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress 
 
 
 def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress | None = None) -> Imported:
-    """Take in what :func:`export_views` wrote; what is there stays.
+    """Import a file that :func:`export_views` wrote, and keep what the memory has; all of it is imported or nothing.
 
-    All is read and compared before anything is written, and all of it goes in, or nothing. A category's learned state
-    is kept where it describes just the views that the category then has; elsewhere it is left out, and named in the
-    result. Raises ImportFormatError for a file that cannot be believed, RejectedWriteError where it has another view of
-    a known id.
+    The learned state of a category is imported where it describes exactly the views that the category has afterwards;
+    elsewhere it is left out, and the category is named in the result.
+
+    Raises
+    ------
+    ImportFormatError
+        The file is invalid.
+    RejectedWriteError
+        The file has a view with a known id and other content.
     """
     with Archive(Path(file)) as archive, memory.exclusive():
         there = {key.id: key.category for key in memory.listing()}
@@ -101,7 +105,7 @@ def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress 
 
 
 def _batches(views: Iterable[View], records: Sequence[CategoryRecord]) -> Iterator[Batch]:
-    """Yield new views in batches of so many bytes, the last of them with the records of their categories."""
+    """Yield new views in batches of limited size; the last batch has the records of their categories."""
     waiting: list[View] = []
     size = 0
     for view in views:
@@ -118,7 +122,7 @@ def _batches(views: Iterable[View], records: Sequence[CategoryRecord]) -> Iterat
 def _records(
     archive: Archive, memory: PerceptualMemory, there: dict[str, str], coming: dict[str, set[str]]
 ) -> tuple[list[CategoryRecord], tuple[str, ...]]:
-    """Return the records to write, and the names of those that lose their state."""
+    """Return the records to write, and the names of the categories that lose their state."""
     theirs = {record.name: record for record in archive.records()}
     held: dict[str, set[str]] = defaultdict(set)
     for view_id, category in there.items():
@@ -128,7 +132,7 @@ def _records(
         if name not in memory.categories():
             records.append(theirs.get(name, CategoryRecord(name)))
         elif coming[name] <= held[name]:
-            continue  # what is there knows more views
+            continue  # the stored record covers more views
         elif held[name] <= coming[name]:
             records.append(theirs.get(name, CategoryRecord(name)))
         else:
@@ -138,7 +142,7 @@ def _records(
 
 
 def is_archive(file: Path) -> bool:
-    """Return whether a file is an archive of views, by looking at its beginning only."""
+    """Return whether a file is an archive of views, judging by its first bytes."""
     try:
         with file.open("rb") as opened:
             return opened.read(len(_BEGINNING)) == _BEGINNING
@@ -147,7 +151,7 @@ def is_archive(file: Path) -> bool:
 
 
 def counted(views: Iterable[View], total: int, progress: Progress | None, before: int = 0) -> Iterator[View]:
-    """Iterate over views, and tell ``progress`` of each: how many are done, ``before`` included, of ``total``."""
+    """Iterate over views; call ``progress`` after each with the number done, ``before`` included, and ``total``."""
     for done, view in enumerate(views, start=before + 1):
         yield view
         if progress is not None:
@@ -171,9 +175,9 @@ def category_file(record: CategoryRecord) -> bytes:
 
 
 class Archive(Closing):
-    """An archive open for reading; believed in nothing. Use it as a context manager.
+    """An archive open for reading, with every entry checked. Use it as a context manager.
 
-    Raises ImportFormatError, here and in every method, for what is not as :func:`export_views` writes it.
+    Every method raises ImportFormatError for content that :func:`export_views` does not write.
     """
 
     def __init__(self, file: Path) -> None:
@@ -182,10 +186,10 @@ class Archive(Closing):
             self._zip = zipfile.ZipFile(file)
         except zipfile.BadZipFile as error:
             raise ImportFormatError(
-                f"{file}: no archive of views can be read: {error}; if it was cut short, get the whole file"
+                f"{file}: cannot be read as an archive of views: {error}; if it was cut short, get the whole file"
             ) from error
         except (OSError, ValueError, NotImplementedError) as error:
-            raise ImportFormatError(f"{file}: no archive of views can be read: {error}") from error
+            raise ImportFormatError(f"{file}: cannot be read as an archive of views: {error}") from error
         try:
             self._check_head()
         except BaseException:
@@ -197,42 +201,44 @@ class Archive(Closing):
         self._zip.close()
 
     def __len__(self) -> int:
-        """Return how many views there are."""
+        """Return the number of views."""
         return self._views
 
     def records(self) -> Iterator[CategoryRecord]:
-        """Iterate over what learners left about categories."""
+        """Iterate over the records of categories."""
         for name, said, arrays in self._entries("categories/"):
-            with _entry_errors(self.file, name):
+            with _EntryErrors(self.file, name):
                 yield CategoryRecord(said["name"], arrays, said["metadata"])
 
     def views(self) -> Iterator[View]:
         """Iterate over the views."""
         for name, said, arrays in self._entries("views/"):
-            with _entry_errors(self.file, name):
+            with _EntryErrors(self.file, name):
                 time = datetime.fromisoformat(said["time"])
                 yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
 
     def _check_head(self) -> None:
         if _HEAD not in self._zip.namelist():
-            raise ImportFormatError(f"{self.file}: this is no export of a memory: it has no '{_HEAD}'")
-        with _entry_errors(self.file, _HEAD):
+            raise ImportFormatError(f"{self.file}: this is not an export of a memory: it has no '{_HEAD}'")
+        with _EntryErrors(self.file, _HEAD):
             head = json.loads(self._read(_HEAD))
             if head["format"] != FORMAT:
-                raise ValueError(f"it does not say {FORMAT}")
+                raise ValueError(f"its format must be {FORMAT}")
             if head["version"] > VERSION:
                 raise ValueError(f"it was written by a newer version (format {head['version']}); upgrade deixis")
             names = [name for name in self._zip.namelist() if name != _HEAD]
             if len(names) != head["views"] + head["categories"] or len(set(names)) < len(names):
-                raise ValueError(f"it says {head['views']} views and {head['categories']} categories; others are there")
+                raise ValueError(
+                    f"it lists {head['views']} views and {head['categories']} categories, not those in the file"
+                )
             self._views: int = head["views"]
             foreign = [name for name in names if not _ENTRY.fullmatch(name)]
             if foreign:
-                raise ValueError(f"{foreign[0][:60]!r} has no place in an archive of views")
+                raise ValueError(f"{foreign[0][:60]!r} does not belong in an archive of views")
 
     def _entries(self, folder: str) -> Iterator[tuple[str, dict[str, Any], dict[str, NDArray[Any]]]]:
         for name in sorted(name for name in self._zip.namelist() if name.startswith(folder)):
-            with _entry_errors(self.file, name):
+            with _EntryErrors(self.file, name):
                 arrays, note = unpack(self._read(name))
                 said = json.loads(note)
             yield name, said, arrays
@@ -240,12 +246,12 @@ class Archive(Closing):
     def _read(self, name: str) -> bytes:
         info = self._zip.getinfo(name)
         if info.compress_type != zipfile.ZIP_STORED or info.flag_bits & 1:
-            raise ValueError("it is compressed or encrypted, as no archive of views is")
+            raise ValueError("it must be neither compressed nor encrypted")
         return self._zip.read(info)
 
 
-class _entry_errors:
-    """Turn whatever goes wrong with an entry into ImportFormatError."""
+class _EntryErrors:
+    """Context manager that turns errors of an entry into ImportFormatError."""
 
     def __init__(self, file: Path, entry: str) -> None:
         self._where = f"{file}, {entry}"

@@ -1,7 +1,7 @@
-"""The one handle on a database in this process: opened once a real path, shared, and closed by the last who had it.
+"""The shared handle on a database: opened once per real path in a process, and closed by its last user.
 
-``plyvel.DB`` on a path that this process has open fails, and by failing drops the lock that keeps other processes out;
-closing it while another thread reads ends the process. So handles are counted, and closing waits for calls under way.
+``plyvel.DB`` on a path that this process has open fails, and its failure drops the lock that excludes other processes;
+closing it while another thread reads ends the process. So users are counted, and closing waits for calls in progress.
 """
 
 from __future__ import annotations
@@ -46,25 +46,27 @@ from deixis.memory.perceptual.records import View
 from deixis.scratch import ScratchFolder, remove_stale
 
 OPTIONS = {
-    "paranoid_checks": True,  # indices and logs are checked too, and compaction does not pass on what is broken
+    "paranoid_checks": True,  # indices and logs are checked too, and compaction does not copy damaged data
     "compression": None,  # descriptors would shrink, but reading them back would take several times as long
     "write_buffer_size": 32 << 20,
     "max_file_size": 32 << 20,
 }
 
 MAX_REUSED_BATCH = 64
-"""Maximum number of keys of a batch that reuses the memory of the one before: the system gives new memory
-page by page, which for 60 KB takes as long as all else that is done here."""
+"""Maximum number of keys of a batch that reuses the memory of the previous batch.
+
+The system provides new memory page by page, which for 60 KB takes as long as all other work of a write.
+"""
 
 _handles: dict[Path, Handle] = {}
 _opening = threading.Lock()
 
 
 class Places(NamedTuple):
-    """The key of what is said of each view, by id; and what kept the rest from being read, if anything did.
+    """Key of each view's header, by id, and the damage that kept the rest from being read, if any.
 
-    What is stored is in order of category and id, so that a view is found by its id alone only after all keys were
-    read once, which takes about 2 µs a view. They are held in memory then, as nobody but the owner changes them.
+    Headers are ordered by category and id, so a view can be found by its id alone only after all keys were read once,
+    which takes about 2 µs a view. The keys are then held in memory, as only the owner changes them.
     """
 
     by_id: dict[str, bytes]
@@ -72,7 +74,7 @@ class Places(NamedTuple):
 
 
 def read_places(source: Any) -> Places:
-    """Read where each view lies, from a database or a snapshot of one."""
+    """Read the key of each view from a database or a snapshot of one."""
     found: dict[str, bytes] = {}
     try:
         for key in source.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True):
@@ -84,9 +86,10 @@ def read_places(source: Any) -> Places:
 
 @dataclass(slots=True)
 class WriteBatch:
-    """What a write comes to: keys with their values, None to delete, to be written in one step.
+    """Keys with their new values, None to delete, to be written in one step.
 
-    ``places`` is where views are then, by id, None for a view that is gone; ``views``, how many more there are.
+    ``places`` has the new key of each changed view by id, None for a removed view; ``views`` is the change in the
+    number of views.
     """
 
     pairs: list[tuple[bytes, bytes | None]] = field(default_factory=list)
@@ -94,36 +97,35 @@ class WriteBatch:
     views: int = 0
 
     def add(self, view: View) -> None:
-        """Add a view that is not there, or was dropped."""
+        """Add a view that does not exist, or was dropped before."""
         said, arrays = write_view(view)
         self.pairs += (said, arrays)
         self.places[view.id] = said[0]
         self.views += 1
 
     def move(self, said: ViewHeader, category: str) -> None:
-        """Move a view that is there to another category; its arrays stay where they are."""
+        """Move an existing view to another category; its arrays stay where they are."""
         moved = write_about(said.moved(category))
         self.pairs += ((said.key, None), moved)
         self.places[said.id] = moved[0]
 
     def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
-        """Drop a view that is there, the keys of its arrays, and that of its lesson."""
+        """Drop an existing view, the keys of its arrays, and that of its lesson."""
         self.pairs += [(each, None) for each in (key, *arrays, keys.name_key(keys.LESSON, view_id))]
         self.places[view_id] = None
         self.views -= 1
 
 
 def _marked(change: WriteBatch, id: str) -> WriteBatch:
-    """Return a change that also says which journal it was in."""
+    """Return a change that also stores the id of its journal."""
     pairs = [*change.pairs, (keys.JOURNAL, seal(keys.JOURNAL, id.encode()))]
     return WriteBatch(pairs, change.places, change.views)
 
 
 class Handle:
-    """An open database. As a context manager it is a call under way, and gives the ``plyvel.DB``.
+    """An open database. As a context manager it marks a call in progress, and returns the ``plyvel.DB``.
 
-    What LevelDB raises within becomes MemoryWriteError or DamagedMemoryError; a closed handle raises
-    MemoryFormatError.
+    Errors of LevelDB within become MemoryWriteError or DamagedMemoryError; a closed handle raises MemoryFormatError.
     """
 
     def __init__(
@@ -161,24 +163,25 @@ class Handle:
             raise_level_error(self.folder, error)
 
     def keep(self, source: Any) -> Any:
-        """Return a snapshot or an iterator that outlives a call, until it is let go.
+        """Register a snapshot or an iterator that outlives a call, and return it; :meth:`let_go` frees it.
 
-        LevelDB must not be asked to free one while it is being closed, which ends the process: one that nobody has
-        any more by then is freed after it.
+        If LevelDB frees one while it is being closed, the process ends: so a source without users is freed after the
+        closing.
         """
         self._sources.add(source)
         return source
 
     def let_go(self, source: Any) -> None:
-        """Free what was kept; that of a closed database is free already, or will be."""
+        """Free a source that :meth:`keep` registered; a closed database frees its own."""
         with contextlib.suppress(MemoryFormatError), self:
             source.close()
             self._sources.discard(source)
 
     def places(self) -> dict[str, bytes]:
-        """Return the key of each view by its id; to be called with :attr:`writing` held, and not to be changed.
+        """Return the key of each view by its id. Hold :attr:`writing`, and do not change the result.
 
-        Raises DamagedMemoryError where not all can be read: then nobody knows what a new view would replace.
+        Raises DamagedMemoryError where not all keys can be read, as the view that a new one replaces may then be
+        unknown.
         """
         found = self._places or self._read_places()
         if found.damage is not None:
@@ -186,11 +189,11 @@ class Handle:
         return found.by_id
 
     def place_of(self, view_id: str) -> bytes | None:
-        """Return the key of a view, or None, as far as keys can be read."""
+        """Return the key of a view, or None; unreadable keys count as missing."""
         return (self._places or self._read_places()).by_id.get(view_id)
 
     def lacks(self, id: str) -> bool:
-        """Return whether there is surely no view of that id now."""
+        """Return True if there is certainly no view with this id now."""
         found = self._places or self._read_places()
         return found.damage is None and id not in found.by_id
 
@@ -201,10 +204,10 @@ class Handle:
             return self._places
 
     def write(self, change: WriteBatch, sync: bool) -> None:
-        """Write all of a change in one step; to be called with :attr:`writing` held.
+        """Write a change in one step. Hold :attr:`writing`.
 
-        After a failure the log may end in half a batch, behind which nothing would be found again: then nothing more is
-        written until the memory is opened anew.
+        After a failure the log may end in half a batch, and later entries could not be found: so nothing more is
+        written until the memory is opened again.
         """
         there, before = self.places(), self.counts
         counts = StoreCounts(before.batches + 1, before.views + change.views, before.lost)
@@ -214,7 +217,7 @@ class Handle:
             try:
                 batch = db.write_batch(sync=sync) if sync or len(change.pairs) > MAX_REUSED_BATCH else self._batch
                 batch.clear()
-                batch.put(keys.COUNT, sealed)  # first: after arrays it would have them copied once more
+                batch.put(keys.COUNT, sealed)  # first: after the arrays, it would cause another copy of them
                 for key, value in change.pairs:
                     batch.delete(key) if value is None else batch.put(key, value)
                 batch.write()
@@ -230,10 +233,10 @@ class Handle:
                 there[view_id] = place
 
     def write_with(self, change: WriteBatch, commit: Callable[[str], None]) -> None:
-        """Write all of a change if another store commits, and nothing if it does not, whatever happens in between.
+        """Write a change if another store commits, and nothing if it does not, also after a crash.
 
-        ``commit`` is called with the id of the journal, which the other store has to commit as well, see
-        :mod:`deixis.memory.journal`. To be called with :attr:`writing` held.
+        ``commit`` is called with the id of the journal, which the other store must store in its commit; see
+        :mod:`deixis.memory.journal`. Hold :attr:`writing`.
         """
         self._require_sound()
         entry = JournalEntry(new_id(), tuple(change.pairs), change.views)
@@ -250,18 +253,18 @@ class Handle:
         self._finish(change, entry.id)
 
     def _finish(self, change: WriteBatch, id: str) -> None:
-        """Write a change whose journal is decided, and remove the journal."""
+        """Write a change that its journal has decided, and remove the journal."""
         try:
             self.write(_marked(change, id), sync=True)
         except MemoryWriteError as error:
             raise MemoryWriteError(
-                f"{error}; what was learned is kept, and what the things look like will be once the memory is opened "
-                "again and can be written"
+                f"{error}; the lessons are stored, and their views will be when the memory is next opened and can be "
+                "written"
             ) from error
         clear_journal(self.folder)
 
     def settle(self, where: Path) -> None:
-        """Roll a write that was cut short forward or back, if there is the journal of one."""
+        """Complete or roll back an interrupted write, if there is a journal of one."""
         entry = read_journal(where)
         if entry is not None:
             with self as db:
@@ -271,11 +274,11 @@ class Handle:
                 self.write(self._undoing(entry.undo), sync=True)
             elif entry.pairs and not applied and has_committed(self.folder.parent, entry.id):
                 self.write(_marked(WriteBatch(list(entry.pairs), {}, entry.views), entry.id), sync=True)
-                self._places = None  # what the batch moved is not known
+                self._places = None  # the batch may have moved views
         clear_journal(where)
 
     def _undoing(self, new: Sequence[str]) -> WriteBatch:
-        """Return the change that forgets the views of an import that was cut short: their arrays are at their keys."""
+        """Return the change that forgets the views of an interrupted import; their arrays are at their own keys."""
         change, there = WriteBatch(), self.places()
         for view_id in new:
             if view_id in there:
@@ -283,9 +286,9 @@ class Handle:
         return change
 
     def write_all(self, changes: Iterable[WriteBatch], new: Sequence[str]) -> None:
-        """Write changes that bring new views, in a step each: all of them, or, whatever happens, none.
+        """Write changes with new views, each in one step: all of them or none, also after a crash.
 
-        ``new`` are the ids of the views. To be called with :attr:`writing` held.
+        ``new`` are the ids of the views. Hold :attr:`writing`.
         """
         id, waiting = None, None
         try:
@@ -300,7 +303,7 @@ class Handle:
                 self._finish(waiting, id)
         except BaseException:
             if id is not None:
-                with contextlib.suppress(DeixisError):  # else the next opening does it
+                with contextlib.suppress(DeixisError):  # if it fails, the next opening does it
                     self.write(self._undoing(new), sync=True)
                     clear_journal(self.folder)
             raise
@@ -316,10 +319,10 @@ class Handle:
         if self._read_only is not None:
             raise ReadOnlyMemoryError(self._read_only)
         if self._failed is not None:
-            raise MemoryWriteError(f"{self._failed}; close the memory, mend what is wrong, and open it again")
+            raise MemoryWriteError(f"{self._failed}; close the memory, remove the cause, and open it again")
 
     def disowned(self) -> Any:
-        """Take the database away from a forked child without closing it, with fresh locks: no other thread is there."""
+        """Remove the database from a forked child without closing it, and renew the locks: other threads are gone."""
         db, self._db = self._db, None
         self.inherited = True
         self.writing, self._guard = threading.RLock(), threading.RLock()
@@ -327,14 +330,14 @@ class Handle:
         return db
 
     def shut(self) -> None:
-        """Close the database once no call is under way, and seal it."""
+        """Close the database after all calls in progress, and seal it."""
         with self._idle:
             db, self._db = self._db, None
             self._idle.wait_for(lambda: not self._calls)
         sealed = self._failed is None and self._scratch is None
-        with contextlib.suppress(plyvel.Error, OSError):  # all that was acknowledged is in the log already
+        with contextlib.suppress(plyvel.Error, OSError):  # all acknowledged batches are in the log already
             if sealed:
-                db.compact_range(start=b"\xfe", stop=b"\xff")  # empties the log into a table, and touches no other
+                db.compact_range(start=b"\xfe", stop=b"\xff")  # moves the log into a table, and changes no other
         db.close()
         self._sources.clear()
         self._tally.close()
@@ -346,12 +349,12 @@ class Handle:
             self._scratch.remove()
 
     def only_read(self, scratch: ScratchFolder, reason: str) -> None:
-        """Refuse to be written from now on: this is a copy, in ``scratch``, of a folder that cannot be written."""
+        """Refuse all writes from now on: this is a copy, in ``scratch``, of a folder that cannot be written."""
         self._scratch, self._read_only = scratch, reason
 
 
 def _disown() -> None:
-    """Take the databases away from a forked child, which must not touch its parent's, without freeing them there."""
+    """Remove the databases from a forked child, which must not touch those of its parent, without freeing them."""
     global _opening
     _opening = threading.Lock()
     for handle in _handles.values():
@@ -369,7 +372,7 @@ def closed() -> MemoryFormatError:
 
 @contextlib.contextmanager
 def wrap_level_errors(folder: Path) -> Iterator[None]:
-    """Turn what LevelDB or the system raises within into errors of ours."""
+    """Turn errors of LevelDB or the system into errors of Deixis."""
     try:
         yield
     except (plyvel.Error, OSError) as error:
@@ -378,7 +381,7 @@ def wrap_level_errors(folder: Path) -> Iterator[None]:
 
 
 def raise_level_error(folder: Path, error: BaseException) -> None:
-    """Raise what LevelDB or the system raised as an error of ours; return for others."""
+    """Raise an error of LevelDB or the system as an error of Deixis; return for other errors."""
     if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
         return
     text = one_line(error).removeprefix("b'").removesuffix("'")
@@ -387,13 +390,13 @@ def raise_level_error(folder: Path, error: BaseException) -> None:
             f"the memory at {folder} is damaged ({text}); restore the folder from a copy"
         ) from error
     raise MemoryWriteError(
-        f"the memory at {folder} could not be read or written ({text}); see that the disk has room and the folder is "
-        "writable, then try again: what was kept before is still there"
+        f"the memory at {folder} could not be read or written ({text}); check that the disk has room and the folder is "
+        "writable, then try again: earlier content is unchanged"
     ) from error
 
 
 def acquire(folder: Path, create: bool) -> Handle:
-    """Return the handle on a folder, opened if this process has none yet; raises as ``LevelMemory.open``."""
+    """Return the handle on a folder, and open it on first use in this process; raise as ``LevelMemory.open``."""
     real = Path(os.path.realpath(folder))
     with _opening:
         if real in _handles:
@@ -405,7 +408,7 @@ def acquire(folder: Path, create: bool) -> Handle:
 
 
 def release(handle: Handle) -> None:
-    """Give a handle back; the last one closes it."""
+    """Release a handle; the last release closes it."""
     with _opening:
         handle.users -= 1
         if handle.users == 0 and not handle.inherited:
@@ -430,21 +433,21 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
                     raise
                 return _opened_for_reading(real, str(error))
             undo.callback(lock.release, undo=True)
-            if made and layout.version_in(real) is None:  # looked at by the owner only: two may have found no folder
+            if made and layout.version_in(real) is None:  # only now, as two processes may have found no folder
                 undo.callback(_emptied, real)
             lock.sign()
             return _opened_in(real, real, lock, undo)
     except BaseException:
         if made:
-            with contextlib.suppress(OSError):  # not empty: somebody else has it by now
+            with contextlib.suppress(OSError):  # not empty: another process uses it by now
                 real.rmdir()
         raise
 
 
 def _opened_for_reading(real: Path, reason: str) -> Handle:
-    """Open a copy of a folder that cannot be written: LevelDB writes wherever it opens.
+    """Open a copy of a folder that cannot be written, as LevelDB writes in any folder that it opens.
 
-    Tables are linked, and not copied.
+    Tables are linked, not copied.
     """
     with contextlib.ExitStack() as undo:
         lock = ReaderLock.acquire(real)
@@ -459,7 +462,7 @@ def _opened_for_reading(real: Path, reason: str) -> Handle:
 
 
 def _opened_in(real: Path, where: Path, lock: OwnerLock | ReaderLock, undo: contextlib.ExitStack) -> Handle:
-    """Open the database of ``real`` that lies in ``where``; what ``undo`` has is let be where that succeeds."""
+    """Open the database of ``real`` at ``where``; cancel the callbacks of ``undo`` if that succeeds."""
     disk.begin_opening(real)
     layout.prepare(where)
     tally = layout.AcknowledgedCounts(where)
@@ -473,7 +476,7 @@ def _opened_in(real: Path, where: Path, lock: OwnerLock | ReaderLock, undo: cont
 
 
 def _emptied(folder: Path) -> None:
-    """Remove what a failed opening made, but for the lock, which goes last."""
+    """Remove the files of a failed opening except the lock, which is removed last."""
     for entry in folder.iterdir():
         if entry.is_dir():
             disk.remove(entry)
@@ -482,7 +485,7 @@ def _emptied(folder: Path) -> None:
 
 
 def _counted(folder: Path, db: Any, tally: layout.AcknowledgedCounts) -> StoreCounts:
-    """Return the counts, with what is missing of the acknowledged batches counted as lost."""
+    """Return the counts, with acknowledged batches that are missing counted as lost."""
     try:
         counts = read_counts(db.get(keys.COUNT, verify_checksums=True))
     except DamagedMemoryError as error:

@@ -1,6 +1,6 @@
-"""What is done to the perceptual memory in the folder of a memory as a whole: what ``deixis memory …`` calls.
+"""Operations on the perceptual memory in the folder of a memory, as ``deixis memory …`` calls them.
 
-A memory in which nothing was ever taught has no perceptual memory, and that is no error here.
+A memory without views has no perceptual memory, which is not an error here.
 
 >>> import tempfile
 >>> folder = Path(tempfile.mkdtemp())
@@ -31,17 +31,17 @@ __all__ = [
 
 
 def open_in(memory: Path, create: bool = False) -> LevelMemory:
-    """Open the perceptual memory in the folder of a memory; raises as ``LevelMemory.open``, and for what is none."""
+    """Open the perceptual memory in the folder of a memory; raise as ``LevelMemory.open``, and for another folder."""
     return LevelMemory.open(_place_in(memory), create)
 
 
 def open_undamaged(memory: Path) -> UndamagedMemory:
-    """Open the perceptual memory such that what is damaged in it is left out."""
+    """Open the perceptual memory without its damaged views."""
     return UndamagedMemory.open(_place_in(memory))
 
 
 def has_views(memory: Path) -> bool:
-    """Return whether anything was ever taught, by looking only; raises MemoryFormatError for what is no memory."""
+    """Return whether a memory has views, without opening it; raise MemoryFormatError for another folder."""
     return version_in(_place_in(memory)) is not None
 
 
@@ -51,7 +51,7 @@ def _place_in(memory: Path) -> Path:
 
 
 def stats_of(memory: Path) -> PerceptualStats | None:
-    """Return how much is kept, or None where nothing was taught."""
+    """Return the size of the perceptual memory, or None where a memory has no views."""
     if not has_views(memory):
         return None
     with open_in(memory) as views:
@@ -59,20 +59,20 @@ def stats_of(memory: Path) -> PerceptualStats | None:
 
 
 def export_all(memory: Path, file: Path, progress: Progress | None = None) -> None:
-    """Write all views and categories into one file; raises MemoryFormatError where nothing was taught."""
+    """Write all views and categories into one file; raise MemoryFormatError where there are no views."""
     with open_in(memory) as views:
         try:
             export_views(views, file, progress)
         except DamagedMemoryError as error:
             raise DamagedMemoryError(
-                f"{error}; nothing was exported: 'deixis memory verify' lists what is damaged, and what is taught or "
-                "learned from the same scene again is mended"
+                f"{error}; nothing was exported: 'deixis memory verify' lists the damage; teach or learn from the same "
+                "scene again to repair it"
             ) from error
 
 
 def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Imported:
-    """Take in what :func:`export_all` wrote, for files of which :func:`is_archive` is true."""
+    """Import a file that :func:`export_all` wrote, one for which :func:`is_archive` is True."""
     with Archive(file):
-        pass  # what is no archive of views makes no memory
+        pass  # raises for an invalid archive before a memory is made
     with open_in(memory, create=True) as views:
         return import_views(file, views, progress)

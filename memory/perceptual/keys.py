@@ -1,12 +1,12 @@
-"""Keys whose order in bytes is the order of what they name.
+r"""Keys of the database, whose order in bytes is the order of the categories, ids and times in them.
 
 A text inside a key is UTF-8, whose order is that of code points; its end is two zero bytes, and a zero byte in it is
 followed by 255, so that texts of any characters are kept apart and in order. A time is eight bytes, the largest first.
 
 >>> view_key(VIEW, "cup", "v2", 5) < view_key(VIEW, "cup", "v2", 6) < view_key(VIEW, "cup2", "v1", 0)
 True
->>> split_view_key(view_key(VIEW, "a\\0b", "v1", -7))
-('a\\x00b', 'v1', -7)
+>>> split_view_key(view_key(VIEW, "a\0b", "v1", -7))
+('a\x00b', 'v1', -7)
 """
 
 from __future__ import annotations
@@ -14,8 +14,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 
 ARRAYS, CATEGORY, JOURNAL, LESSON, COUNT, VIEW = b"a", b"c", b"j", b"l", b"n", b"v"
-"""The ranges: a view's arrays; a category's record; the id of the last journal that was applied; the lesson that a view
-belongs to; counts; what is said of a view."""
+"""First bytes of keys: arrays, category records, the last applied journal, lessons of views, counts, view headers."""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _END, _ZERO = b"\x00\x00", b"\x00\xff"
@@ -23,7 +22,7 @@ _MIDDLE = 1 << 63
 
 
 def view_key(kind: bytes, category: str, view_id: str, time: int) -> bytes:
-    """Return the key of a view; ``time`` in microseconds since 1970."""
+    """Return the key of a view; ``time`` is in microseconds since 1970."""
     if "\0" in category or "\0" in view_id:
         texts = ended(category) + ended(view_id)
     else:
@@ -32,10 +31,10 @@ def view_key(kind: bytes, category: str, view_id: str, time: int) -> bytes:
 
 
 def split_view_key(key: bytes) -> tuple[str, str, int]:
-    """Return category, id and time of a view's key. Raises ValueError for a key that :func:`view_key` did not make."""
+    """Return category, id and time of the key of a view. Raises ValueError for other keys."""
     try:
         category, view_id, end = key[1:-8].decode().split("\0\0")
-    except ValueError:  # a zero in a name comes with a 255, which is in no UTF-8
+    except ValueError:  # a zero byte in a name is followed by 255, which UTF-8 never has
         category, rest = split_ended(key[1:-8])
         view_id, left = split_ended(rest)
         end = left.decode()
@@ -45,17 +44,17 @@ def split_view_key(key: bytes) -> tuple[str, str, int]:
 
 
 def category_prefix(category: str) -> bytes:
-    """Return what the keys of all views of a category begin with."""
+    """Return the common prefix of the keys of all views of a category."""
     return VIEW + ended(category)
 
 
 def name_key(kind: bytes, name: str) -> bytes:
-    """Return the key of what has nothing but a name."""
+    """Return the key of a record that has only a name."""
     return kind + name.encode()
 
 
 def after(prefix: bytes) -> bytes:
-    """Return the least key that is greater than all that begin so; no prefix here ends in 255."""
+    """Return the least key after all keys with a prefix; no prefix here ends in 255."""
     return prefix[:-1] + bytes([prefix[-1] + 1])
 
 
@@ -66,17 +65,17 @@ def microseconds(time: datetime) -> int:
 
 
 def moment(time: int) -> datetime:
-    """Return the time of some microseconds since 1970. Raises OverflowError for a year outside 1 to 9999."""
+    """Return the time of a number of microseconds since 1970. Raises OverflowError for a year outside 1 to 9999."""
     return EPOCH + timedelta(0, 0, time)  # as with a keyword, and twice as fast
 
 
 def ended(text: str) -> bytes:
-    """Return a text as bytes, with its end."""
+    """Return a text as bytes with an end mark."""
     return text.encode().replace(b"\x00", _ZERO) + _END
 
 
 def split_ended(data: bytes) -> tuple[str, bytes]:
-    """Return a text, and what comes after its end. Raises ValueError where it has none."""
+    """Return a text, and the bytes after its end mark. Raises ValueError where there is no end mark."""
     end = data.find(_END)
     if end < 0:
         raise ValueError("a text without an end")

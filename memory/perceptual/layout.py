@@ -1,18 +1,18 @@
-"""The folder of a perceptual memory: what lies in it, which version that is, and bringing older ones up to date.
+"""The folder of a perceptual memory: its files and their versions, and the migration of older versions.
 
-``store-2/`` is a LevelDB of version 2, and the name is what says so. A new store is made as ``store-3.new/`` and
-renamed when it is whole, so that a crash at any moment leaves one whole store with the greatest number. Beside it lie
-``owner.lock``, ``calibration.json`` (see :mod:`deixis.memory.perceptual.calibrated`), ``journal`` while a write over
-both stores is under way (see :mod:`deixis.memory.journal`), and two files that show what LevelDB leaves out in silence:
+``store-2/`` is a LevelDB of version 2; the version is in the name only. A new store is made as ``store-3.new/`` and
+renamed when it is complete, so that a crash at any moment leaves one complete store with the greatest number. Beside it
+are ``owner.lock``, ``calibration.json`` (see :mod:`deixis.memory.perceptual.calibrated`), ``journal`` during a write
+over both stores (see :mod:`deixis.memory.journal`), and two files that reveal losses that LevelDB does not report:
 
-- ``acknowledged`` holds the counts of the last batch. A database that finds the end of its log broken takes it for a
-  write that was under way, and forgets it.
-- ``seal.json`` is there while nobody has the memory open, if it was closed in good order. LevelDB mends what it finds
-  broken in its log and manifest by leaving it out, and deletes files that the manifest does not name. The seal has size
-  and CRC-32 of the small files, and the sizes of the tables, whose content is checked when it is read. After a crash
-  there is none: then mending is what is wanted.
+- ``acknowledged`` has the counts of the last batch. A database whose log has a broken end treats it as an unfinished
+  write, and drops it.
+- ``seal.json`` exists while no process has the memory open, if it was closed in good order. LevelDB repairs damage in
+  its log and manifest by leaving out entries, and deletes files that the manifest does not name. The seal has size and
+  CRC-32 of the small files, and the sizes of the tables, whose content is checked when it is read. After a crash there
+  the seal is missing: then LevelDB may repair its files.
 
-To change how things are kept: raise :data:`VERSION`, and add the step from the version before to
+To change the format: raise :data:`VERSION`, and add the step from the version before to
 :data:`deixis.memory.perceptual.migrations.MIGRATIONS`. A step reads the old database and fills a new one.
 """
 
@@ -37,10 +37,10 @@ from deixis.memory.perceptual.codec import StoreCounts, read_counts
 from deixis.memory.perceptual.migrations import MIGRATIONS
 
 FOLDER = "perceptual"
-"""Where a perceptual memory lies in the folder of a memory."""
+"""Folder of the perceptual memory within the folder of a memory."""
 
 VERSION = 2
-"""The version of the database that this program reads and writes."""
+"""Version of the database that this program reads and writes."""
 
 TALLY, SEAL, CALIBRATION = "acknowledged", "seal.json", "calibration.json"
 _STORE = re.compile(r"store-(\d+)(\.new)?")
@@ -49,34 +49,34 @@ _TABLE = ".ldb"
 
 
 def store(folder: Path, version: int | None = None) -> Path:
-    """Return where the database of a version is; of this program's version unless said otherwise."""
+    """Return the path of the database of a version; by default this program's version."""
     return folder / f"store-{VERSION if version is None else version}"
 
 
 def version_in(folder: Path) -> int | None:
-    """Return the version of what is in a folder, by looking only; None where there is no memory yet.
+    """Return the version of the memory in a folder, without opening it; None for a folder without one.
 
-    Raises MemoryFormatError for a folder of other things, and for a version that this program does not know;
-    DamagedMemoryError where a store was closed and is not there.
+    Raises MemoryFormatError for a folder with other files, and for an unknown version; DamagedMemoryError where a
+    closed store is missing.
     """
     if folder.is_symlink() and not folder.exists():
-        raise MemoryFormatError(f"{folder} is a link that leads nowhere; remove it or mend it")
+        raise MemoryFormatError(f"{folder} is a broken link; remove or repair it")
     if not folder.exists():
         return None
     if not folder.is_dir():
         raise MemoryFormatError(f"{folder} is a file: a memory is a folder; name another path")
     ours = {LOCK_FILE, TALLY, *(name + end for name in (SEAL, CALIBRATION, JOURNAL) for end in ("", ".new"))}
-    names = set(os.listdir(folder)) - ours
+    names = {entry.name for entry in folder.iterdir()} - ours
     foreign = sorted(name for name in names if not _STORE.fullmatch(name))
     if foreign:
         raise MemoryFormatError(
-            f"{folder} is no perceptual memory: it holds other things ({', '.join(foreign[:3])}); name another folder"
+            f"{folder} is not a perceptual memory: it has other files ({', '.join(foreign[:3])}); name another folder"
         )
     versions = [int(name.removeprefix("store-")) for name in names if not name.endswith(".new")]
     if not versions and (folder / SEAL).exists():
         raise DamagedMemoryError(
-            f"the views at {folder} are gone: {SEAL} says what the store held, and there is none; restore the folder "
-            "from a copy, or remove it to begin anew"
+            f"the views at {folder} are lost: {SEAL} describes a store that is missing; restore the folder from a "
+            "copy, or remove it to start over"
         )
     if not versions:
         return None
@@ -92,7 +92,7 @@ def version_in(folder: Path) -> int | None:
 
 
 def prepare(folder: Path) -> None:
-    """Make a store where there is none, else check its seal and bring it up to date."""
+    """Make a store if there is no store yet; otherwise check its seal and migrate it to this version."""
     version = version_in(folder)
     if version is None:
         _make(folder, VERSION, lambda new: None)
@@ -110,9 +110,9 @@ def prepare(folder: Path) -> None:
 
 
 def mirror(folder: Path, scratch: Path) -> None:
-    """Fill an empty folder with a copy of a perceptual memory that may be written, without copying its tables.
+    """Fill an empty folder with a writable copy of a perceptual memory.
 
-    They are linked, as LevelDB never changes a table.
+    Tables are linked, not copied, as LevelDB never changes a table.
     """
     for file in folder.iterdir():
         if file.is_dir():
@@ -128,7 +128,7 @@ def mirror(folder: Path, scratch: Path) -> None:
 
 
 def _make(folder: Path, version: int, fill: Callable[[plyvel.DB], None]) -> None:
-    """Make a store beside what is there, and give it its name when it is whole."""
+    """Make a store under a temporary name, and rename it when it is complete."""
     new = folder / f"store-{version}.new"
     disk.remove(new)
     db = plyvel.DB(str(new), create_if_missing=True, error_if_exists=True, compression=None, paranoid_checks=True)
@@ -151,7 +151,7 @@ def write_seal(folder: Path) -> None:
 
 
 def _check_seal(folder: Path, store: Path) -> None:
-    """Break the seal where there is one; raise DamagedMemoryError, and leave all as it is, where it does not fit."""
+    """Check the seal and remove it; raise DamagedMemoryError, and change nothing, where it does not match."""
     file = folder / SEAL
     if not file.exists():
         return
@@ -166,17 +166,17 @@ def _check_seal(folder: Path, store: Path) -> None:
     found = _files(store)
     wrong = sorted(name for name in {*files, *found} if files.get(name) != found.get(name))
     if wrong or name != store.name:
-        # LevelDB leaves out what is broken of a log; where others of its files are not as they were, it opens nothing
+        # LevelDB drops broken entries of a log; where its other files are damaged, it does not open
         advice = f"{restore}, {open_rest}" if all(name.endswith(".log") for name in wrong) else restore
         raise DamagedMemoryError(
-            f"the memory at {folder} is damaged: {store.name}/{[*wrong, SEAL][0]} is not as it was when it was closed; "
+            f"the memory at {folder} is damaged: {store.name}/{[*wrong, SEAL][0]} has changed since it was closed; "
             f"{advice}"
         )
     file.unlink()
 
 
 def _files(store: Path) -> dict[str, list[int]]:
-    """Return the size of each file by its name, and the CRC-32 of all but tables."""
+    """Return the size of each file by its name, and the CRC-32 of all except tables."""
     looks = {}
     for file in sorted(store.iterdir()):
         if file.name not in _UNSEALED_FILES:
@@ -188,18 +188,18 @@ def _files(store: Path) -> dict[str, list[int]]:
 class AcknowledgedCounts:
     """The file ``acknowledged``, open for writing.
 
-    The counts, as the database has them too, are written here after each batch, before its writer is told that it is
-    done: 32 bytes into the cache of the system, where they outlive this process, though not the machine.
+    The counts of the database are also written here after each batch, before the write returns: 32 bytes into the file
+    cache of the system, where they survive this process, though not the machine.
     """
 
     def __init__(self, folder: Path) -> None:
         self._descriptor = os.open(folder / TALLY, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-        self.found = StoreCounts()  # promises nothing, where the file is new or not what was written
+        self.found = StoreCounts()  # zero where the file is new or damaged
         with contextlib.suppress(DamagedMemoryError):
             self.found = read_counts(os.pread(self._descriptor, 64, 0))
 
     def write(self, counts: bytes) -> None:
-        """Write the counts, as ``write_counts`` gives them."""
+        """Write the counts, as ``write_counts`` returns them."""
         os.pwrite(self._descriptor, counts, 0)
 
     def close(self) -> None:

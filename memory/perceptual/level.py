@@ -1,4 +1,4 @@
-"""Perceptual memory in a LevelDB, which outlives the process.
+"""Perceptual memory in a LevelDB on disk.
 
 >>> import tempfile
 >>> from datetime import UTC, datetime
@@ -11,7 +11,7 @@
 ...     memory.categories(), memory.view("v1").descriptors["spin"].shape
 (('mug',), (100, 153))
 
-:class:`UndamagedMemory` is the same memory without the damaged views:
+:class:`UndamagedMemory` reads the same folder without the damaged views:
 
 >>> with UndamagedMemory.open(folder) as memory:
 ...     [view.id for view in memory.views()], memory.left_out
@@ -37,9 +37,9 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_
 
 
 class LevelMemory(Closing):
-    """The perceptual memory in one folder, owned by this process until the last who opened it closes it.
+    """The perceptual memory in one folder, owned by this process until its last user closes it.
 
-    The methods are those of :class:`deixis.memory.perceptual.protocol.PerceptualMemory`.
+    Its methods are those of :class:`deixis.memory.perceptual.protocol.PerceptualMemory`.
     """
 
     def __init__(self, handle: Handle) -> None:
@@ -49,8 +49,8 @@ class LevelMemory(Closing):
     def open(cls, path: str | Path, create: bool = False) -> Self:
         """Open a memory, or make one with ``create``; a folder that this process has open is shared.
 
-        Raises MemoryBusyError where another process has it, MemoryFormatError where there is none or it cannot be
-        believed, MemoryWriteError where the folder cannot be written.
+        Raises MemoryBusyError where another process has the memory open, MemoryFormatError where there is no memory or
+        its files are invalid, MemoryWriteError where the folder cannot be written.
         """
         return cls(acquire(Path(path), create))
 
@@ -62,7 +62,7 @@ class LevelMemory(Closing):
 
     @property
     def handle(self) -> Handle:
-        """The handle that all who have this folder open in this process share."""
+        """The handle that all users of this folder in this process share."""
         if self._open is None:
             raise closed()
         return self._open
@@ -86,7 +86,7 @@ class LevelMemory(Closing):
             return now.view(id)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over views, as they were when this was called."""
+        """Iterate over views, as they are at the time of the call."""
         return self.snapshot().views(category)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
@@ -99,7 +99,7 @@ class LevelMemory(Closing):
             return now.categories()
 
     def category(self, name: str) -> CategoryRecord:
-        """Return what a learner left about a category."""
+        """Return the record of a category."""
         with self.snapshot() as now:
             return now.category(name)
 
@@ -122,21 +122,21 @@ class LevelMemory(Closing):
             return tuple(view for view in views if now.get(keys.name_key(keys.LESSON, view)) is not None)
 
     def stats(self) -> PerceptualStats:
-        """Return how much the memory keeps."""
+        """Return the size of the memory."""
         with self.snapshot() as now:
             return now.stats()
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return what is not as it was written."""
+        """Return what differs from what was written."""
         with self.snapshot() as now:
             return now.verify(progress)
 
     def snapshot(self) -> Snapshot:
-        """Return the memory as it is now, whatever is written later."""
+        """Return a snapshot of the memory, unchanged by later writes."""
         return Snapshot(self.handle)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keep other threads from writing."""
+        """Return a lock that keeps other threads from writing."""
         return self.handle.writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
@@ -145,12 +145,12 @@ class LevelMemory(Closing):
             self.handle.write(self.writing(batch), sync)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches that bring new views."""
+        """Write batches of new views, all or none."""
         with self.exclusive():
             self.handle.write_all(map(self.writing, batches), new)
 
     def rename(self, old: str, new: str) -> None:
-        """Give a category another name."""
+        """Rename a category."""
         with self.exclusive():
             self.handle.write(self.renaming(old, new), sync=True)
 
@@ -164,10 +164,10 @@ class LevelMemory(Closing):
         with self.exclusive():
             self.handle.write(self.forgetting(category), sync=True)
 
-    # ---- the changes that these make, to be worked out and written under :meth:`exclusive`
+    # ---- the changes of these methods, to be computed and written under :meth:`exclusive`
 
     def writing(self, batch: Batch) -> WriteBatch:
-        """Return the change that writes a batch; raises as :meth:`write`."""
+        """Return the change that writes a batch; raise as :meth:`write`."""
         handle, change = self.handle, WriteBatch()
         there = handle.places()
         for view_id in batch.forgotten:
@@ -186,7 +186,7 @@ class LevelMemory(Closing):
         return change
 
     def renaming(self, old: str, new: str) -> WriteBatch:
-        """Return the change that gives a category another name; raises as :meth:`rename`."""
+        """Return the change that renames a category; raise as :meth:`rename`."""
         check_name("a category's name", new)
         with self.snapshot() as now:
             record = now.category(old)
@@ -195,7 +195,7 @@ class LevelMemory(Closing):
             return _of_moving(now, old, CategoryRecord(new, record.state, record.metadata))
 
     def merging(self, source: str, into: str, record: CategoryRecord | None = None) -> WriteBatch:
-        """Return the change that moves the views of a category to another; raises as :meth:`merge`."""
+        """Return the change that moves the views of a category to another; raise as :meth:`merge`."""
         check_merging(source, into, record)
         with self.snapshot() as now:
             now.require(into)
@@ -203,7 +203,7 @@ class LevelMemory(Closing):
             return _of_moving(now, source, record or CategoryRecord(into))
 
     def forgetting(self, category: str) -> WriteBatch:
-        """Return the change that forgets a category with its views; raises as :meth:`forget`."""
+        """Return the change that forgets a category with its views; raise as :meth:`forget`."""
         with self.snapshot() as now:
             now.require(category)
             change = WriteBatch()
@@ -215,11 +215,11 @@ class LevelMemory(Closing):
 
 
 class UndamagedMemory(LevelMemory):
-    """Reads as if damaged views were not there; ``left_out`` says which, a line each. Listing reads arrays too."""
+    """A perceptual memory without its damaged views; ``left_out`` lists them. Listing reads arrays too."""
 
     @cached_property
     def left_out(self) -> list[str]:
-        """What could not be read so far, a line each."""
+        """Lines about the damaged views that were met so far."""
         return []
 
     def views(self, category: str | None = None) -> Iterator[View]:
@@ -236,7 +236,7 @@ class UndamagedMemory(LevelMemory):
                         self._leave_out(error)
                     else:
                         yield view
-            except DamagedMemoryError as error:  # of the order itself: what comes after it is not found
+            except DamagedMemoryError as error:  # in the keys themselves: views after it cannot be found
                 self._leave_out(error)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
@@ -248,7 +248,7 @@ class UndamagedMemory(LevelMemory):
         return tuple(dict.fromkeys(key.category for key in self.listing()))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return what a learner left about a category, without arrays where that is damaged."""
+        """Return the record of a category, with no arrays where these are damaged."""
         try:
             return super().category(name)
         except DamagedMemoryError as error:
@@ -261,7 +261,7 @@ class UndamagedMemory(LevelMemory):
 
 
 def _arrays_of(handle: Handle, view_id: str, key: bytes) -> list[bytes]:
-    """Return the keys of a view's arrays; all that can be its, where what says so is damaged."""
+    """Return the keys of a view's arrays, or all keys that can be its own where its header is damaged."""
     with Snapshot(handle) as now:
         try:
             said = now.about_at(key)
@@ -271,9 +271,9 @@ def _arrays_of(handle: Handle, view_id: str, key: bytes) -> list[bytes]:
 
 
 def _of_moving(now: Snapshot, category: str, record: CategoryRecord) -> WriteBatch:
-    """Return the change that gives all views of a category to that of the record; their arrays stay where they are.
+    """Return the change that moves all views of a category to that of the record; their arrays stay where they are.
 
-    Raises DamagedMemoryError where something is said of a view that was not written.
+    Raises DamagedMemoryError where the header of a view is damaged.
     """
     change = WriteBatch()
     try:

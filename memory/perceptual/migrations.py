@@ -1,4 +1,4 @@
-"""Steps from each version of the database to the next.
+"""Migrations of the database from each version to the next.
 
 Version 1 sealed arrays and records of categories with 64 bits of NH (Black, Halevi, Krawczyk, Krovetz and Rogaway,
 "UMAC: fast and secure message authentication", CRYPTO 1999), at the end of the value, and all else with a CRC-32.
@@ -22,10 +22,10 @@ _NH_BLOCK = 1024  # words of 64 bits
 
 
 def reseal(old: plyvel.DB, new: plyvel.DB) -> None:
-    """Fill a database of version 2 from one of version 1: other checksums, and none behind a view's arrays.
+    """Fill a database of version 2 from one of version 1: other checksums, and none after the arrays of a view.
 
-    A value whose checksum does not fit is copied as it is, so that it stays damaged and is named. LevelDB's checksums
-    are not asked: one of them that does not fit would keep the other values from being read.
+    A value that does not match its checksum is copied unchanged, so that it stays damaged and is reported. LevelDB's
+    checksums are not checked: a mismatch would keep the other values from being read.
     """
     for key, value in old.iterator():
         kind = key[:1]
@@ -47,7 +47,7 @@ def reseal(old: plyvel.DB, new: plyvel.DB) -> None:
 
 
 def _nh_fits(key: bytes, sealed: bytes) -> bool:
-    """Return whether a value of version 1 is what was sealed with NH under a key."""
+    """Return whether a value of version 1 matches its NH checksum for a key."""
     length = len(sealed) - 8
     if length < 0:
         return False
@@ -74,4 +74,4 @@ def _nh_key() -> NDArray[np.uint64]:
 
 
 MIGRATIONS: dict[int, Callable[[plyvel.DB, plyvel.DB], None]] = {1: reseal}
-"""From a version to the step that leads to the next."""
+"""Migration to the next version, by version."""

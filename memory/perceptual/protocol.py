@@ -1,4 +1,4 @@
-"""What every perceptual memory can do, whatever keeps it."""
+"""Protocol of perceptual memories: the types that hold views of objects share these methods."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from typing import NamedTuple, Protocol, Self
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 
 Progress = Callable[[int, int], None]
-"""Is told how many views are done, and how many there are."""
+"""A function called with the number of views done and the number of all views."""
 
 
 class ViewKey(NamedTuple):
-    """Where a view stands in the order of a memory: by category, then id (both by code points), then time."""
+    """Key of a view in the order of a memory: by category, then id (both by code points), then time."""
 
     category: str
     id: str
@@ -25,7 +25,7 @@ class ViewKey(NamedTuple):
 
 @dataclass(frozen=True)
 class PerceptualStats:
-    """How much a memory keeps; ``lost`` counts batches that were acknowledged and are not there."""
+    """Size of a memory; ``lost`` is the number of acknowledged batches that are missing, ``bytes`` the size on disk."""
 
     views: int
     categories: int
@@ -37,7 +37,7 @@ class PerceptualStats:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something in a memory that is not as it was written."""
+    """A place in a memory that differs from what was written."""
 
     where: str
     what: str
@@ -47,37 +47,37 @@ class Finding:
 
 
 class PerceptualReading(Protocol):
-    """Reading a memory. What is listed comes in order of category, then view; arrays are read one view at a time."""
+    """Read access to a memory. Lists are ordered by category, then view; arrays are read one view at a time."""
 
     def view(self, id: str) -> View:
-        """Return one view. Raises UnknownViewError; DamagedMemoryError where it is not what was written."""
+        """Return one view. Raises UnknownViewError; DamagedMemoryError where the view is damaged."""
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Return all views, or those of a category, as they were when this was called.
+        """Return all views, or those of a category, as they are at the time of the call.
 
-        Raises UnknownCategoryError; DamagedMemoryError at the view that is not what was written.
+        Raises UnknownCategoryError; DamagedMemoryError at a damaged view.
         """
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of the views that :meth:`views` gives, without reading arrays."""
+        """Iterate over category, id and time of the views that :meth:`views` returns, without reading arrays."""
 
     def categories(self) -> tuple[str, ...]:
         """Return the names of all categories that have a view or a record, in order."""
 
     def category(self, name: str) -> CategoryRecord:
-        """Return what a learner left about a category, without arrays where nothing. Raises UnknownCategoryError."""
+        """Return the record of a category, with no arrays where nothing was learned. Raises UnknownCategoryError."""
 
     def lessons_of_views(self) -> dict[str, str]:
         """Return the lesson of each view that belongs to one, by the view's id."""
 
     def stats(self) -> PerceptualStats:
-        """Return how much the memory keeps."""
+        """Return the size of the memory."""
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Read everything, and return what is not as it was written; nothing where all is well."""
+        """Read everything, and return what differs from what was written; an empty tuple where nothing does."""
 
     def close(self) -> None:
-        """Release the memory; whatever is asked afterwards raises MemoryFormatError."""
+        """Release the memory; later calls raise MemoryFormatError."""
 
     def __enter__(self) -> Self: ...
 
@@ -87,36 +87,36 @@ class PerceptualReading(Protocol):
 
 
 class PerceptualMemory(PerceptualReading, Protocol):
-    """A memory that can be written too: each call is one step, all or nothing. Threads may share it."""
+    """Read and write access to a memory. Each call is one step, all or nothing. Threads may share a memory."""
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch, and return once it is safe from the death of this process; with ``sync``, of the machine.
+        """Write a batch, so that it survives the end of this process; with ``sync``, also that of the machine.
 
-        Raises UnknownViewError where a view to forget is not there, MemoryWriteError where it cannot be written;
-        nothing is changed then.
+        Raises UnknownViewError where a view to forget does not exist, MemoryWriteError where the batch cannot be
+        written; nothing is changed then.
         """
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches that bring new views, with the ids ``new``: all of them, or none, whatever happens.
+        """Write batches of new views with the ids ``new``: all of them or none.
 
         Only one of the batches is held at a time. Raises as :meth:`write`, and whatever ``batches`` raises.
         """
 
     def rename(self, old: str, new: str) -> None:
-        """Give a category another name. Raises UnknownCategoryError; RejectedWriteError for a name that is taken."""
+        """Rename a category. Raises UnknownCategoryError; RejectedWriteError where the new name is in use."""
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another, and give that ``record``.
+        """Move the views of one category to another, and replace the record of that with ``record``.
 
-        Without one the category is left without a learned state, as neither old one describes these views. Raises
-        UnknownCategoryError; RecordError where the record is another category's.
+        Without a record the category has no learned state, as neither old one describes these views. Raises
+        UnknownCategoryError; RecordError where the record is of another category.
         """
 
     def forget(self, category: str) -> None:
         """Forget a category with all its views. Raises UnknownCategoryError."""
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keep other threads from writing between reading categories and writing them back."""
+        """Return a lock that keeps other threads from writing, for a read followed by a write."""
 
     def snapshot(self) -> PerceptualReading:
-        """Return the memory as it is now, whatever is written later, until closed."""
+        """Return a snapshot of the memory, unchanged by later writes, until it is closed."""

@@ -1,4 +1,4 @@
-"""Read a database at one moment, and find what in it is not as it was written."""
+"""Snapshots of a perceptual database, and its verification."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ _WRONG = (MemoryFormatError, MemoryWriteError, ValueError)
 
 
 class Snapshot(Closing):
-    """A database as it was when this was made, until it is closed.
+    """A snapshot of a database, until it is closed.
 
-    Every value is verified: all have a checksum of ours, and all but a view's arrays are read with LevelDB's as well.
+    Every value is verified: all have a checksum of this program, and all except arrays are also read with LevelDB's.
     """
 
     def __init__(self, handle: Handle) -> None:
@@ -73,15 +73,15 @@ class Snapshot(Closing):
             return value
 
     def pairs(self, begin: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Iterate over the keys that begin so, with their values, in order."""
+        """Iterate over the keys with a prefix, with their values, in order."""
         return self._walk(_same, prefix=begin)
 
     def bare_keys(self, begin: bytes) -> Iterator[bytes]:
-        """Iterate over the keys that begin so, in order."""
+        """Iterate over the keys with a prefix, in order."""
         return self._walk(_same, prefix=begin, include_value=False)
 
     def _walk(self, made: Callable[[Any], Any], **what: Any) -> Iterator[Any]:
-        """Iterate over what is made of each item, one call under way at a time."""
+        """Iterate over ``made(item)`` of each item, with one call in progress at a time."""
         with self._handle:
             found = self._handle.keep(self._open.iterator(verify_checksums=True, **what))
         try:
@@ -96,7 +96,7 @@ class Snapshot(Closing):
             self._handle.let_go(found)
 
     def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
-        """Return the first key of a kind from a key on, with its value."""
+        """Return the first key of a kind at or after a key, with its value."""
         with (
             self._handle,
             self._open.iterator(start=key, stop=keys.after(kind), verify_checksums=True) as found,
@@ -105,21 +105,21 @@ class Snapshot(Closing):
             return pair
 
     def about(self, view_id: str) -> ViewHeader | None:
-        """Return all of a view but its arrays, or None."""
+        """Return the header of a view, or None."""
         place = self._handle.place_of(check_name("a view's id", view_id))
         said = None if place is None else self.about_at(place)
-        if said is None:  # at this moment it was elsewhere, or nowhere
+        if said is None:  # at the time of the snapshot it was elsewhere, or did not exist
             place = self._places().get(view_id)
             said = None if place is None else self.about_at(place)
         return said
 
     def about_at(self, key: bytes) -> ViewHeader | None:
-        """Return all but the arrays of the view with this key, or None."""
+        """Return the header of the view with this key, or None."""
         sealed = self.get(key)
         return None if sealed is None else read_about(key, sealed)
 
     def _places(self) -> dict[str, bytes]:
-        """Return where each view was at this moment; raises DamagedMemoryError where not all can be read."""
+        """Return the key of each view in the snapshot; raise DamagedMemoryError where not all can be read."""
         with self._handle:
             if self._then is None:
                 self._then = read_places(self._open)
@@ -128,19 +128,19 @@ class Snapshot(Closing):
             return self._then.by_id
 
     def view(self, id: str) -> View:
-        """See :class:`deixis.memory.perceptual.protocol.PerceptualReading`, here and below."""
+        """Return one view; see :class:`deixis.memory.perceptual.protocol.PerceptualReading`, also for what follows."""
         said = self.about(id)
         if said is None:
             raise unknown_view(id)
         return self.view_of(said)
 
     def view_of(self, said: ViewHeader) -> View:
-        """Return a view of which all is known but the arrays."""
+        """Return a view from its header."""
         with self._handle:
             return stored_arrays(self._open, said)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over the views, which are read one by one."""
+        """Iterate over the views, reading them one by one."""
         return self._views(self._beginning(category))
 
     def _views(self, begin: bytes) -> Iterator[View]:
@@ -152,7 +152,7 @@ class Snapshot(Closing):
             self._handle.let_go(arrays)
 
     def _listed(self, walk: Any, pair: tuple[bytes, bytes]) -> View:
-        """Return a view by its place in the order, in which its arrays mostly lie as well."""
+        """Return a view by its place in the order, near which its arrays usually are."""
         said = read_about(*pair)
         key = said.arrays_key
         found, arrays = next(walk, (b"", None))
@@ -173,7 +173,7 @@ class Snapshot(Closing):
         return keys.category_prefix(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of the categories: one look-up each, however many views they have."""
+        """Return the names of the categories, with one look-up each, however many views they have."""
         names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
         pair = self.first_after(keys.VIEW, keys.VIEW)
         while pair is not None:
@@ -183,13 +183,13 @@ class Snapshot(Closing):
         return tuple(sorted(names))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return what a learner left about a category."""
+        """Return the record of a category."""
         self.require(name)
         sealed = self.get(keys.name_key(keys.CATEGORY, name))
         return CategoryRecord(name) if sealed is None else read_category(name, sealed)
 
     def has(self, category: str) -> bool:
-        """Return whether there is a view or a record of a category."""
+        """Return whether a category has a view or a record."""
         check_name("a category's name", category)
         if self.get(keys.name_key(keys.CATEGORY, category)) is not None:
             return True
@@ -207,7 +207,7 @@ class Snapshot(Closing):
         return {key[1:].decode(): read_name(key, sealed) for key, sealed in self.pairs(keys.LESSON)}
 
     def counts(self) -> StoreCounts:
-        """Return the counts at this moment."""
+        """Return the counts in the snapshot."""
         return read_counts(self.get(keys.COUNT))
 
     def stats(self) -> PerceptualStats:
@@ -223,15 +223,15 @@ class Snapshot(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return everything that is not as it was written."""
+        """Return everything that differs from what was written."""
         return tuple(_findings(self, progress))
 
 
 def glance(db: Any, place: bytes) -> View | None:
-    """Return a view by the key of what is said of it, without a snapshot.
+    """Return a view by the key of its header, without a snapshot.
 
-    None where it is not there, or damaged, or another thread has written in between: then the checksum of the arrays is
-    not the one that is known of them.
+    Return None where it does not exist, is damaged, or was written by another thread in between, so that the checksum
+    of the arrays differs from the one in the header.
     """
     sealed = db.get(place, verify_checksums=True)
     if sealed is None:
@@ -244,9 +244,9 @@ def glance(db: Any, place: bytes) -> View | None:
 
 
 def stored_arrays(source: Any, said: ViewHeader) -> View:
-    """Return a view of which all is known but the arrays, from a database or a snapshot of one.
+    """Return a view from its header and a database or a snapshot.
 
-    These alone are read without LevelDB's checksums: ours is stronger, covers the key, and is known beforehand.
+    Only arrays are read without LevelDB's checksums: the checksum in the header is stronger and covers the key.
     """
     return read_view(said, source.get(said.arrays_key, fill_cache=False))
 
@@ -256,7 +256,7 @@ def _same(item: Any) -> Any:
 
 
 def unknown_view(id: str) -> UnknownViewError:
-    """The error that says that no view has this id."""
+    """Return the error for an unknown view."""
     return UnknownViewError(f"no view '{id}' in this memory")
 
 
@@ -264,20 +264,20 @@ def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
     """Return the error for an unknown category."""
     near = nearest(name, known)
     listed = ", ".join(known[:MAX_LISTED]) + (", among others" if len(known) > MAX_LISTED else "")
-    others = f"known are: {listed}" if known else "none is known yet"
+    others = f"the memory has: {listed}" if known else "the memory has no categories yet"
     hint = f"did you mean '{near}'?" if near else others
     return UnknownCategoryError(f"no category '{name}'; {hint}")
 
 
 def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Finding]:
-    """Find what is wrong in the counts, the categories, the views, and the arrays that belong to no view."""
+    """Yield the damage in the counts, the categories, the views, and the arrays that belong to no view."""
     counts = StoreCounts(views=-1)
     try:
         counts = now.counts()
     except _WRONG as error:
         yield Finding("counts", _line(error))
     if counts.lost:
-        yield Finding("counts", f"{counts.lost} batches that were acknowledged are not there")
+        yield Finding("counts", f"{counts.lost} acknowledged batches are missing")
     yield from _categories(now)
     found = 0
     try:
@@ -286,9 +286,9 @@ def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Findi
             if progress is not None:
                 progress(found, max(counts.views, found))
     except _WRONG as error:
-        yield Finding("order of views", f"it cannot be read to its end: {_line(error)}")
+        yield Finding("order of views", f"it cannot be read completely: {_line(error)}")
     if found != counts.views >= 0:
-        yield Finding("counts", f"{counts.views} views were written, and {found} are there")
+        yield Finding("counts", f"{counts.views} views were written, but {found} are there")
     yield from _strays(now)
 
 
@@ -301,7 +301,7 @@ def _categories(now: Snapshot) -> Iterator[Finding]:
             except _WRONG as error:
                 yield Finding(f"category '{name}'", _line(error))
     except _WRONG as error:
-        yield Finding("categories", f"they cannot be read to their end: {_line(error)}")
+        yield Finding("categories", f"they cannot be read completely: {_line(error)}")
 
 
 def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
@@ -325,10 +325,10 @@ def _strays(now: Snapshot) -> Iterator[Finding]:
                 if said is not None and said.arrays_key == key:
                     continue
             except _WRONG:
-                continue  # told of with its view
-            yield Finding(f"arrays at {key[1:60]!r}", "no view owns them")
+                continue  # reported with its view
+            yield Finding(f"arrays at {key[1:60]!r}", "they belong to no view")
     except _WRONG as error:
-        yield Finding("arrays", f"they cannot be read to their end: {_line(error)}")
+        yield Finding("arrays", f"they cannot be read completely: {_line(error)}")
 
 
 def _line(error: BaseException) -> str:

@@ -1,4 +1,4 @@
-"""What perceptual memory keeps: views, what a learner knows of a category, and batches of both.
+"""Records of perceptual memory: views, learned state of categories, and batches of both.
 
 >>> from datetime import UTC, datetime
 >>> spin = np.zeros((2, 153), np.float32)
@@ -23,19 +23,19 @@ from numpy.typing import NDArray
 from deixis.memory.errors import RecordError, RejectedWriteError
 
 Json = Mapping[str, Any]
-"""An object of JSON: keys are strings; values are None, bools, numbers, strings, lists, and objects again."""
+"""A JSON object: keys are strings; values are None, booleans, numbers, strings, lists, and JSON objects."""
 
 DTYPES = frozenset(
     ("bool", "int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64", "float16", "float32", "float64")
 )
-"""Names of the types that the arrays of a learner's state may have."""
+"""Names of the array types that the state of a learner may have."""
 
 _LONGEST = 1000  # bytes of a name in UTF-8
 _DESCRIPTOR, _POINTS = "descriptor/", "points"
 
 
 class JsonObject(Mapping[str, Any]):
-    """An object of JSON, kept as its text, which is read when something in it is first asked for."""
+    """A JSON object that is stored as text, and parsed on first use."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -60,11 +60,27 @@ class JsonObject(Mapping[str, Any]):
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """One look at an object of a category. Arrays are kept as they are at this moment and cannot be written.
+    """One view of an object of a category, with read-only copies of its arrays.
 
-    ``id`` is the view's own in the whole memory. ``time`` has a time zone, and is kept in UTC, to the microsecond.
-    ``descriptors`` leads from a descriptor's name to k descriptors of length d, float32 (k, d); ``points`` are metres,
-    float32 (n, 3). ``metadata`` is JSON: scene, object, teacher, source. Raises RecordError for anything else.
+    Parameters
+    ----------
+    id
+        Name of the view, unique in the memory.
+    category
+        Name of the category.
+    time
+        Time with a time zone; stored in UTC, to the microsecond.
+    descriptors
+        Descriptors by name: k descriptors of length d, float32 of shape (k, d).
+    points
+        Points in metres, float32 of shape (n, 3).
+    metadata
+        JSON: scene, object, teacher, source.
+
+    Raises
+    ------
+    RecordError
+        A value is of another type or shape.
     """
 
     id: str
@@ -85,7 +101,7 @@ class View:
         if self.points is not None:
             _check_floats(f"the points of view '{self.id}'", self.points)
             if self.points.shape[1] != 3:
-                raise RecordError(f"the points of view '{self.id}' have shape {self.points.shape}, not (n, 3)")
+                raise RecordError(f"the points of view '{self.id}' must have shape (n, 3), got {self.points.shape}")
             object.__setattr__(self, "points", frozen(self.points))
         object.__setattr__(self, "descriptors", MappingProxyType(descriptors))
         object.__setattr__(self, "time", _utc(self.id, self.time))
@@ -93,7 +109,7 @@ class View:
 
     @classmethod
     def stored(cls, **values: Any) -> View:
-        """Return a view of values that were checked when they were written."""
+        """Return a view without checks, from values that were checked when they were written."""
         view = object.__new__(cls)
         object.__setattr__(view, "__dict__", values)
         return view
@@ -101,9 +117,10 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class CategoryRecord:
-    """What a learner knows of a category between two lessons, so that it goes on where it stopped.
+    """Learned state of a category, from which learning continues.
 
-    ``state`` leads from names to arrays of any shape, of :data:`DTYPES`; ``metadata`` is JSON. Raises RecordError.
+    ``state`` maps names to arrays of any shape, of the types in :data:`DTYPES`; ``metadata`` is JSON. Raises
+    RecordError.
     """
 
     name: str
@@ -116,7 +133,7 @@ class CategoryRecord:
         for name, array in self.state.items():
             check_name("the name of a state", name)
             if not isinstance(array, np.ndarray) or array.dtype.name not in DTYPES:
-                raise RecordError(f"the state '{name}' of category '{self.name}' is no array of numbers")
+                raise RecordError(f"the state '{name}' of category '{self.name}' must be an array of numbers")
             held[name] = frozen(array)
         object.__setattr__(self, "state", MappingProxyType(held))
         object.__setattr__(self, "metadata", _json(f"the metadata of category '{self.name}'", self.metadata))
@@ -124,12 +141,12 @@ class CategoryRecord:
 
 @dataclass(frozen=True)
 class Batch:
-    """What is written in one step: all of it, or, whatever happens, nothing.
+    """Changes that are written in one step: all or nothing.
 
-    A view whose id is known takes the place of the old one, in whatever category that was, and belongs to no lesson; a
-    category's record takes the place of the old record. ``forgotten`` are ids of views, ``dropped`` names of categories
-    whose records go. ``lessons`` says which lesson a view belongs to from now on, by the view's id; None for no lesson.
-    Raises RecordError where an id or a name comes twice.
+    A view with a known id replaces the stored one, whatever its category was, and belongs to no lesson. A record of a
+    category replaces the stored record. ``forgotten`` are ids of views, ``dropped`` names of categories whose records
+    are removed. ``lessons`` maps ids of views to their lessons; None means no lesson. Raises RecordError where an id or
+    a name occurs twice.
     """
 
     views: Sequence[View] = ()
@@ -144,20 +161,19 @@ class Batch:
         for what, names in (("view", ids), ("category", categories)):
             if len(set(names)) < len(names):
                 twice = next(name for name in names if names.count(name) > 1)
-                raise RecordError(f"the {what} '{twice}' comes twice in one batch")
+                raise RecordError(f"the {what} '{twice}' must occur only once in a batch")
 
 
 def arrays_by_name(
     descriptors: Mapping[str, NDArray[np.float32]], points: NDArray[np.float32] | None
 ) -> dict[str, NDArray[np.float32]]:
-    """Return a view's arrays by the names under which they are kept."""
+    """Return the arrays of a view by their storage names."""
     arrays = {_DESCRIPTOR + name: array for name, array in descriptors.items()}
     return arrays if points is None else {**arrays, _POINTS: points}
 
 
 def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
-    """Return descriptors and points, of arrays by the names under which they are kept. Raises ValueError for another
-    name."""
+    """Return descriptors and points from arrays by their storage names. Raises ValueError for other names."""
     names = _uses(tuple(arrays))
     descriptors = {name: array for name, array in zip(names, arrays.values(), strict=True) if name}
     return descriptors, None if len(descriptors) == len(names) else arrays[_POINTS]
@@ -165,32 +181,32 @@ def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[An
 
 @lru_cache(256)
 def _uses(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the descriptors' names, and nothing for the points; views of one layout have the same."""
+    """Return the names of the descriptors and an empty name for the points; views of one layout share the result."""
     if any(name != _POINTS and not name.startswith(_DESCRIPTOR) for name in names):
         raise ValueError(f"a view has {_POINTS} and {_DESCRIPTOR}…, and no other arrays")
     return tuple("" if name == _POINTS else name.removeprefix(_DESCRIPTOR) for name in names)
 
 
 def json_text(metadata: Json) -> str:
-    """Return the metadata of a view or a category as JSON."""
+    """Return metadata as JSON."""
     return metadata.text if isinstance(metadata, JsonObject) else json.dumps(dict(metadata))
 
 
 def check_name(what: str, name: object) -> str:
-    """Return the name; raises RecordError for what cannot be one: one or more characters that UTF-8 can write."""
+    """Return the name; raise RecordError unless it is a text of one or more characters that UTF-8 can encode."""
     if not isinstance(name, str) or not name:
-        raise RecordError(f"{what} is a text of one or more characters, not {name!r}")
+        raise RecordError(f"{what} must be a text of one or more characters, got {name!r}")
     try:
         length = len(name.encode())
     except UnicodeEncodeError as error:
-        raise RecordError(f"{what}, {name!r}, holds half a character (a lone surrogate) at {error.start}") from error
+        raise RecordError(f"{what}, {name!r}, has a lone surrogate (half a character) at {error.start}") from error
     if length > _LONGEST:
         raise RecordError(f"{what} is too long: {length} bytes, at most {_LONGEST} ({name[:40]}…)")
     return name
 
 
 def check_merging(source: str, into: str, record: CategoryRecord | None) -> None:
-    """Raise RecordError for a category and itself, and for a record of another category."""
+    """Raise RecordError where a category is merged into itself, or with a record of another category."""
     if source == into:
         raise RecordError(f"'{source}' cannot be merged into itself; name two categories")
     if record is not None and record.name != into:
@@ -198,14 +214,14 @@ def check_merging(source: str, into: str, record: CategoryRecord | None) -> None
 
 
 def name_taken(old: str, new: str) -> RejectedWriteError:
-    """Return the error for a new name that a category has already."""
+    """Return the error for a new name that another category has."""
     if old == new:
-        return RejectedWriteError(f"'{old}' is the category's name already")
-    return RejectedWriteError(f"there is a category '{new}' already: merge '{old}' into it")
+        return RejectedWriteError(f"the category already has the name '{old}'")
+    return RejectedWriteError(f"there is already a category '{new}': merge '{old}' into it")
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a copy of an array that is contiguous, little-endian and read-only."""
+    """Return a contiguous, little-endian, read-only copy of an array."""
     copy = np.array(array, array.dtype.newbyteorder("<"), order="C")
     copy.flags.writeable = False
     return copy
@@ -214,16 +230,16 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
 def _check_floats(what: str, array: object) -> None:
     if not isinstance(array, np.ndarray) or array.dtype.name != "float32" or array.ndim != 2:
         shape = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
-        raise RecordError(f"{what}: an array of float32 with two dimensions is wanted, not {shape}")
+        raise RecordError(f"{what} must be a float32 array with two dimensions, got {shape}")
 
 
 def _utc(view: str, time: object) -> datetime:
     if not isinstance(time, datetime) or time.utcoffset() is None:
-        raise RecordError(f"the time of view '{view}' is a datetime with a time zone, not {time!r}")
+        raise RecordError(f"the time of view '{view}' must be a datetime with a time zone, got {time!r}")
     try:
         return time.astimezone(UTC)
     except OverflowError as error:
-        raise RecordError(f"the time of view '{view}', {time}, is in no year from 1 to 9999 of UTC") from error
+        raise RecordError(f"the time of view '{view}', {time}, must be in the years 1 to 9999 of UTC") from error
 
 
 def _json(what: str, data: object) -> JsonObject:
@@ -233,5 +249,5 @@ def _json(what: str, data: object) -> JsonObject:
     except (TypeError, ValueError, RecursionError) as error:
         raise RecordError(f"{what} cannot be written as JSON: {error}") from error
     if copy != data:
-        raise RecordError(f"{what} would not come back as it is from JSON: use lists, and strings as keys")
+        raise RecordError(f"{what} would change when read back from JSON: use lists, and strings as keys")
     return JsonObject(text)

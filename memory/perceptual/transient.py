@@ -1,4 +1,4 @@
-"""Perceptual memory in dictionaries, for trials and tests: all that a LevelDB does but outliving the process.
+"""Perceptual memory in dictionaries, for trials and tests, which ends with the process.
 
 >>> from datetime import UTC, datetime
 >>> with TransientMemory() as memory:
@@ -26,7 +26,7 @@ from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_
 
 @dataclass(frozen=True)
 class _StoredViews:
-    """All that is kept; a write makes another one, so that whoever reads this one is not disturbed."""
+    """Content of the memory. A write replaces it as a whole, so that readers keep the one they have."""
 
     views: dict[str, View]
     records: dict[str, CategoryRecord]
@@ -35,13 +35,13 @@ class _StoredViews:
 
 
 class TransientReading(Closing):
-    """Reading what is kept at one moment; the methods are those of ``PerceptualReading``."""
+    """Read access to one content; the methods are those of ``PerceptualReading``."""
 
     def __init__(self, content: _StoredViews) -> None:
         self._kept: _StoredViews | None = content
 
     def close(self) -> None:
-        """Release what is kept."""
+        """Release the content."""
         self._kept = None
 
     @property
@@ -66,7 +66,7 @@ class TransientReading(Closing):
 
     def _each(self, views: list[View]) -> Iterator[View]:
         for view in views:
-            _ = self._content  # raises where this was closed meanwhile
+            _ = self._content  # raises if this was closed meanwhile
             yield view
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
@@ -78,7 +78,7 @@ class TransientReading(Closing):
         return tuple(sorted({view.category for view in self._content.views.values()} | set(self._content.records)))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return what a learner left about a category."""
+        """Return the record of a category."""
         self._require(name)
         return self._content.records.get(name, CategoryRecord(name))
 
@@ -92,7 +92,7 @@ class TransientReading(Closing):
         return dict(self._content.lessons)
 
     def stats(self) -> PerceptualStats:
-        """Return how much the memory keeps; its bytes are those of the arrays."""
+        """Return the size of the memory; its bytes are those of the arrays."""
         arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
         return PerceptualStats(
             views=len(self._content.views),
@@ -104,7 +104,7 @@ class TransientReading(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return nothing: what is in memory is as it was written."""
+        """Return an empty tuple: dictionaries are never damaged."""
         _ = self._content
         return ()
 
@@ -117,11 +117,11 @@ class TransientMemory(TransientReading):
         self._writing = threading.RLock()
 
     def snapshot(self) -> TransientReading:
-        """Return the memory as it is now, whatever is written later."""
+        """Return a snapshot of the memory, unchanged by later writes."""
         return TransientReading(self._content)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Keep other threads from writing."""
+        """Return a lock that keeps other threads from writing."""
         return self._writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
@@ -144,7 +144,7 @@ class TransientMemory(TransientReading):
             self._keep(views, records, lessons)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches that bring new views."""
+        """Write batches of new views, all or none."""
         with self._writing:
             before = self._content
             try:
@@ -155,7 +155,7 @@ class TransientMemory(TransientReading):
                 raise
 
     def rename(self, old: str, new: str) -> None:
-        """Give a category another name."""
+        """Rename a category."""
         check_name("a category's name", new)
         with self._writing:
             record = self.category(old)

@@ -1,4 +1,4 @@
-"""A file as what a memory would keep of it: lessons with their contributions, and what belongs to no lesson."""
+"""Content of an RDF file, split into lessons with their contributions and triples that belong to no lesson."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from deixis.printable import shortened
 _ACTIVITY = "http://www.w3.org/ns/prov#Activity"
 
 MAX_TERM = 1_000_000
-"""Maximum number of characters of an IRI or a literal that a memory takes in."""
+"""Maximum number of characters of an IRI or a literal in an imported file."""
 
 Graphs = dict[GraphName, set[ox.Triple]]
 
@@ -48,7 +48,7 @@ def _graphs() -> Graphs:
 
 @dataclass
 class Dump:
-    """The content of a file, by what it is to a memory."""
+    """Content of a file by its role in a memory."""
 
     canonical: Graphs = field(default_factory=_graphs)
     lessons: dict[str, Graphs] = field(default_factory=lambda: defaultdict(_graphs))
@@ -57,7 +57,7 @@ class Dump:
     models: dict[ModelSet, set[ox.Triple]] = field(default_factory=lambda: defaultdict(set))
 
     def quads(self) -> Iterator[ox.Quad]:
-        """Yield everything, as a new memory stores it."""
+        """Yield all quads that a new memory stores for this content."""
         for name, triples in self.canonical.items():
             yield from _in(graph_iri(name), triples)
         for lesson, graphs in self.lessons.items():
@@ -73,9 +73,9 @@ class Dump:
                 yield from _in(graph_iri(name), triples)
 
     def in_order(self) -> list[str]:
-        """Return the lessons in the order of the times at which they say that they started, then by id.
+        """Return the lessons in the order of their stated starting times, then by id.
 
-        The numbers that lessons have in a memory are not exported, so that the order of learning changes no byte.
+        The numbers of lessons in a memory are not exported, so that the order of learning does not change the export.
         """
 
         def started(lesson: str) -> datetime:
@@ -86,40 +86,40 @@ class Dump:
         return sorted(self.lessons, key=lambda lesson: (started(lesson), lesson))
 
     def loose(self, name: GraphName) -> set[ox.Triple]:
-        """Return what a canonical graph holds that no lesson, no learned model and not the package contributed."""
+        """Return the triples of a canonical graph that come from no lesson, no learned model and not the package."""
         held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]
         held += self.models.values() if name is GraphName.LEARNED else ()
         return self.canonical[name].difference(*held) | self.loaded[name]
 
 
 def read_dump(file: Path) -> Dump:
-    """Read a file. Plain triples become a lesson, named after the file, about the asserted graph.
+    """Read a file. Plain triples become the asserted graph of a lesson that is named after the file.
 
-    Raises ImportFormatError for what cannot be read, or speaks of a graph that no memory has.
+    Raises ImportFormatError for a file that cannot be read, or that has a graph unknown to memories.
     """
     dump, plain = Dump(), list[ox.Triple]()
     found: dict[str, list[ox.Triple]] = defaultdict(list)
     for quad in read_quads(file):
         if isinstance(quad.object, ox.Triple):
-            raise ImportFormatError(f"{file}: a triple inside a triple cannot be kept: {quad.object}")
+            raise ImportFormatError(f"{file}: a triple inside a triple cannot be imported: {quad.object}")
         longest = max((term.value for term in quad.triple if not isinstance(term, ox.Triple)), key=len)
         if len(longest) > MAX_TERM:
             raise ImportFormatError(
-                f"{file}: a name or a text has at most {MAX_TERM:,} characters, and '{shortened(longest, 30)}' has "
-                f"{len(longest):,}; shorten it"
+                f"{file}: a name or a text must have at most {MAX_TERM:,} characters, but "
+                f"'{shortened(longest, 30)}' has {len(longest):,}; shorten it"
             )
         if isinstance(quad.graph_name, ox.DefaultGraph):
             plain.append(quad.triple)
         elif isinstance(quad.graph_name, ox.NamedNode):
             found[quad.graph_name.value].append(quad.triple)
         else:
-            raise ImportFormatError(f"{file}: a graph without a name, {quad.graph_name}, has no place in a memory")
+            raise ImportFormatError(f"{file}: a graph must be named by an IRI, got {quad.graph_name}")
     for graph, triples in found.items():
         _place(dump, file, graph).update(ledger.as_stored(with_names(triples)))
     if plain:
         lesson = file.stem
         if lesson in dump.lessons:
-            raise ImportFormatError(f"{file}: holds a lesson '{lesson}' and triples without a graph; rename the file")
+            raise ImportFormatError(f"{file}: it has a lesson '{lesson}' and triples without a graph; rename the file")
         about = iri(learned_iri("lesson", lesson))
         told = [
             ox.Triple(about, iri(W3C.RDF_TYPE), iri(_ACTIVITY)),
@@ -133,10 +133,10 @@ def read_dump(file: Path) -> Dump:
 
 
 def _place(dump: Dump, file: Path, graph: str) -> set[ox.Triple]:
-    """Return where the triples of a graph belong."""
+    """Return the set of triples that those of a graph belong to."""
     name = copied_graph(graph) or CANONICAL.get(ox.NamedNode(graph))
     if name is None:
-        raise ImportFormatError(f"{file}: the graph <{graph}> is none of a memory's; those begin with {GRAPHS}")
+        raise ImportFormatError(f"{file}: the graph <{graph}> is not one of a memory; these begin with {GRAPHS}")
     lesson = lesson_of_graph(graph)
     if lesson is not None:
         return dump.lessons[lesson[0]][name]

@@ -1,4 +1,4 @@
-"""A memory as text, and text as a memory: the user's data is the user's."""
+"""Export a memory as text, and import such a text."""
 
 from __future__ import annotations
 
@@ -27,33 +27,48 @@ from deixis.memory.semantic.rdf.package import packaged
 from deixis.memory.semantic.store import SemanticMemory
 
 TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED, GraphName.EPISODES)
-"""The graphs that an export in Turtle merges."""
+"""Graphs that an export in Turtle merges."""
 
 
 def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
-    """Return everything that a memory keeps, the same text for the same content.
+    """Return the content of a memory as text, the same text for the same content.
 
-    ``trig`` is exact: every graph, and which lesson contributed what. ``turtle`` merges the ontology with what was
-    asserted, inferred and learned, and when, into one graph, for tools such as Protégé. Raises ImportFormatError for
-    others.
+    Parameters
+    ----------
+    memory
+        The memory.
+    format
+        ``trig`` is exact: it has every graph, and which lesson contributed what. ``turtle`` merges the ontology with
+        the asserted, inferred and learned graphs and the episodes into one graph, for tools such as Protégé.
+
+    Raises
+    ------
+    ImportFormatError
+        The format is another one.
     """
     with reading(memory.path):
         if format == "turtle":
             return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
         if format != "trig":
-            raise ImportFormatError(f"no export as '{format}': it is trig or turtle")
+            raise ImportFormatError(f"the export format must be trig or turtle, got '{format}'")
         graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
         copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
         return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
 
 
 def import_dump(file: str | Path, target: str | Path) -> None:
-    """Take a file into a memory, all of it or nothing.
+    """Import a file into a memory, all of it or nothing.
 
-    A TriG or N-Quads file that export wrote gives the same graphs back; into a memory that holds something it is
-    merged, lesson by lesson; learned models are taken where it has none. Plain triples (Turtle, N-Triples, RDF/XML)
-    become a lesson named after the file. Raises ImportFormatError for what cannot be read, RejectedWriteError for what
-    breaks the shapes or another lesson.
+    A TriG or N-Quads file that an export wrote gives the same graphs back. It is merged into a memory with content
+    lesson by lesson; learned models are imported where the memory has none. Plain triples (Turtle, N-Triples, RDF/XML)
+    become a lesson that is named after the file.
+
+    Raises
+    ------
+    ImportFormatError
+        The file cannot be read.
+    RejectedWriteError
+        The file breaks the shapes, or has a known lesson with other content.
     """
     file, target = Path(file), Path(target)
     dump = read_dump(file)
@@ -67,9 +82,9 @@ def import_dump(file: str | Path, target: str | Path) -> None:
 
 
 def merging_dump(memory: SemanticMemory, file: Path) -> Change:
-    """Return the change that takes a file into an open memory, to be committed with what follows from both.
+    """Return the change that imports a file into an open memory, to be committed with what follows from both.
 
-    What the file says follows is left out. Raises as :func:`import_dump`.
+    The inferred graph of the file is left out. Raises as :func:`import_dump`.
     """
     dump = read_dump(file)
     dump.canonical[GraphName.INFERRED].clear()
@@ -87,7 +102,7 @@ def _fill(store: ox.Store, dump: Dump) -> None:
 
 
 def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
-    """Return the change that brings a dump into a memory."""
+    """Return the change that merges a dump into a memory."""
     store, known = memory.store, set(memory.lessons())
     added: dict[GraphName, set[ox.Triple]] = {name: set() for name in GraphName}
     operations: list[ledger.Operation] = []
@@ -122,7 +137,7 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
 
 
 def _loose(store: ox.Store, dump: Dump) -> Iterator[tuple[GraphName, ox.NamedNode, set[ox.Triple]]]:
-    """Yield what belongs to no lesson, by graph; what a lesson says as well is marked as loaded, so that it stays."""
+    """Yield the triples that belong to no lesson, by graph; those that a lesson has too are marked as loaded."""
     for name in CONTRIBUTED:
         loose = dump.loose(name)
         also = {triple for triple in loose if any(ledger.quads_of(store, triple))} | dump.loaded[name]

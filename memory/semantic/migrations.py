@@ -1,4 +1,4 @@
-"""Older formats of semantic memory, brought up to date one version at a time."""
+"""Migrations of semantic memory from older formats, one version at a time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _from_0(old: ox.Store, new: ox.Store) -> None:
 
 
 def _from_1(old: ox.Store, new: ox.Store) -> None:
-    """Copy version 1, which kept no statistics; the next lesson learned or forgotten counts those that are there."""
+    """Copy version 1, which had no statistics; the next lesson learned or forgotten computes them."""
     new.bulk_extend(old)
 
 
@@ -39,4 +39,4 @@ def _from_2(old: ox.Store, new: ox.Store) -> None:
 
 
 MIGRATIONS: dict[int, Migration] = {0: _from_0, 1: _from_1, 2: _from_2}
-"""From a version to the step that leads to the next."""
+"""Migration to the next version, by version."""

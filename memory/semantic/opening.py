@@ -1,4 +1,4 @@
-"""Opening a memory: look, lock, look again, mend what a crash left, bring up to date, open.
+"""Open a memory: inspect it, lock it, inspect it again, finish what a crash interrupted, migrate it, open its store.
 
 A memory in a folder that cannot be written is opened for reading only.
 """
@@ -25,9 +25,9 @@ from deixis.scratch import remove_stale
 
 
 class Opened:
-    """An open store, the folder that it is in, and the lock on it.
+    """An open store with its folder and the lock on it.
 
-    ``read_only`` says why it cannot be written, if it cannot. A forked child must neither use nor free a store.
+    ``read_only`` is the reason why it cannot be written, or None. A forked child must neither use nor free a store.
     """
 
     def __init__(self, folder: Path, lock: OwnerLock | ReaderLock, read_only: str | None = None) -> None:
@@ -37,13 +37,13 @@ class Opened:
         _opened.add(self)
 
     def close(self) -> None:
-        """Close the store, then let go of the lock; in a forked child, neither."""
+        """Close the store, then release the lock; in a forked child do neither."""
         if not self.inherited:
             self.shut()
             self._lock.release()
 
     def shut(self) -> None:
-        """Close the store alone."""
+        """Close the store and keep the lock."""
         del self.store
 
     def reopen(self) -> None:
@@ -51,7 +51,7 @@ class Opened:
         self.store = open_store(self.folder)
 
     def require_writable(self) -> None:
-        """Raise ReadOnlyMemoryError where this is for reading only."""
+        """Raise ReadOnlyMemoryError if this is open for reading only."""
         if self.read_only is not None:
             raise ReadOnlyMemoryError(self.read_only)
 
@@ -60,7 +60,7 @@ _opened: weakref.WeakSet[Opened] = weakref.WeakSet()
 
 
 def _leave_to_parent() -> None:
-    """Keep a forked child from freeing its parent's stores: the threads that this would wait for are not there."""
+    """Keep a forked child from freeing its parent's stores, which would wait for threads that it does not have."""
     for opened in _opened:
         opened.inherited = True
         store = getattr(opened, "store", None)
@@ -71,13 +71,13 @@ def _leave_to_parent() -> None:
 os.register_at_fork(after_in_child=_leave_to_parent)
 
 READABLE = 1
-"""The oldest format that can be read as it is, without being brought up to date."""
+"""Oldest format that can be read without migration."""
 
 
 def open_for_reading(folder: Path) -> ox.Store:
-    """Open the store of a folder that cannot be written; nothing is mended and nothing brought up to date there.
+    """Open the store of a folder that cannot be written, without repairs and migrations.
 
-    Raises MemoryFormatError for a format that has to be brought up to date first.
+    Raises MemoryFormatError for a format that must be migrated first.
     """
     if files.read_mark(folder)["version"] < READABLE:
         raise MemoryFormatError(
@@ -105,12 +105,12 @@ def open_store(folder: Path) -> ox.Store:
 
 
 def _fill(store: ox.Store) -> None:
-    """Fill a new store with what every memory begins with, before it is part of a memory: nobody reads it half full."""
+    """Fill a new store with the packaged ontology and shapes, before it becomes part of a memory."""
     store.bulk_extend(packaged_quads())
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
-    """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open`` does."""
+    """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open``."""
     begin_opening(folder)
     remove_stale()
     state = files.inspect(folder)
@@ -137,7 +137,7 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
             lock.release(undo=True)
             raise
         try:
-            for log in (folder / files.STORE).glob("LOG.old.*"):  # the store leaves one behind at every opening
+            for log in (folder / files.STORE).glob("LOG.old.*"):  # the store makes one at every opening
                 with contextlib.suppress(OSError):
                     log.unlink()
             _update_package(opened)
@@ -161,18 +161,18 @@ def _open_for_reading(folder: Path, reason: str) -> Opened:
 
 
 def _nothing(folder: Path, state: FolderState) -> str:
-    """Return what there is where nothing was learned."""
+    """Return the part of a message that says why there is no memory in a folder."""
     from deixis.memory.perceptual.in_folder import has_views
 
     if state is FolderState.ABSENT:
         return f"there is no memory at {folder}"
     if has_views(folder):
-        return f"the memory at {folder} has views only, nothing was learned into it yet"
+        return f"the memory at {folder} has views, but no lessons yet"
     return f"there is no memory yet in the empty folder {folder}"
 
 
 def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
-    """Create, finish or migrate the folder between locking and opening; check for damage before any change."""
+    """Create, finish or migrate the folder after locking it; check for damage before any change."""
     state = files.inspect(folder)
     if state is FolderState.EMPTY:
         with committed(folder):
@@ -185,7 +185,7 @@ def _prepare(folder: Path, fill: Callable[[ox.Store], None]) -> None:
 
 
 def _update_package(opened: Opened) -> None:
-    """Bring the ontology and the shapes to the packaged version, if they are of another one."""
+    """Update the ontology and the shapes to the packaged version, if they are of another one."""
     mark, digest = files.read_mark(opened.folder), package_digest()
     if mark.get("package") == digest:
         return

@@ -1,4 +1,4 @@
-"""Counting what a memory keeps."""
+"""Count the content of a semantic memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from deixis.ontology.vocabulary import DX, W3C
 
 @dataclass(frozen=True)
 class MemoryStats:
-    """How much a memory keeps: triples by graph, what they describe, bytes on disk, and the format's version."""
+    """Size of a memory: triples by graph, what they describe, bytes on disk, and the version of the format."""
 
     triples: dict[GraphName, int]
     lessons: int
@@ -28,7 +28,7 @@ class MemoryStats:
 
 
 def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
-    """Count a store's content."""
+    """Return the counts of a store's content."""
     learned, asserted = graph_iri(GraphName.LEARNED), graph_iri(GraphName.ASSERTED)
     return MemoryStats(
         triples={name: _number(store, f"{{ GRAPH {graph_iri(name)} {{ ?x ?p ?o }} }}", "*") for name in GraphName},

@@ -1,4 +1,4 @@
-"""Semantic memory: what is known, as RDF in named graphs that outlive the process.
+"""Semantic memory: RDF in named graphs on disk.
 
 >>> import tempfile
 >>> with SemanticMemory.open(Path(tempfile.mkdtemp()) / "memory", create=True) as memory:
@@ -65,11 +65,11 @@ if TYPE_CHECKING:
 
 
 def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
-    """See :meth:`deixis.memory.semantic.store.SemanticMemory.load`."""
+    """Load triples in a copy of the store: see :meth:`SemanticMemory.load`."""
     from deixis.memory.semantic.validation.validate import check_store
 
     if GraphName.INFERRED in contributions:
-        raise RejectedWriteError("what is inferred cannot be loaded: it follows from the rest")
+        raise RejectedWriteError("the inferred graph cannot be loaded: it is computed from the others")
 
     def fill(aside: Path) -> None:
         opened.store.backup(aside)
@@ -77,7 +77,7 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
         for name, triples in contributions.items():
             store.bulk_extend(_quads(opened.store, GraphName(name), triples))
         for quad in list(store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)):
-            store.remove(quad)  # what follows from everything is to be worked out anew
+            store.remove(quad)  # what follows from the content must be recomputed
         merge_if_overlapping(store)
         check_store(store)
         store.flush()
@@ -86,7 +86,7 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
 
 
 def commit_aside(opened: Opened, write: Callable[[SemanticMemory], None]) -> None:
-    """See :meth:`deixis.memory.semantic.store.SemanticMemory.commit_in_bulk`."""
+    """Commit many parts in a copy of the store: see :meth:`SemanticMemory.commit_in_bulk`."""
 
     def fill(aside: Path) -> None:
         opened.store.backup(aside)
@@ -101,8 +101,7 @@ def commit_aside(opened: Opened, write: Callable[[SemanticMemory], None]) -> Non
 
 
 def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
-    """Write the store anew with what it holds, and nothing else: the store itself never gives back the texts of what
-    was removed."""
+    """Rewrite the store with its present content only, as the store itself never frees the texts of removed triples."""
 
     def fill(aside: Path) -> None:
         store = ox.Store(aside)
@@ -113,7 +112,7 @@ def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
 
 
 def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any]) -> None:
-    """Put a store that ``fill`` makes in a folder in the place of the open one; where it fails, nothing is changed."""
+    """Replace the open store with one that ``fill`` makes in a folder; if it fails, change nothing."""
     aside = opened.folder / files.NEW
     with committed(opened.folder):
         shutil.rmtree(aside, ignore_errors=True)
@@ -131,7 +130,7 @@ def _swap_in(opened: Opened, fill: Callable[[Path], None], mark: dict[str, Any])
 
 
 def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Quad]:
-    """Yield the quads to write: where the graph has content, a triple that is there already is marked as loaded too."""
+    """Yield the quads to write; where the graph has content, a triple that exists already is marked as loaded too."""
     graph, mark = graph_iri(name), loaded_graph(name)
     merged = name in UNION and store.contains_named_graph(MERGED)
     held = any(store.quads_for_pattern(None, None, None, graph))
@@ -145,7 +144,7 @@ def _quads(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> It
 
 
 MIN_FORGOTTEN = 10
-"""Minimum number of forgotten lessons for which the store is written anew, to give disk space back."""
+"""Minimum number of forgotten lessons after which the store is rewritten, to free disk space."""
 
 
 class SemanticMemory(Closing):
@@ -154,8 +153,8 @@ class SemanticMemory(Closing):
     def __init__(self, opened: Opened) -> None:
         self._opened: Opened | None = opened
         self._views: list[rdflib.Dataset] = []
-        self._forgets = 0  # how many lessons were forgotten
-        self._union: list[ox.NamedNode] | None = None  # the graphs that a query looks at, since the last write
+        self._forgets = 0  # number of forgotten lessons
+        self._union: list[ox.NamedNode] | None = None  # graphs that a query reads; None after a write
         self._queries: SnapshotQueries | None = None
 
     @classmethod
@@ -163,15 +162,15 @@ class SemanticMemory(Closing):
         """Open a memory, or make one with ``create``.
 
         A memory in a folder that cannot be written is opened for reading only: a write raises ReadOnlyMemoryError.
-        Raises MemoryBusyError where somebody has it open, MemoryFormatError where there is none or it cannot be
-        believed, MemoryWriteError where the folder cannot be written. A failed open changes nothing.
+        Raises MemoryBusyError where another process has it open, MemoryFormatError where there is no memory or its
+        files are invalid, MemoryWriteError where the folder cannot be written. A failed opening changes nothing.
         """
         return cls(open_memory(Path(path), create))
 
     def close(self) -> None:
-        """Let go of the folder; views made by :meth:`dataset` are of no use any more.
+        """Close the memory; views made by :meth:`dataset` cannot be used afterwards.
 
-        Where as much was forgotten as is left, the disk that it took is given back.
+        If as many lessons were forgotten as are left, the disk space of the forgotten ones is freed.
         """
         if self._opened is not None:
             opened, self._opened = self._opened, None
@@ -186,12 +185,12 @@ class SemanticMemory(Closing):
 
     @property
     def path(self) -> Path:
-        """The folder."""
+        """Folder of the memory."""
         return self._open.folder
 
     @property
     def store(self) -> ox.Store:
-        """The Oxigraph store; read it, and leave writing to this class."""
+        """The Oxigraph store, for reading; write with the methods of this class."""
         return self._open.store
 
     @property
@@ -209,7 +208,7 @@ class SemanticMemory(Closing):
         return opened
 
     def require_writable(self) -> None:
-        """Raise ReadOnlyMemoryError where the memory is in a folder that cannot be written."""
+        """Raise ReadOnlyMemoryError if the memory is in a folder that cannot be written."""
         self._open.require_writable()
 
     def learn(
@@ -219,7 +218,7 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Write a lesson, and what now follows from everything, in one step; see :meth:`learn_all`."""
+        """Write a lesson, and what then follows from all lessons, in one step; see :meth:`learn_all`."""
         self.learn_all({lesson: contributions}, inferred, models)
 
     def learn_all(
@@ -228,31 +227,33 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Write lessons, and what now follows from everything, in one step.
+        """Write lessons, and what then follows from all lessons, in one step.
 
-        ``inferred`` replaces the inferred graph, ``models`` the sets of models that are given. Blank nodes become
-        names. Raises RejectedWriteError, having written nothing, where a lesson is known already, says nothing, or
-        would break the shapes.
+        ``inferred`` replaces the inferred graph, ``models`` replaces the sets of models in it. Blank nodes get names.
+        Raises RejectedWriteError, having written nothing, where a lesson is known already, has no triples, or breaks
+        the shapes.
         """
         self.commit(
             together(self.arrival(lessons), concluding(self.store, inferred), modelling(self.store, models or {}))
         )
 
     def arrival(self, lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]]) -> Change:
-        """Return the change that new lessons make, to be committed with what follows from it; raises as
-        :meth:`learn_all`."""
+        """Return the change that new lessons make, to be committed with what follows from it.
+
+        Raises as :meth:`learn_all`.
+        """
         changes = []
         for lesson, contributions in lessons.items():
             if self.knows(lesson):
-                raise RejectedWriteError(f"lesson '{lesson}' is known already: forget it first, or choose another name")
+                raise RejectedWriteError(f"there is already a lesson '{lesson}': forget it first, or choose another")
             said = incoming(lesson, contributions)
             if not any(said.values()):
-                raise RejectedWriteError(f"lesson '{lesson}' says nothing: give at least one triple")
+                raise RejectedWriteError(f"lesson '{lesson}' has no triples: give at least one")
             changes.append(arriving(self.store, lesson, said))
         return together(*changes, Change(operations=tuple(ledger.numbering(self.store, list(lessons)))))
 
     def departure(self, lesson: str) -> Change:
-        """Return the change that takes a lesson back, to be committed with what follows; raises as :meth:`forget`."""
+        """Return the change that removes a lesson, to be committed with what follows; raise as :meth:`forget`."""
         self._known(lesson)
         with reading(self.path):
             self._forgets += 1
@@ -260,23 +261,22 @@ class SemanticMemory(Closing):
             return together(departing(self.store, lesson), unlinking(lesson), number)
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
-        """Take back what only this lesson contributed, and replace the inferred graph and models, in one step.
+        """Remove what only this lesson contributed, and replace the inferred graph and models, in one step.
 
         Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
-        something that stays depends on what would go.
+        something that stays depends on something that is removed.
         """
         gone = self.departure(lesson)
         self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
     def keep_models(self, models: Models) -> None:
-        """Replace the sets of learned models that are given, in one step; an empty set takes them away."""
+        """Replace some sets of learned models in one step; an empty set removes the models."""
         change = modelling(self.store, models)
         if change.operations:
             self.commit(change, self.kept_up() if ModelSet.SIZES not in models else None)
 
     def models(self, which: ModelSet, properties: Iterable[str] | None = None) -> list[ox.Triple]:
-        """Return the triples of a set of learned models; with ``properties`` those alone, without reading the
-        others."""
+        """Return the triples of a set of learned models, or only those with some properties."""
         graph = models_graph(which)
         with reading(self.path):
             if properties is None:
@@ -285,11 +285,10 @@ class SemanticMemory(Closing):
             return [quad.triple for name in named for quad in self.store.quads_for_pattern(None, name, None, graph)]
 
     def load(self, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
-        """Write much at once that belongs to no lesson: fast, all or nothing, guarded by the same shapes.
+        """Write many triples that belong to no lesson: fast, all or nothing, checked by the same shapes.
 
-        Raises RejectedWriteError where the shapes would be broken, and writes nothing then.
+        Raises RejectedWriteError, having written nothing, where they break the shapes.
         """
-
         self._drop_views()
         with self._writing():
             load_aside(self._writable, contributions)
@@ -300,12 +299,12 @@ class SemanticMemory(Closing):
             return ledger.lessons(self.store)
 
     def knows(self, lesson: str) -> bool:
-        """Return whether there is a lesson of that id."""
+        """Return whether there is a lesson with this id."""
         with reading(self.path):
             return ledger.knows(self.store, lesson)
 
     def contributions(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-        """Return what one lesson contributed, by graph; raises UnknownLessonError where there is none."""
+        """Return the contributions of one lesson, by graph; raise UnknownLessonError for an unknown lesson."""
         self._known(lesson)
         with reading(self.path):
             return ledger.copies(self.store, lesson)
@@ -318,7 +317,7 @@ class SemanticMemory(Closing):
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Ask SELECT, ASK, CONSTRUCT or DESCRIBE of the ontology, asserted, inferred and learned graphs together.
+        """Run a query (SELECT, ASK, CONSTRUCT or DESCRIBE) over the ontology and what was asserted, inferred and learned.
 
         ``GRAPH ?g`` reaches all six canonical graphs. Another process answers, from a snapshot of the store.
 
@@ -327,15 +326,15 @@ class SemanticMemory(Closing):
         sparql
             The query.
         time_limit
-            Seconds in which it must be answered.
+            Seconds until the answer.
         memory_limit
-            Bytes that evaluating it may take. The answer may take a sixteenth of them.
+            Bytes for the evaluation. The answer may take a sixteenth of them.
 
         Raises
         ------
         QueryError
-            With the place, for what is refused, nested too deeply, or cannot be understood, and for a term in the
-            namespace of the vocabulary that neither it nor the memory has.
+            The query is refused, nested too deeply or malformed, or names a term in the namespace of the vocabulary
+            that neither it nor the memory has; the message has the place.
         QueryTimeoutError, QueryMemoryError
             A limit is reached. Both are QueryErrors; there are no partial answers.
         """
@@ -348,9 +347,9 @@ class SemanticMemory(Closing):
             return run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
 
     def dataset(self) -> rdflib.Dataset:
-        """Return a live view of the six canonical graphs for rdflib; to be read only.
+        """Return a live, read-only view of the six canonical graphs for rdflib.
 
-        Its ``query`` takes text, and is bounded as :meth:`query` is.
+        Its ``query`` takes text, and has the limits of :meth:`query`.
         """
         from deixis.memory.semantic.queries.rdflib_view import dataset_view
 
@@ -359,7 +358,7 @@ class SemanticMemory(Closing):
         return view
 
     def _answer(self, request: Mapping[str, Any], limits: QueryLimits) -> tuple[bytes, bytes]:
-        """Return what the process that answers queries says."""
+        """Return the reply of the process that answers queries."""
         from deixis.memory.semantic.queries.snapshot import SnapshotQueries
 
         if self._queries is None:
@@ -367,16 +366,16 @@ class SemanticMemory(Closing):
         return self._queries.ask(self.store, request, limits)
 
     def stats(self) -> MemoryStats:
-        """Return counts of what is kept."""
+        """Return counts of the content."""
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
     def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
-        """Write a change in one step, if what comes of it keeps to the shapes; raise RejectedWriteError if not.
+        """Write a change in one step if the result conforms to the shapes; otherwise raise RejectedWriteError.
 
-        ``kept_up`` says that what follows from everything is right after the change, and for which rules; see
-        :meth:`kept_up`. Without it, what follows is to be worked out anew. ``journal`` is the id of the write over both
-        stores that this commit decides, where it does.
+        ``kept_up`` are the rules by which the inferred graph and the statistics are up to date after the change; see
+        :meth:`kept_up`. Without it they must be recomputed. ``journal`` is the id of the write over both stores that
+        this commit decides, if it decides one.
         """
         from deixis.memory.semantic.validation.validate import check_change
 
@@ -390,18 +389,17 @@ class SemanticMemory(Closing):
             self.store.flush()
 
     def commit_in_bulk(self, write: Callable[[SemanticMemory], None]) -> None:
-        """Commit much at once: ``write`` commits its parts to a copy of this memory, which then takes its place.
+        """Commit many changes at once: ``write`` commits them to a copy of this memory, which then replaces it.
 
-        Several times as fast as one commit of all, in the room that one part takes. All or nothing: where ``write``
-        raises, this memory stays as it is.
+        This is several times as fast as one commit of all, in the memory that one change takes. If ``write`` raises,
+        this memory stays as it is.
         """
         self._drop_views()
         with self._writing():
             commit_aside(self._writable, write)
 
     def kept_up(self) -> str | None:
-        """Return the rules by which the inferred graph and the statistics are right; None where they are to be made
-        anew."""
+        """Return the rules by which the inferred graph and the statistics are up to date; None means they are not."""
         with reading(self.path):
             return ledger.kept_up(self.store)
 
@@ -409,14 +407,12 @@ class SemanticMemory(Closing):
         if not self.knows(lesson):
             known = self.lessons()
             near = nearest(lesson, list(known))
-            hint = (
-                f"did you mean '{near}'?" if near else f"it holds: {', '.join(known[-5:])}" if known else "it has none"
-            )
+            hint = f"did you mean '{near}'?" if near else f"it has: {', '.join(known[-5:])}" if known else "it is empty"
             raise UnknownLessonError(f"no lesson '{lesson}' in the memory at {self.path}; {hint}")
 
     @contextlib.contextmanager
     def _writing(self) -> Iterator[None]:
-        """Have queries look anew at a store that is written."""
+        """Make queries read the store again after it is written."""
         try:
             yield
         finally:
@@ -431,7 +427,7 @@ class SemanticMemory(Closing):
 
 
 class _OpenedCopy(Opened):
-    """The store of a copy, which needs no lock: nobody else knows of it."""
+    """The store of a copy, which needs no lock, as only this process knows the copy."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.read_only, self.inherited = folder, None, False
@@ -442,7 +438,7 @@ class _OpenedCopy(Opened):
 
 
 class _Copy(SemanticMemory):
-    """A copy of a memory, to be swapped in when everything is in it; its commits are fast, and not in one step."""
+    """A copy of a memory that replaces it when it is complete; its commits are fast, and not atomic."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(_OpenedCopy(folder))
@@ -459,9 +455,9 @@ class _Copy(SemanticMemory):
         ledger.update_in_bulk(self.store, operations)
 
     def finish(self) -> None:
-        """Write what is to be written once, when all is in.
+        """Write what is written once, after all commits.
 
-        Each commit leaves files of its own; until they are put in order a look-up may have to try many of them.
+        Each commit makes files of its own; until they are compacted, a look-up may have to read many of them.
         """
         if self._overlapping:
             self.store.update(BUILD)
@@ -470,11 +466,10 @@ class _Copy(SemanticMemory):
 
 
 def _give_back(opened: Opened, forgotten: int) -> None:
-    """Write a store anew that holds no more lessons than were forgotten since it was; where that fails, it stays.
+    """Rewrite a store that has no more lessons than were forgotten since the last rewrite; ignore a failure.
 
-    So every lesson that is forgotten pays for one that is copied, however many there are.
+    So each forgotten lesson pays for copying one lesson, however many there are.
     """
-
     with contextlib.suppress(MemoryWriteError, MemoryFormatError, OSError):
         mark = read_mark(opened.folder)
         gone = int(mark.pop("forgotten", 0)) + forgotten

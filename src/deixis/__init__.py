@@ -1,7 +1,7 @@
-"""Deixis: words that get their meaning from the scene in front of you.
+"""Ground descriptions of tables in perceived scenes: words that get their meaning from the scene.
 
-Reads how a table is laid, looks at a laid table, and says which perceived thing each word means, what the evidence
-cannot tell apart, and what follows from the description.
+Deixis reads how a table is laid, looks at a laid table, and reports which perceived thing each word means, what the
+evidence cannot distinguish, and what follows from the description.
 
 >>> import deixis
 >>> script = deixis.read_script(text="napkin on plate; fork left of plate; spoon right of plate")
@@ -114,7 +114,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Loads what is asked for only then, so that importing one room never pays for another."""
+    """Load an exported name on first use, so that importing one folder never loads another."""
     if name not in _HOMES:
         raise AttributeError(f"module 'deixis' has no attribute '{name}'")
     from importlib import import_module

@@ -1,4 +1,4 @@
-"""``python -m deixis``: the command line."""
+"""Entry point of ``python -m deixis``: the command line."""
 
 from deixis.cli.app import run
 

@@ -1,8 +1,8 @@
-"""Answers that show themselves: as JSON, text, a data frame, a picture, and in a notebook.
+"""Base class of results that can be shown as JSON, text, a data frame, a picture, and in a notebook.
 
-Each type of answer derives from :class:`Answer`. How it is rendered is registered by the name of its class in
-:mod:`deixis.report.renderers`, which is looked up when a method is called: so no folder of the reasoning depends on the
-shell, and no answer imports matplotlib before it is drawn.
+Each type of answer derives from :class:`Answer`. Its rendering is registered by the name of its class in
+:mod:`deixis.report.renderers`, which is looked up when a method is called: so no module of the reasoning imports the
+command line, and no answer imports matplotlib before it is drawn.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Answer:
-    """Base class of the results that users hold.
+    """Base class of results.
 
     ``repr`` and ``str`` give one line; :meth:`to_text` gives what the command of the same name prints.
 

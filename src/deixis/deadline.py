@@ -1,4 +1,4 @@
-"""Deadlines: the moment at which work must stop, as one type on one clock."""
+"""Time limits of computations: deadlines on one clock."""
 
 from __future__ import annotations
 
@@ -12,23 +12,26 @@ from typing import Self
 
 
 class Clock:
-    """The seconds of ``time.monotonic``, but for those in which the clock stood still."""
+    """Seconds of ``time.monotonic``, without those in which the clock was stopped."""
 
     def __init__(self) -> None:
         self._lock, self._holders = threading.Lock(), 0
-        self._state: tuple[float | None, float] = None, 0.0  # since when it stands still; how long it did before
+        self._state: tuple[float | None, float] = None, 0.0  # start of this stop; seconds of earlier ones
 
     def now(self) -> float:
+        """Return the seconds of the clock."""
         since, before = self._state
         return (time.monotonic() if since is None else since) - before
 
     def stop(self) -> None:
+        """Stop the clock until :meth:`go_on` is called as many times as this."""
         with self._lock:
             self._holders += 1
             if self._holders == 1:
                 self._state = time.monotonic(), self._state[1]
 
     def go_on(self) -> None:
+        """Undo one call of :meth:`stop`."""
         with self._lock:
             since, before = self._state
             self._holders = max(0, self._holders - 1)
@@ -37,12 +40,12 @@ class Clock:
 
 
 CLOCK = Clock()
-"""The clock of all deadlines of a process."""
+"""Clock of all deadlines of a process."""
 
 
 @contextmanager
 def clock_stopped() -> Iterator[None]:
-    """Stop the clock of all deadlines: for what is done once, such as compiling, and is no part of the work.
+    """Stop the clock of all deadlines, for work that is done once and does not count, such as compiling.
 
     >>> deadline = Deadline.after(0.05)
     >>> with clock_stopped():
@@ -61,14 +64,14 @@ def clock_stopped() -> Iterator[None]:
 class Deadline:
     """A moment at which work must stop.
 
-    Work that is split into phases gives each a share of the time that is left, so that one time limit holds for all
-    of them. The clock is ``time.monotonic``, which does not jump when the system's clock is set; it stands still while
-    code is compiled (:func:`clock_stopped`).
+    Each phase of a computation gets a share of the time left, so that one time limit holds for all of them. The clock
+    is ``time.monotonic``, which does not jump when the system's clock is set; it is stopped while code is compiled
+    (:func:`clock_stopped`).
 
     Parameters
     ----------
     at
-        The moment in seconds of the clock; infinity means that the work is not limited.
+        The moment in seconds of the clock; infinity means no limit.
 
     Examples
     --------
@@ -83,7 +86,7 @@ class Deadline:
 
     @classmethod
     def after(cls, seconds: float | None) -> Self:
-        """Return the deadline that many seconds from now; None means no limit."""
+        """Return the deadline ``seconds`` from now; None means no limit."""
         return cls(math.inf if seconds is None else CLOCK.now() + seconds)
 
     @classmethod
@@ -98,7 +101,7 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
-        """Whether no time is left."""
+        """True if no time is left."""
         return CLOCK.now() >= self.at
 
     def share(self, fraction: float) -> Self:
@@ -112,5 +115,5 @@ class Deadline:
         return type(self)(min(self.at, CLOCK.now() + seconds))
 
     def earlier(self, seconds: float) -> Self:
-        """Return the deadline that many seconds earlier, which leaves time for what has to be done after the work."""
+        """Return the deadline ``seconds`` earlier, which leaves time for work after it."""
         return type(self)(self.at - seconds)

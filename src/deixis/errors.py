@@ -1,28 +1,28 @@
-"""The root of every error that Deixis raises on purpose, and the ones of this room."""
+"""Base class of all errors that Deixis raises, and errors about vocabulary and graphs."""
 
 from __future__ import annotations
 
 from deixis.printable import shortened, visible_line
 
 MAX_LINES = 250
-"""Lines of a message that are shown."""
+"""Maximum number of lines of a message that are shown."""
 
 
 class DeixisError(Exception):
-    """Root of the errors of all rooms.
+    r"""Base class of all errors of Deixis.
 
-    Each also derives from the built-in that a caller would expect, and its message says what is wrong, where, and
-    what to do. The command line prints it in one piece and exits with 2.
+    Each error also derives from the built-in that a caller would expect. Its message says what is wrong, where, and
+    what to do. The command line prints the message and exits with 2.
 
-    A message is one line, unless ``several_lines``. Whatever names and values it repeats, it is safe to print: control
+    A message is one line, unless ``several_lines``. It is safe to print, whatever names and values it quotes: control
     characters are shown as escapes, and a long line is shortened.
 
-    >>> print(DeixisError("a name\\nof two lines"))
-    a name\\nof two lines
+    >>> print(DeixisError("a name\nof two lines"))
+    a name\nof two lines
     """
 
     several_lines = False
-    """Whether line ends belong to the message."""
+    """True if the message may have several lines."""
 
     def __str__(self) -> str:
         text = self._message()
@@ -33,7 +33,7 @@ class DeixisError(Exception):
         return "\n".join(shown)
 
     def _message(self) -> str:
-        """Return what is to be said, as it stands."""
+        """Return the message, neither escaped nor shortened."""
         return str(self.args[0]) if len(self.args) == 1 else super().__str__()
 
 
@@ -42,7 +42,7 @@ class UnknownTermError(DeixisError, KeyError):
 
 
 class OntologyError(DeixisError, ValueError):
-    """An ontology file that cannot be read, or does not say what code needs of it."""
+    """An ontology file that cannot be read, or lacks something that the code needs."""
 
 
 class GraphError(DeixisError, ValueError):

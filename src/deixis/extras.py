@@ -1,6 +1,6 @@
-"""The optional packages: which extra of Deixis brings each, and the error where one is not installed.
+"""Optional packages, the extra of Deixis that installs each, and the error where one is not installed.
 
-Every import of an optional package stands behind :func:`require`, inside the function that uses it.
+Every import of an optional package follows a call of :func:`require`, inside the function that uses the package.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from deixis.errors import DeixisError
 
 @dataclass(frozen=True, slots=True)
 class OptionalPackage:
-    """An optional package: the distribution that holds it, and the extra in ``pyproject.toml`` that names it.
+    """An optional package: its distribution, and the extra in ``pyproject.toml`` that installs it.
 
-    ``extra`` is None for a package that only users choose to install.
+    ``extra`` is None for a package that belongs to no extra.
     """
 
     distribution: str
@@ -29,11 +29,11 @@ OPTIONAL = {
     "pandas": OptionalPackage("pandas", None),
     "sklearn": OptionalPackage("scikit-learn", "experiments"),
 }
-"""The optional packages by the names under which they are imported."""
+"""Optional packages by the names under which they are imported."""
 
 
 class MissingExtraError(DeixisError, ImportError):
-    """An optional package is not installed; the message names the extra that brings it."""
+    """An optional package that is not installed; the message names the extra that installs it."""
 
 
 def require(package: str, purpose: str) -> None:

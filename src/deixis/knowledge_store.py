@@ -1,4 +1,4 @@
-"""What a session knows: the semantic memory, opened when it is needed, and what follows from it for the next table."""
+"""The semantic memory of a session, opened on demand, and the words and sizes learned in it."""
 
 from __future__ import annotations
 
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 
 
 class KnowledgeStore(Closing):
-    """Layouts, lessons, words and sizes as they were learned; the memory is held from the first call that needs it."""
+    """Learned layouts, lessons, words and sizes; the memory stays open from the first call that needs it."""
 
     def __init__(self, path: Path, ontology: Ontology | None = None) -> None:
         self._given = ontology
         self._memory = OnDemand(path, _open)
-        self._meaning: Meaning | None = None  # what is in force, since the last change
+        self._meaning: Meaning | None = None  # words and sizes in force; None after a change
 
     @cached_property
     def ontology(self) -> Ontology:
-        """The words that scripts may use: those that were given, else the shipped ones."""
+        """Words that scripts may use: the given ones, else the shipped ones."""
         from deixis.ontology.tbox import default_ontology
 
         return default_ontology() if self._given is None else self._given
@@ -49,31 +49,32 @@ class KnowledgeStore(Closing):
         return self._memory.path
 
     def close(self) -> None:
-        """Let go of the memory; what would need it afterwards raises MemoryFormatError."""
+        """Close the memory; a later call that needs it raises MemoryFormatError."""
         self._meaning = None
         self._memory.close()
 
     def require_usable(self) -> None:
-        """Raise MemoryFormatError where this was closed."""
+        """Raise MemoryFormatError if this store is closed."""
         self._memory.require_usable()
 
     def exists(self) -> bool:
-        """Return whether there is a memory at the path; raises MemoryFormatError where something else or a damaged
-        one is."""
+        """Return whether there is a memory at the path.
+
+        Raises MemoryFormatError where the path holds something else, or a damaged memory.
+        """
         from deixis.memory.folder import FolderState, inspect
 
         return self._memory.is_open or inspect(self.path) not in (FolderState.ABSENT, FolderState.EMPTY)
 
     def memory(self, create: bool = False) -> SemanticMemory:
-        """Return the open memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
         return self._memory.get(create)
 
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force: what is shipped, but for what was learned; where there is no memory, all
-        of it.
+        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
 
-        Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
-        has the memory.
+        Raises OntologyError where a learned model in the memory is incomplete, MemoryBusyError where another process
+        has the memory open.
         """
         from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 
@@ -92,14 +93,14 @@ class KnowledgeStore(Closing):
         return Meaning(shipped_models().replaced(*words) if words else None, sizes)
 
     def recollection(self) -> Recollection:
-        """Return all lessons of the memory, ready to be learned from; none where there is no memory."""
+        """Return all lessons of the memory, ready to be learned from; nothing where there is no memory."""
         from deixis.learning.recollection import Recollection
         from deixis.learning.update import remembered
 
         return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
 
     def keeping(self, lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]]) -> Commit:
-        """Return what writes lessons, what follows from them, and what views each taught, in one commit.
+        """Return a function that commits lessons, what follows from them, and the views that each taught, in one step.
 
         Raises DeixisError, having changed nothing, if they are refused.
         """
@@ -119,9 +120,9 @@ class KnowledgeStore(Closing):
         return committing
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
-        """Fit what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
+        """Fit the models of relation words to all lessons, and to examples: scripts, each with a labelled scene.
 
-        The examples are kept as lessons, and the models take the place of those that were learned before. Raises
+        The examples are kept as lessons, and the models replace those that were learned before. Raises
         NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
         that is not above 0.
         """
@@ -131,30 +132,32 @@ class KnowledgeStore(Closing):
         taken = self.memory().knows if self.exists() else lambda view_id: False
         lessons, left_out = new_lessons(examples, self.recollection(), taken)
         if not lessons and not self.exists():
-            none = f"nothing is remembered at {self.path}, and no example teaches anything"
-            raise NothingFoundError("; ".join((f"nothing to learn: {none}", *left_out)))
+            reason = f"there are no lessons at {self.path}, and no example teaches anything"
+            raise NothingFoundError("; ".join((f"nothing to learn: {reason}", *left_out)))
         learned = keep_words(self.memory(create=True), self.ontology, lessons, strength)
         self._meaning = None
         return replace(learned, kept=tuple(lesson.id for lesson in lessons), left_out=(*learned.left_out, *left_out))
 
     def forget_relations(self) -> None:
-        """Take the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
+        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
         from deixis.learning.update import forget_words
 
         forget_words(self.memory())
         self._meaning = None
 
     def forgetting(self, lesson: str) -> Commit:
-        """Return what takes back one lesson, with everything that follows from it alone, and what it taught of words
-        and sizes; raises UnknownLessonError."""
+        """Return a function that removes one lesson, what follows from it only, and what it taught of words and sizes.
+
+        Raises UnknownLessonError.
+        """
         from deixis.learning.update import forgetting
 
         return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
 
     def import_(self, file: str | Path) -> None:
-        """Take in what another memory exported, or plain triples; what is there stays.
+        """Import the export of another memory, or plain triples; keep what the memory has.
 
-        Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
+        Raises InconsistencyError, having changed nothing, where the file contradicts the memory.
         """
         from deixis.learning.update import take_in
 
@@ -171,14 +174,16 @@ class KnowledgeStore(Closing):
         return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
 
     def layout(self, name: str) -> LayoutConcept:
-        """Return the layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for
-        none."""
+        """Return the layout learned last with this name, or the layout of the lesson with this id.
+
+        Raises UnknownTermError where there is neither.
+        """
         from deixis.learning.recollection import find_layout
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
     def show(self, name: str) -> str:
-        """Return a learned layout as a script again."""
+        """Return a learned layout as the text of a script."""
         from deixis.grammar.format import layout_script
 
         return layout_script(self.layout(name), self.ontology)
@@ -186,14 +191,14 @@ class KnowledgeStore(Closing):
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Ask SPARQL of everything remembered: see :meth:`SemanticMemory.query`."""
+        """Run a SPARQL query over the memory: see :meth:`SemanticMemory.query`."""
         return self.memory().query(sparql, time_limit, memory_limit)
 
     def owl(self) -> ObjectView:
-        """Return the ontology with everything learned as owlready2's objects: see :class:`ObjectView`.
+        """Return the ontology with everything learned as objects of owlready2: see :class:`ObjectView`.
 
-        It has what is stated and what follows as they are now, and knows of no later change. Where there is no memory,
-        it has the ontology alone.
+        The view has what is stated and inferred now, and does not see later changes. Without a memory it has the
+        ontology only.
         """
         import pyoxigraph as ox
 

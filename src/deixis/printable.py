@@ -1,7 +1,7 @@
 r"""Text that is safe to print: control characters as escapes, long text shortened.
 
-What users and files say may hold characters that move a terminal's cursor, change its colours, or turn the order of
-letters round. Each is shown by its code, as in ``\u001b``, which JSON, Turtle and SPARQL read as that character.
+Input from users and files may have characters that move a terminal's cursor, change its colours, or reverse the order
+of letters. Each is shown by its code, such as ``\u001b``, which JSON, Turtle and SPARQL read as that character.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 
 MAX_MESSAGE = 500
-"""Characters of a line of a message that are shown."""
+"""Maximum number of characters of a line of a message that are shown."""
 
 WINDOW = 100
-"""Characters of a quoted line that are shown."""
+"""Maximum number of characters of a quoted line that are shown."""
 
 _UNSAFE = re.compile(
     r"\r(?!\n)|[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u206f\ufff9-\ufffb\ud800-\udfff]"
@@ -21,7 +21,7 @@ _SHORT = {"\n": r"\n", "\r": r"\r", "\t": r"\t"}
 
 
 def visible(text: str) -> str:
-    r"""Return a text of lines with every other control character as an escape; tabs and line ends stay.
+    r"""Return a text with every control character except tabs and line ends as an escape.
 
     >>> print(visible("fork\x1b[2J\nknife\u202e"))
     fork\u001b[2J
@@ -40,7 +40,7 @@ def visible_line(text: str) -> str:
 
 
 def shortened(text: str, limit: int = MAX_MESSAGE) -> str:
-    """Return a text of at most ``limit`` characters: of a longer one its beginning and its end.
+    """Return a text of at most ``limit`` characters: the beginning and the end of a longer one.
 
     >>> shortened("a" * 100 + " must be a name", 30)
     'aaaaaaaaaaaaaaaaaaa… be a name'
@@ -52,11 +52,11 @@ def shortened(text: str, limit: int = MAX_MESSAGE) -> str:
 
 
 def window(line: str, column: int) -> tuple[str, int]:
-    """Return what is shown of a line around a column (from 0), and the column in that.
+    r"""Return the part of a line around a column (from 0), and the column within that part.
 
-    What cannot be printed takes one column: blanks as spaces, anything else as the replacement character.
+    Each unprintable character takes one column: blanks become spaces, others the replacement character.
 
-    >>> window("a\\tb", 2), window("a" * 500 + "b" + "c" * 500, 500)[0].count("a")
+    >>> window("a\tb", 2), window("a" * 500 + "b" + "c" * 500, 500)[0].count("a")
     (('a b', 2), 50)
     """
     left = 0 if len(line) <= WINDOW else max(0, min(column - WINDOW // 2, len(line) - WINDOW))

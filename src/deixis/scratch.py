@@ -1,4 +1,4 @@
-"""Work under way: folders for it, and processes that end with the one that started them.
+"""Temporary folders, and processes that end with the one that started them.
 
 A folder is removed at the end, at a signal that ends the process, or else by the next process.
 
@@ -30,16 +30,16 @@ PREFIX = "deixis-"
 _NAME = re.compile(PREFIX + r"(\d+)-\w+")
 
 MIN_AGE = 1.0
-"""Minimum age in seconds of a folder that is taken for stale: a new one is locked only after it was made."""
+"""Minimum age in seconds of a folder that counts as stale: a folder is locked only after it was made."""
 
 ENDING_SIGNALS = (signal.SIGTERM, signal.SIGHUP)
-"""Signals that end a process; what is under way is cleaned up before."""
+"""Signals that end a process; temporary files are removed before it ends."""
 
 
 class ScratchFolder:
-    """A folder for work under way, locked for as long as its process lives. Use it as a context manager, or remove it.
+    """A temporary folder, locked as long as its process lives. Use it as a context manager, or remove it.
 
-    The name has the process's id. A folder whose process was killed is removed by :func:`remove_stale`.
+    Its name has the id of the process. A folder whose process was killed is removed by :func:`remove_stale`.
     """
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class ScratchFolder:
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """Make a folder for what is done within, and remove it then, also where a signal ends the process meanwhile."""
+    """Make a folder for the block, and remove it after it, also where a signal ends the process."""
     remove_stale()
     with _ended_by_signals():
         scratch = ScratchFolder()
@@ -101,14 +101,14 @@ def _remove_if_stale(entry: os.DirEntry[str]) -> None:
 
 
 class _EndedError(BaseException):
-    """A signal that ends the process has come."""
+    """A signal that ends the process has arrived."""
 
 
 @contextmanager
 def _ended_by_signals() -> Iterator[None]:
-    """Let signals that end the process end what is done within first, so that it cleans up after itself.
+    """Turn signals that end the process into an exception in the block, so that it cleans up.
 
-    Only where nobody else handles them, and in the main thread, which alone is told of signals.
+    This works in the main thread only, and where the program has no handler of its own for the signal.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -135,7 +135,7 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
 def tied_to_parent() -> Callable[[], None] | None:
-    """Return what makes the system kill a new process when this one is gone, however it ends; None but on Linux."""
+    """Return a function that makes the system kill a new process when this one ends; None except on Linux."""
     if not sys.platform.startswith("linux"):
         return None
     library, parent = ctypes.CDLL(None), os.getpid()

@@ -1,4 +1,4 @@
-"""A session: a memory of what was learned and one of what was seen, and the commands that use them as methods."""
+"""A session: a semantic and a perceptual memory, with the commands that use them as methods."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Result = TypeVar("Result")
 def _one_at_a_time(
     method: Callable[Concatenate[Session, Given], Result],
 ) -> Callable[Concatenate[Session, Given], Result]:
-    """Let one thread at a time into the methods of a session; the others wait for their turn."""
+    """Let only one thread at a time run the methods of a session; others wait."""
 
     @wraps(method)
     def waiting(self: Session, /, *args: Given.args, **kwargs: Given.kwargs) -> Result:
@@ -53,19 +53,27 @@ def _one_at_a_time(
 
 
 class Session(Closing):
-    """A memory, and what is done with it and a table. Use it as a context manager, or close it.
+    """A memory, and the commands on it and on tables as methods. Use it as a context manager, or close it.
 
     ``knowledge_store`` holds what was learned, ``view_store`` what things look like. Each is opened by the first call
     that needs it, and held by this process until the session is closed.
 
+    Parameters
+    ----------
+    memory
+        Folder of the memory. None means ``$DEIXIS_MEMORY``, else a folder for the user's data.
+    ontology
+        Words that scripts may use; None means the shipped ones.
+
     Notes
     -----
     Threads may share a session. Its methods run one at a time, in :attr:`lock`; only the search of :meth:`ground` runs
-    beside others. What several calls have to do as one, such as reading a store and writing it, is done with the lock
-    held: ``with session.lock: ...``. A process that is forked while a session has its memory open cannot use that
-    memory: every call that needs it raises MemoryBusyError at once.
+    beside others. To do several calls as one, such as reading a store and writing it, hold the lock:
+    ``with session.lock: ...``. In a process that was forked while a session had its memory open, every call that needs
+    the memory raises MemoryBusyError.
 
-    A memory in a folder that cannot be written is opened for reading; what would change it raises ReadOnlyMemoryError.
+    A memory in a folder that cannot be written is opened for reading; a call that changes it raises
+    ReadOnlyMemoryError.
     """
 
     def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:
@@ -80,16 +88,16 @@ class Session(Closing):
 
     @_one_at_a_time
     def close(self) -> None:
-        """Lets go of the memory; what would need it afterwards raises MemoryFormatError."""
+        """Close the memory; a later call that needs it raises MemoryFormatError."""
         self.view_store.close()
         self.knowledge_store.close()
 
     @property
     def ontology(self) -> Ontology:
-        """The words that scripts may use."""
+        """Words that scripts may use."""
         return self.knowledge_store.ontology
 
-    # ---- what is done with a table
+    # ---- tables
 
     def ground(
         self,
@@ -106,7 +114,15 @@ class Session(Closing):
         max_questions: int | None = None,
         memory_limit: float = DEFAULT_MEMORY_LIMIT,
     ) -> Grounding:
-        """Ground as :func:`deixis.ground` does, with words and sizes as this memory has learned them."""
+        """Ground a script in a scene, with the words and sizes learned in this memory.
+
+        The parameters and errors are those of :func:`deixis.ground`.
+
+        Returns
+        -------
+        Grounding
+            The thing that each object of the script refers to, with its posterior.
+        """
         from deixis.workflows.ground import ground
         from deixis.workflows.read import as_script
 
@@ -133,11 +149,31 @@ class Session(Closing):
         engine: str = "exact",
         time_limit: float = DEFAULT_TIME_LIMIT,
     ) -> Learned:
-        """Grounds a script in a scene, and keeps the layout and what its objects look like, with where it comes from.
+        """Ground a script in a scene, and keep the layout and the look of its objects, with their provenance.
 
-        What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too,
-        for :meth:`learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
-        DeixisError, having changed nothing, where the script contradicts itself or what was learned before.
+        Doubtful and interchangeable matches are kept as such and teach no category. The posterior of each match is kept
+        too, for :meth:`learn_relations`. Sizes are learned at once. A thing that a teacher named keeps that name.
+
+        Parameters
+        ----------
+        script
+            The script, or the path of its file.
+        scene
+            The scene, the path of its file, or its content as a mapping.
+        engine
+            Name of the engine that grounds the script.
+        time_limit
+            Seconds for the grounding.
+
+        Returns
+        -------
+        Learned
+            The lesson with its grounding, and the views that it taught.
+
+        Raises
+        ------
+        DeixisError
+            The script contradicts itself or earlier lessons. Nothing was changed.
         """
         (learned,) = self.learn_all([(script, scene)], engine, time_limit)
         return learned
@@ -151,7 +187,8 @@ class Session(Closing):
     ) -> tuple[Learned, ...]:
         """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
 
-        Each is grounded with what the memory had learned before this call. ``time_limit`` is for each grounding.
+        Each is grounded with what the memory had learned before this call. ``time_limit`` is in seconds, for each
+        grounding.
         """
         from deixis.workflows.learn import learn
 
@@ -164,7 +201,22 @@ class Session(Closing):
         scene: Scene | str | Path | Mapping[str, Any],
         time_limit: float = DEFAULT_TIME_LIMIT,
     ) -> Check:
-        """What is wrong with a table: ``layout`` is a learned layout's name, or a script or its file."""
+        """Check a table against a layout.
+
+        Parameters
+        ----------
+        layout
+            The name of a learned layout, a script, or the path of a script.
+        scene
+            The scene, the path of its file, or its content as a mapping.
+        time_limit
+            Seconds until the answer.
+
+        Returns
+        -------
+        Check
+            The missing, misplaced and additional things, and the facts that do not hold.
+        """
         from deixis.workflows.check import check
 
         return check(layout, scene, time_limit, self.knowledge_store)
@@ -173,9 +225,30 @@ class Session(Closing):
     def teach(
         self, scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, teacher: str = "user"
     ) -> Taught:
-        """Keeps what a thing of a scene looks like as a view of a category: see :func:`deixis.workflows.teach.teach`.
+        """Store the look of a thing of a scene as a view of a category, which is made if it is new.
 
-        Raises SceneError where the scene has no such thing, or no cloud of it; SettingError for a name that is none.
+        Parameters
+        ----------
+        scene
+            The scene, the path of its file, or its content as a mapping. It must have the thing's cloud.
+        object
+            Id of the thing.
+        category
+            Name of the category. A name that differs from a known one only in case means that one.
+        teacher
+            Name of the teacher, stored with the view.
+
+        Returns
+        -------
+        Taught
+            The stored view, with its earlier category if the call corrects one.
+
+        Raises
+        ------
+        SceneError
+            The scene has no such thing, or no cloud of it.
+        SettingError
+            The name of the category is invalid.
         """
         from deixis.workflows.teach import teach
 
@@ -188,46 +261,60 @@ class Session(Closing):
         progress: Progress | None = None,
         left_out: Callable[[str], None] | None = None,
     ) -> Recognised:
-        """Names what is known among the things of a scene; where nothing was taught, nothing is.
+        """Name the known things of a scene; where nothing was taught, none is known.
 
-        ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
-        ``left_out``, in one line, of views that are damaged and teach nothing.
+        Parameters
+        ----------
+        scene
+            The scene, the path of its file, or its content as a mapping.
+        progress
+            Called while views are read and calibrated, which takes seconds for many views.
+        left_out
+            Called with a line about damaged views, which teach nothing.
+
+        Returns
+        -------
+        Recognised
+            The scene with the names, and the recogniser's answer for each thing.
         """
         from deixis.workflows.recognise import recognise
 
         return recognise(scene, self.view_store, progress, left_out)
 
-    # ---- what was learned
+    # ---- knowledge
 
     @_one_at_a_time
     def remembers(self) -> bool:
-        """Whether there is a memory at the path; raises MemoryFormatError where something else or a damaged one is."""
+        """Return True if there is a memory at the path.
+
+        Raises MemoryFormatError where the path holds something else, or a damaged memory.
+        """
         return self.knowledge_store.exists()
 
     @_one_at_a_time
     def memory(self, create: bool = False) -> SemanticMemory:
-        """The open memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
         return self.knowledge_store.memory(create)
 
     @_one_at_a_time
     def meaning(self) -> Meaning:
-        """The words and sizes in force: what is shipped, but for what was learned; where there is no memory, all of it.
+        """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
 
-        Raises OntologyError where a learned model in the memory is not whole, MemoryBusyError where another process
-        has the memory.
+        Raises OntologyError where a learned model in the memory is incomplete, MemoryBusyError where another process
+        has the memory open.
         """
         return self.knowledge_store.meaning()
 
     @_one_at_a_time
     def recollection(self) -> Recollection:
-        """All lessons of the memory, ready to be learned from; none where there is no memory."""
+        """Return all lessons of the memory, ready to be learned from; nothing where there is no memory."""
         return self.knowledge_store.recollection()
 
     @_one_at_a_time
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
-        """Fits what relation words mean to everything remembered, and to examples: scripts, each with a labelled scene.
+        """Fit the models of relation words to all lessons, and to examples: scripts, each with a labelled scene.
 
-        The examples are kept as lessons, and the models take the place of those that were learned before. Raises
+        The examples are kept as lessons, and the models replace those that were learned before. Raises
         NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
         that is not above 0.
         """
@@ -235,14 +322,14 @@ class Session(Closing):
 
     @_one_at_a_time
     def forget_relations(self) -> None:
-        """Takes the learned models of relation words away: the shipped ones are in force again. Lessons stay."""
+        """Remove the learned models of relation words, so that the shipped ones are in force again; keep lessons."""
         self.knowledge_store.forget_relations()
 
     @_one_at_a_time
     def forget(self, lesson: str) -> None:
-        """Takes back one lesson, with everything that follows from it alone, and what it taught of words and sizes.
+        """Remove one lesson, what follows from it only, and what it taught of words and sizes.
 
-        What it kept of how things look stays.
+        The views that it taught stay.
         """
         from deixis.workflows.views_of_lessons import forget_lesson
 
@@ -250,69 +337,84 @@ class Session(Closing):
 
     @_one_at_a_time
     def import_(self, file: str | Path) -> None:
-        """Takes in what another memory exported, or plain triples; what is there stays.
+        """Import the export of another memory, or plain triples; keep what the memory has.
 
-        Raises InconsistencyError, having changed nothing, where what is there and what comes contradict each other.
+        Raises InconsistencyError, having changed nothing, where the file contradicts the memory.
         """
         self.knowledge_store.import_(file)
 
     @_one_at_a_time
     def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Every learned layout."""
+        """Return all learned layouts."""
         return self.knowledge_store.layouts()
 
     @_one_at_a_time
     def layout(self, name: str) -> LayoutConcept:
-        """The layout of that name, learned last, or of the lesson with that id; raises UnknownTermError for none."""
+        """Return the layout learned last with this name, or the layout of the lesson with this id.
+
+        Raises UnknownTermError where there is neither.
+        """
         return self.knowledge_store.layout(name)
 
     @_one_at_a_time
     def show(self, name: str) -> str:
-        """A learned layout as a script again."""
+        """Return a learned layout as the text of a script."""
         return self.knowledge_store.show(name)
 
     @_one_at_a_time
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Asks SPARQL of everything remembered: SELECT, ASK, CONSTRUCT or DESCRIBE; nothing else is let in.
+        """Run a SPARQL query over the memory: SELECT, ASK, CONSTRUCT or DESCRIBE; other requests are refused.
 
-        Another process answers, so that the query can be ended. ``time_limit`` is in seconds, ``memory_limit`` in
-        bytes; the answer, as text, may take a sixteenth of them. Raises QueryError for what is refused or cannot be
-        understood, QueryTimeoutError and QueryMemoryError, with no part of the answer, where a limit is reached.
+        Parameters
+        ----------
+        sparql
+            Text of the query.
+        time_limit
+            Seconds until the answer. Another process runs the query, so that it can be stopped.
+        memory_limit
+            Bytes for the evaluation. The answer, as text, may take a sixteenth of them.
+
+        Raises
+        ------
+        QueryError
+            The query is refused or malformed.
+        QueryTimeoutError, QueryMemoryError
+            A limit was reached. No part of the answer is returned.
         """
         return self.knowledge_store.query(sparql, time_limit, memory_limit)
 
     @_one_at_a_time
     def owl(self) -> ObjectView:
-        """The ontology with everything learned, as owlready2's objects in a world of their own; to be closed.
+        """Return the ontology with everything learned as objects of owlready2 in their own world; close it after use.
 
-        It has what was stated and what followed when it was made. Without a memory it has the ontology alone.
+        It has what was stated and inferred when it was made. Without a memory it has the ontology only.
         """
         return self.knowledge_store.owl()
 
-    # ---- what things look like
+    # ---- views
 
     @_one_at_a_time
     def has_views(self) -> bool:
-        """Whether anything was ever taught."""
+        """Return True if the memory has views."""
         return self.view_store.exists()
 
     @_one_at_a_time
     def views(self, create: bool = False) -> LevelMemory:
-        """The open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open perceptual memory; raise DeixisError where there is no memory and ``create`` is False."""
         return self.view_store.memory(create)
 
     @_one_at_a_time
     def category_meant(self, name: str) -> str:
-        """The known category of that name, else the first that differs from it only in case, else the name itself."""
+        """Return the known category with this name, else the first that differs only in case, else the name itself."""
         return self.view_store.category_meant(name)
 
     @_one_at_a_time
     def rename_category(self, old: str, new: str) -> None:
-        """Give a category another name; its views stay.
+        """Rename a category; its views stay.
 
-        Raises UnknownCategoryError; RejectedWriteError for a name that is taken; SettingError for one that is none.
+        Raises UnknownCategoryError; RejectedWriteError where the new name is in use; SettingError for an invalid name.
         """
         from deixis.view_store import category_name, new_category_name
         from deixis.workflows.views_of_lessons import rename_category
@@ -321,7 +423,7 @@ class Session(Closing):
 
     @_one_at_a_time
     def merge_categories(self, source: str, into: str) -> None:
-        """Make the views of one category views of another: two words for one thing. Raises UnknownCategoryError."""
+        """Move the views of one category to another, such as two words for one thing. Raises UnknownCategoryError."""
         from deixis.view_store import category_name
         from deixis.workflows.views_of_lessons import merge_categories
 
@@ -337,5 +439,5 @@ class Session(Closing):
 
     @_one_at_a_time
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """The names of what was taught, each with its number of views; ``left_out`` as in :meth:`recognise`."""
+        """Return the number of views of each taught category; ``left_out`` is as in :meth:`recognise`."""
         return self.view_store.categories(left_out)

@@ -1,3 +1,3 @@
-"""The version of Deixis, for what it writes."""
+"""Version of Deixis, as it is recorded in files."""
 
 VERSION = "0.1.0"

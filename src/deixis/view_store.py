@@ -1,4 +1,4 @@
-"""What a session has seen: the perceptual memory, opened when it is needed, and what is recognised by it."""
+"""The perceptual memory of a session, opened on demand, and recognition by its views."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 Done = TypeVar("Done")
 
 UNKNOWN = "unknown"
-"""What is said of a thing that is of no category."""
+"""Label of a thing that is of no category."""
 
 
 class ViewStore(Closing):
-    """Categories and their views, as they were taught; the memory is held from the first call that needs it."""
+    """Taught categories and their views; the memory stays open from the first call that needs it."""
 
     def __init__(self, path: Path) -> None:
         self._memory = OnDemand(path, _open)
@@ -42,22 +42,21 @@ class ViewStore(Closing):
         return self._memory.path
 
     def close(self) -> None:
-        """Let go of the memory; what would need it afterwards raises MemoryFormatError."""
+        """Close the memory; a later call that needs it raises MemoryFormatError."""
         self._memory.close()
 
     def exists(self) -> bool:
-        """Return whether anything was ever taught."""
+        """Return whether the memory has views."""
         from deixis.memory.perceptual.in_folder import has_views
 
         return self._memory.is_open or has_views(self.path)
 
     def memory(self, create: bool = False) -> LevelMemory:
-        """Return the open perceptual memory; raises DeixisError where there is none and ``create`` is not set."""
+        """Return the open perceptual memory; raise DeixisError where there is no memory and ``create`` is False."""
         return self._memory.get(create)
 
     def category_meant(self, name: str) -> str:
-        """Return the known category of that name, else the first that differs from it only in case, else the name
-        itself."""
+        """Return the known category with this name, else the first that differs only in case, else the name itself."""
         from deixis.grammar.names import key_of
 
         if not self.exists():
@@ -69,10 +68,10 @@ class ViewStore(Closing):
     def keeping(
         self, views: Sequence[View], lessons: Mapping[str, str] | None = None
     ) -> tuple[WriteBatch, tuple[Taught, ...]]:
-        """Return the change that keeps views, and what that teaches; ``lessons`` says which lesson a view belongs to.
+        """Return the change that stores views, and what each taught; ``lessons`` maps the id of a view to its lesson.
 
-        A damaged view in the way teaches nothing, and is mended where it is kept again. To be called and written with
-        ``memory(create=True).exclusive()`` held.
+        Damaged stored views teach nothing; one that is stored again is repaired. Call this, and write the change, while
+        ``memory(create=True).exclusive()`` is held.
         """
         from deixis.learning.views import batch_of
 
@@ -83,7 +82,7 @@ class ViewStore(Closing):
         return self._despite_damage(self.memory(create=True), change)
 
     def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
-        """Return the views of a grounding that no teacher has named, and what is named otherwise."""
+        """Return the views of a grounding that no teacher has named, and the things that a teacher named otherwise."""
         from deixis.learning.views import StandingWord, taught_by_hand
 
         named = taught_by_hand(self.memory(), views) if self.exists() else {}
@@ -98,10 +97,10 @@ class ViewStore(Closing):
     def known(
         self, frame: str, progress: Progress | None = None, left_out: Callable[[str], None] | None = None
     ) -> Known:
-        """Return what recognises the categories in a frame; one that knows nothing where nothing was taught.
+        """Return the recogniser of the taught categories in a frame; it knows nothing where nothing was taught.
 
-        ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
-        ``left_out``, in one line, of views that are damaged and teach nothing.
+        ``progress`` is called while views are read and calibrated, which takes seconds for many views. ``left_out`` is
+        called with a line about damaged views, which teach nothing.
         """
         from deixis.learning.views import nothing_known, recogniser_of
 
@@ -112,7 +111,7 @@ class ViewStore(Closing):
     def _despite_damage(
         self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
     ) -> Done:
-        """Return what is done with all views, or, where some are damaged, with the others."""
+        """Return the result of an action on all views, or on the undamaged ones where some are damaged."""
         from deixis.memory.errors import DamagedMemoryError
         from deixis.memory.perceptual.in_folder import open_undamaged
 
@@ -123,11 +122,11 @@ class ViewStore(Closing):
                 done = work(readable)
                 if left_out is not None:
                     damage = "; ".join(readable.left_out)
-                    left_out(f"left out, as damaged: {damage} ('deixis memory verify' says more)")
+                    left_out(f"left out, as damaged: {damage}; 'deixis memory verify' lists all damage")
             return done
 
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """Return the names of what was taught, each with its number of views; ``left_out`` as in :meth:`known`."""
+        """Return the number of views of each taught category; ``left_out`` is as in :meth:`known`."""
         if not self.exists():
             return {}
         return self._despite_damage(self.memory(), _counted, left_out)
@@ -144,7 +143,7 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 
 
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
-    """Return what each decided thing looks like, where the scene has its cloud, under the name of its object.
+    """Return a view of each decided thing that has a cloud in the scene, under the name of its object.
 
     Raises SceneError where two things have the same points.
     """
@@ -163,7 +162,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
 
 def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> View:
-    """Return a view of a thing of a scene, ready to be kept; raises SceneError where the scene has no points of it."""
+    """Return a view of a thing of a scene, ready to be stored; raise SceneError where the scene has no points of it."""
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else os.path.abspath(scene.file)
@@ -173,26 +172,30 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
 
 
 def category_name(text: str) -> str:
-    """Return a category's name as scripts write it: ``dinner fork`` is ``dinner_fork``; raises SettingError for
-    nothing."""
+    """Return the name of a category as scripts write it, such as ``dinner_fork`` for ``dinner fork``.
+
+    Raises SettingError for an empty name.
+    """
     from deixis.reasoning.errors import SettingError
 
     if not isinstance(text, str):
-        raise SettingError(f"a category's name is a text, not {text!r}")
+        raise SettingError(f"the name of a category must be a text, got {text!r}")
     name = "_".join(text.split())
     if not name:
-        raise SettingError("a category's name is a word or more, not nothing")
+        raise SettingError("the name of a category must have at least one word, got none")
     return name
 
 
 def new_category_name(text: str) -> str:
-    """Return the same for what is to be taught; raises SettingError also for what no scene can have as a label, and
-    for the word that says that a thing is of no category."""
+    """Return the name of a category to teach, as :func:`category_name` writes it.
+
+    Raises SettingError also for a name that no scene can have as a label, and for the label of unknown things.
+    """
     from deixis.reasoning.errors import SettingError
 
     name = category_name(text)
     if any(unicodedata.category(character) == "Cc" for character in name):
-        raise SettingError(f"a category's name, {name!a}, has a control character in it")
+        raise SettingError(f"the name of a category must not have control characters, got {name!a}")
     if name.lower() == UNKNOWN:
-        raise SettingError(f"'{name}' is said of what is of no known category; choose another word")
+        raise SettingError(f"'{name}' is the label of things of no known category; choose another word")
     return name

@@ -1,4 +1,4 @@
-"""Test how answers show themselves: short texts, plain data, tables, notebooks and pictures."""
+"""Renderings of answers: short texts, plain data, tables, notebooks and pictures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PNG = b"\x89PNG"
 
 @pytest.fixture(scope="module")
 def answers() -> dict[str, Answer]:
-    """One answer of each type that needs no memory of views."""
+    """One answer of each type that needs no views."""
     found = deixis.ground(SCRIPT, SCENE)
     with deixis.Session(memory=Path("/nonexistent/deixis")):
         pass

@@ -1,4 +1,4 @@
-"""Without the extras: the core's commands work, every other says which extra it lacks, before any work."""
+"""Behaviour without the extras: the core's commands work, and each other command names its missing extra at once."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def beyond_the_core() -> list[str]:
 
 @pytest.fixture(scope="module")
 def said(tmp_path_factory: pytest.TempPathFactory) -> Said:
-    """What every command says in a process that can import nothing but the core, one after the other."""
+    """Output of every command in a process that can import only the core."""
     folder = tmp_path_factory.mktemp("slim")
     x, y = (axis.ravel() for axis in np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01])
     block = (abs(x) < 0.05) & (abs(y - 0.8) < 0.05)

@@ -1,4 +1,4 @@
-"""What is compiled in advance, and what time limits do not count."""
+"""Compilation in advance, and what time limits do not count."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Folders for work under way, and the process that works there: neither outlives the process that made it."""
+"""Temporary folders, and processes that work in them: neither outlives the process that made it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def is_running(process: int) -> bool:
 
 @pytest.fixture
 def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder in which scratch folders are made, empty."""
+    """Empty folder in which scratch folders are made."""
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr(scratch, "MIN_AGE", 0.0)

@@ -1,4 +1,4 @@
-"""Deixis from Python, as it reads in the design: read, ground, infer; answers are plain immutable data."""
+"""Deixis from Python as in its design: read, ground, infer; answers are plain immutable data."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ SEEN = {"red_mug": "#b01c24", "blue_mug": "#2040a0", "green_mug": "green", "plat
 
 
 def mugs(colours: Mapping[str, Any]) -> dict[str, Any]:
-    """Three mugs that nothing but their colours tells apart, and a plate."""
+    """Return a scene of three mugs that differ only in colour, and a plate."""
     at = {"green_mug": 0.0, "red_mug": 1.5, "blue_mug": 3.0, "plate": 6.0}
     return {"unit": "px", "objects": [box(f"the {name}", x, colour=colours.get(name)) for name, x in at.items()]}
 
@@ -155,7 +155,7 @@ def test_an_uncertain_label_settles_what_facts_leave_open() -> None:
 
 
 EXPECTED: dict[str, Grounding] = {}
-"""The answers by engine in the order of the files, each worked out once."""
+"""Answers of each engine in the order of the files, each computed once."""
 
 
 @settings(max_examples=8, deadline=None)
@@ -205,7 +205,7 @@ def test_an_empty_scene() -> None:
     assert found.graph_similarity == 0
 
 
-def test_two_words_about_a_full_table_are_found_and_said_to_be_unsure() -> None:
+def test_two_words_about_a_full_table_are_found_but_uncertain() -> None:
     scene = {"unit": "px", "objects": [box(f"p{i}", i) for i in range(40)]}
     found = deixis.ground(deixis.read_script(text="fork left of plate"), scene)
     assert set(found.matches) == {"fork", "plate"} and not found.violated
@@ -232,19 +232,17 @@ def test_a_closed_session_does_not_take_the_memory_again(tmp_path: Path) -> None
         assert another.layouts()
 
 
-def test_what_is_no_scene_is_told_what_is() -> None:
+def test_an_invalid_scene_gets_an_error_with_the_valid_forms() -> None:
     with pytest.raises(SceneError, match=r"from a file or from parsed JSON, not from int"):
         deixis.read_scene(3)  # type: ignore[arg-type]
 
 
 def test_a_category_is_named_by_a_text(tmp_path: Path) -> None:
-    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="is a text, not 3"):
+    with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be a text, got 3"):
         session.teach(SCENE, "o1", 3)  # type: ignore[arg-type]
 
 
-def test_show_gives_the_last_lesson_though_the_clock_was_set_back(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_show_gives_the_last_lesson_after_the_clock_went_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Clock(datetime):
         @classmethod
         def now(cls, tz: tzinfo | None = None) -> Clock:

@@ -48,7 +48,7 @@ def test_threads_that_learn_at_once_all_learn(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("lock_held", [False, True])
-def test_a_forked_child_is_told_at_once_and_its_parent_goes_on(tmp_path: Path, lock_held: bool) -> None:
+def test_a_forked_child_gets_an_error_and_its_parent_goes_on(tmp_path: Path, lock_held: bool) -> None:
     said, says = os.pipe()
     with Session(tmp_path / "memory") as session:
         session.learn(SCRIPT, SCENE)
@@ -111,12 +111,12 @@ session.close()
 
 
 def test_a_child_forked_before_the_memory_is_opened_may_use_it(tmp_path: Path) -> None:
-    """In a process of its own: what opens a store on disk starts threads that no child has."""
+    """Run in a separate process, as opening a store on disk starts threads that no child has."""
     command = [sys.executable, "-c", FORKING, str(tmp_path / "memory")]
     assert subprocess.run(command, timeout=120, check=False).returncode == 0
 
 
-def test_a_child_forked_after_any_memory_was_opened_is_told_so(tmp_path: Path) -> None:
+def test_a_child_forked_after_a_memory_was_opened_gets_an_error(tmp_path: Path) -> None:
     with Session(tmp_path / "first") as session:
         session.learn(SCRIPT, SCENE)
     child = os.fork()

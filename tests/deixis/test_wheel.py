@@ -1,4 +1,4 @@
-"""What is built from the repository: the same wheel from a clone, from a ZIP and from the source distribution."""
+"""Builds of the repository: the same wheel from a clone, from a ZIP and from the source distribution."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from source_tree import ROOT, rooms_of, shipped_files, source_files
 pytestmark = pytest.mark.slow
 
 LINKED_ROOMS = [room for room in rooms_of() if room != "examples"]
-"""The rooms that type checkers see through links under ``src/deixis``."""
+"""Folders that type checkers see through links under ``src/deixis``."""
 
 
 def copied(target: Path, links: str) -> Path:
@@ -65,7 +65,7 @@ def test_the_wheel_holds_the_tree(tmp_path: Path, links: str) -> None:
 
 def test_the_sdist_holds_all_sources_and_builds_the_wheel(tmp_path: Path) -> None:
     tree, out = copied(tmp_path / "tree", "links"), tmp_path / "dist"
-    assert packaged(build(tree, out)) == set(shipped_files())  # by way of the sdist
+    assert packaged(build(tree, out)) == set(shipped_files())  # built from the sdist
     (sdist,) = out.glob("*.tar.gz")
     with tarfile.open(sdist) as archive:
         held = {member.name.partition("/")[2] for member in archive if member.isfile()}

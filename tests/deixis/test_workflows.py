@@ -1,4 +1,4 @@
-"""From a cloud to a category in memory, commands without a memory, and what was learned as objects."""
+"""From a cloud to a category in memory, commands without a memory, and learned content as objects."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SECOND = example("second_table.scene.json")
 
 
 def look(seed: int) -> PointCloud:
-    """A table laid for tea, as a simulated camera sees it."""
+    """Return a table laid for tea, as a simulated camera sees it."""
     return simulate(lay_script(deixis.read_script(text=TEA), seed=seed), seed=seed).cloud
 
 
@@ -142,13 +142,13 @@ def test_a_scene_takes_the_place_of_no_device(seen: Scene, tmp_path: Path) -> No
     ],
 )
 @pytest.mark.parametrize("wrong", [3, {}, b"x"])
-def test_what_is_of_another_type_is_told(call: Callable[[Any], object], message: str, wrong: object) -> None:
+def test_a_wrong_type_is_an_error(call: Callable[[Any], object], message: str, wrong: object) -> None:
     with pytest.raises(DeixisError, match=message):
         call(wrong)
 
 
 @pytest.mark.parametrize("examples", [["script", "scene"], [("script",)], [{"a": 1, "b": 2}], ("ab", "cd"), [3]])
-def test_what_is_no_pair_of_script_and_scene_is_told(examples: Any, tmp_path: Path) -> None:
+def test_a_script_without_its_scene_is_an_error(examples: Any, tmp_path: Path) -> None:
     with deixis.Session(tmp_path / "memory") as session, pytest.raises(SettingError, match="must be pairs"):
         session.learn_all(examples)
     assert not list(tmp_path.iterdir())
@@ -163,7 +163,7 @@ def test_a_lesson_that_is_refused_makes_no_memory(tmp_path: Path) -> None:
     assert (code, out, "the script contradicts itself" in err, memory.exists()) == (2, "", True, False)
 
 
-def test_a_missing_folder_of_lessons_is_told(tmp_path: Path) -> None:
+def test_a_missing_folder_of_lessons_is_an_error(tmp_path: Path) -> None:
     code, _, err = command("learn", tmp_path / "none", "--memory", tmp_path / "memory")
     assert (code, err) == (2, f"deixis: {tmp_path / 'none'}: there is no such file or folder\n")
 
@@ -177,7 +177,7 @@ def test_errors_name_the_cloud_that_was_perceived(tmp_path: Path) -> None:
         deixis.perceive(read_cloud(file))
 
 
-def test_what_has_no_points_is_told(seen: Scene) -> None:
+def test_a_thing_without_points_is_an_error(seen: Scene) -> None:
     bare = Scene((PerceivedObject("o1", (0.0, 0.0), (1.0, 1.0)),))
     with pytest.raises(SceneError, match="the object 'o1' has no cloud"):
         bare.cloud_of("o1")
@@ -209,7 +209,7 @@ def test_check_and_recognise_run_where_no_memory_is(
     assert not (tmp_path / "none").exists()
 
 
-def test_check_leaves_a_memory_that_somebody_holds_alone(tmp_path: Path) -> None:
+def test_check_does_not_open_a_memory_in_use(tmp_path: Path) -> None:
     with deixis.Session(tmp_path / "memory") as session:
         session.memory(create=True)
         code, out, err = command("check", FULL, SECOND, "--memory", tmp_path / "memory", "--no-memory")

@@ -1,4 +1,4 @@
-"""Two lessons by hand, in the model of the ontology, and memories that hold them."""
+"""Two small lessons in the model of the ontology, and memories with them."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _read(turtle: str) -> list[ox.Triple]:
 
 @pytest.fixture
 def read() -> Read:
-    """Reads Turtle in which the known prefixes are declared, and ``L/`` begins the IRIs of learned things."""
+    """Read Turtle with the known prefixes declared, where ``L/`` begins the IRIs of learned things."""
     return _read
 
 
@@ -121,12 +121,12 @@ def _make(name: str = "dinner-1", scene: str = "s1", kind: str = "dx:FishKnife",
 
 @pytest.fixture
 def make_lesson() -> MakeLesson:
-    """Makes a lesson's contributions; those to the inferred graph are what follows from it."""
+    """Return the contributions of a lesson; those to the inferred graph are what follows from it."""
     return _make
 
 
 def teach(memory: SemanticMemory, name: str, **how: str | int) -> None:
-    """Has a memory learn a lesson made by hand, with all that follows from it and the rest."""
+    """Write a lesson to a memory, with all that follows from it and the other lessons."""
     said = _make(name, **how)  # type: ignore[arg-type]
     inferred = [*memory.triples(GraphName.INFERRED), *said.pop(GraphName.INFERRED)]
     memory.learn(name, said, inferred)
@@ -139,7 +139,7 @@ def learn() -> Callable[..., None]:
 
 @pytest.fixture(scope="session")
 def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An empty memory, closed: to be copied, which is faster than making one for each test."""
+    """Empty closed memory, to be copied, which is faster than making one for each test."""
     folder = tmp_path_factory.mktemp("empty") / "memory"
     SemanticMemory.open(folder, create=True).close()
     return folder
@@ -147,7 +147,7 @@ def empty_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def kept_folder(empty_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same with one lesson."""
+    """Closed memory with one lesson."""
     folder = shutil.copytree(empty_folder, tmp_path_factory.mktemp("kept") / "memory")
     with SemanticMemory.open(folder) as memory:
         teach(memory, "dinner-1")
@@ -156,21 +156,21 @@ def kept_folder(empty_folder: Path, tmp_path_factory: pytest.TempPathFactory) ->
 
 @pytest.fixture(scope="session")
 def empty_export(empty_folder: Path) -> str:
-    """What an empty memory exports: the package alone."""
+    """Export of an empty memory: the package only."""
     with SemanticMemory.open(empty_folder) as memory:
         return export_memory(memory)
 
 
 @pytest.fixture(scope="session")
 def kept_export(kept_folder: Path) -> str:
-    """What the memory of one lesson exports."""
+    """Export of the memory with one lesson."""
     with SemanticMemory.open(kept_folder) as memory:
         return export_memory(memory)
 
 
 @pytest.fixture(scope="session")
 def taught_folder(empty_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same with two lessons that differ about the kind of one object."""
+    """Closed memory with two lessons that differ about the kind of one object."""
     folder = shutil.copytree(empty_folder, tmp_path_factory.mktemp("taught") / "memory")
     with SemanticMemory.open(folder) as memory:
         teach(memory, "dinner-1")
@@ -180,7 +180,7 @@ def taught_folder(empty_folder: Path, tmp_path_factory: pytest.TempPathFactory) 
 
 @pytest.fixture
 def memory(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[SemanticMemory]:
-    """A memory of this test's own: empty, or ``taught`` where it asks for that."""
+    """Memory of this test's own: empty, or ``taught`` if it uses that fixture."""
     template = "taught_folder" if "taught" in request.fixturenames else "empty_folder"
     with SemanticMemory.open(shutil.copytree(request.getfixturevalue(template), tmp_path / "memory")) as memory:
         yield memory
@@ -188,5 +188,5 @@ def memory(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[SemanticM
 
 @pytest.fixture
 def taught(memory: SemanticMemory) -> SemanticMemory:
-    """A memory of two lessons that differ about the kind of one object."""
+    """Memory with two lessons that differ about the kind of one object."""
     return memory

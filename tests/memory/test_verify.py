@@ -48,7 +48,7 @@ def flips(file: Path, rng: random.Random) -> Iterator[int]:
 
 def test_a_sound_memory_is_read_and_not_changed(kept: Path) -> None:
     before, seen = content(kept), list[tuple[int, int]]()
-    assert verify(kept, lambda done, all: seen.append((done, all))) == Verified(True, False, ())
+    assert verify(kept, lambda done, total: seen.append((done, total))) == Verified(True, False, ())
     assert content(kept) == before
     assert seen == [(done, 6) for done in range(1, 7)]
 
@@ -63,7 +63,7 @@ def test_a_flipped_byte_of_any_file_is_detected_or_harmless(kept: Path) -> None:
             try:
                 found = bool(verify(kept).findings)
             except MemoryFormatError:
-                found = True  # nothing opens this memory
+                found = True  # this memory cannot be opened
             outcomes[file.suffix, "detected" if found else "harmless"] += 1
             if not found:
                 assert set(ox.Store.read_only(str(kept / "semantic"))) == before, (file, place)
@@ -74,7 +74,7 @@ def test_a_flipped_byte_of_any_file_is_detected_or_harmless(kept: Path) -> None:
 
 
 def test_every_index_is_read(kept: Path) -> None:
-    """A byte in the middle of any large table is detected, whichever index that table is of."""
+    """Change a byte in the middle of each large table: it is detected, whichever index the table is of."""
     tables = [file for file in (kept / "semantic").glob("*.sst") if file.stat().st_size > 4000]
     assert len(tables) >= 7  # six indexes, and the texts
     for file in tables:
@@ -87,7 +87,7 @@ def test_every_index_is_read(kept: Path) -> None:
         file.write_bytes(sound)
 
 
-def test_a_store_that_does_not_open_is_a_finding_beside_those_of_the_views(kept: Path) -> None:
+def test_a_store_that_does_not_open_is_a_finding(kept: Path) -> None:
     open_in(kept, create=True).close()
     (kept / "semantic" / "CURRENT").unlink()
     next((kept / "perceptual").glob("store-*/CURRENT")).unlink()
@@ -96,7 +96,7 @@ def test_a_store_that_does_not_open_is_a_finding_beside_those_of_the_views(kept:
     assert [finding.where for finding in found.findings] == ["semantic", "perceptual"]
 
 
-def test_what_is_not_there_is_said_to_be_not_there(tmp_path: Path) -> None:
+def test_missing_things_are_reported_missing(tmp_path: Path) -> None:
     assert verify(tmp_path) == Verified(False, False, ())
     open_in(tmp_path, create=True).close()
     assert verify(tmp_path) == Verified(False, True, ())

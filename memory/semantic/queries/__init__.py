@@ -1,1 +1,1 @@
-"""SPARQL over semantic memory: what is admitted, the answers, and the rdflib view."""
+"""SPARQL over semantic memory: checks of queries, their execution, answers, and the rdflib view."""

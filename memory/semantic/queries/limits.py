@@ -1,4 +1,4 @@
-"""What a query may take: time, memory, length and nesting."""
+"""Limits of queries: time, memory, length and nesting."""
 
 from __future__ import annotations
 
@@ -7,23 +7,25 @@ from dataclasses import dataclass
 from deixis.memory.errors import QueryError, QueryMemoryError
 
 QUERY_TIME_LIMIT = 30.0
-"""Seconds."""
+"""Default time limit of a query, in seconds."""
 
 QUERY_MEMORY_LIMIT = 2**30
-"""Bytes."""
+"""Default memory limit of a query, in bytes."""
 
 ANSWER_SHARE = 16
-"""An answer may take this part of the memory limit as text; read in and printed it takes several times as much."""
+"""An answer may take this fraction (1/16) of the memory limit as text; in the program it takes several times more."""
 
 ROW_BYTES, CELL_BYTES = 64, 8
-"""Bytes that a row of an answer takes without values, and each of its cells; text may say so much of them in three."""
+"""Bytes that a row without values takes, and those of each of its cells; three bytes of text can stand for a cell."""
 
 MAX_LENGTH = 1_000_000
 """Maximum number of characters of a query."""
 
 MAX_TOKENS = 50_000
-"""Maximum number of words and signs of a query. Each operator of a chain such as ``1 + 1 + 1`` or ``{} UNION {}`` is a
-level of recursion in Oxigraph."""
+"""Maximum number of tokens of a query.
+
+Each operator of a chain such as ``1 + 1 + 1`` or ``{} UNION {}`` is a level of recursion in Oxigraph.
+"""
 
 MAX_DEPTH = 100
 """Maximum nesting of brackets and of the prefix operators ``!``, ``-``, ``+`` and ``^``."""
@@ -31,14 +33,14 @@ MAX_DEPTH = 100
 
 @dataclass(frozen=True)
 class QueryLimits:
-    """What one query may take. Raises QueryError for what is no limit.
+    """Limits of one query. Raises QueryError for an invalid limit.
 
     Parameters
     ----------
     time
-        Seconds, from the call to the answer.
+        Seconds from the call to the answer.
     memory
-        Bytes for evaluating it, beyond those of the open store. The answer may take a sixteenth of them: as text, and
+        Bytes for the evaluation, beyond those of the open store. The answer may take a sixteenth of them: as text, and
         as rows without their values.
     """
 
@@ -53,11 +55,11 @@ class QueryLimits:
 
     @property
     def answer(self) -> int:
-        """Bytes that the answer may take as text."""
+        """Maximum number of bytes of the answer as text."""
         return self.memory // ANSWER_SHARE
 
     def too_large(self) -> QueryMemoryError:
-        """Return the error for an answer that takes more than it may."""
+        """Return the error for an answer that is too large."""
         return QueryMemoryError(
             f"query: the answer is larger than {in_words(self.answer)}, the share of the memory limit that an answer "
             "may take; ask for less with LIMIT, or raise the limit"
@@ -65,5 +67,5 @@ class QueryLimits:
 
 
 def in_words(size: int) -> str:
-    """Return a number of bytes as it is said in a message."""
+    """Return a number of bytes as text for a message."""
     return f"{size / 2**20:,.0f} MiB" if size >= 2**20 else f"{size:,} bytes"

@@ -1,7 +1,7 @@
-"""A process that runs queries, and can be ended at any moment, as a query in this process cannot.
+"""A process that runs queries and can be stopped at any moment, unlike a query in this process.
 
-Oxigraph has no way to stop a query. So each is evaluated by another process (:mod:`.worker`), which is started once, in
-about ten milliseconds, and killed where a query reaches a limit or the user presses Ctrl-C.
+Oxigraph cannot stop a query. So another process (:mod:`.worker`) evaluates the queries. It is started once, in about
+ten milliseconds, and killed where a query reaches a limit or the user presses Ctrl-C.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from deixis.memory.semantic.queries.limits import QueryLimits, in_words
 
 
 class QueryProcess:
-    """One process with a store open for reading. It is not safe to use from two threads at once."""
+    """One process with a store open for reading. Only one thread at a time may use it."""
 
     def __init__(self, path: Path, deadline: Deadline) -> None:
         command = [sys.executable, "-I", "-S", worker.__file__]
@@ -37,7 +37,7 @@ class QueryProcess:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 bufsize=0,
-                start_new_session=True,  # Ctrl-C at a terminal is for this process, which ends that one
+                start_new_session=True,  # Ctrl-C at a terminal goes to this process only, which ends that one
             )
         except OSError as error:
             raise QueryError(f"the process that runs queries cannot be started: {error.strerror}") from error
@@ -48,20 +48,20 @@ class QueryProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked."""
+        """True if the process can be used."""
         return self.end.alive and self._process.poll() is None
 
     def open(self, path: Path, deadline: Deadline) -> None:
-        """Open a store in the place of the one that is open. Raises MemoryWriteError where it cannot be read."""
+        """Open a store instead of the open one. Raises MemoryWriteError where it cannot be read."""
         kind, content = self._answer({"open": str(path)}, deadline, QueryLimits())
         if kind != worker.READY:
             raise MemoryWriteError(f"{path}: cannot be opened for queries: {content.decode()}")
 
     def ask(self, request: Mapping[str, Any], limits: QueryLimits, deadline: Deadline) -> tuple[bytes, bytes]:
-        """Return the kind of an answer, as :mod:`.worker` has it, and its bytes.
+        """Return the kind of an answer, as defined in :mod:`.worker`, and its bytes.
 
         Raises QueryTimeoutError and QueryMemoryError where a limit is reached, QueryError where the query ended the
-        process. After any of them, and after Ctrl-C, the process is gone.
+        process. After each of these, and after Ctrl-C, the process is gone.
         """
         bounds = {"memory": limits.memory, "largest": limits.answer}
         kind, content = self._answer({**request, **bounds}, deadline, limits)
@@ -87,7 +87,7 @@ class QueryProcess:
     def _send(self, message: Any) -> None:
         assert self._process.stdin is not None
         line = memoryview(json.dumps(message).encode() + b"\n")
-        with contextlib.suppress(BrokenPipeError):  # it has ended; why is found out when its answer is read
+        with contextlib.suppress(BrokenPipeError):  # it has ended; reading its answer finds the reason
             while line:
                 line = line[os.write(self._process.stdin.fileno(), line) :]
 
@@ -108,7 +108,7 @@ class QueryProcess:
         return b"".join(parts)
 
     def _death(self, limits: QueryLimits) -> QueryError:
-        """Return the error that says why the process ended by itself."""
+        """Return the error for a process that ended by itself, with the reason."""
         code = self._process.wait()
         if code == -signal.SIGALRM:
             return time_error(limits)
@@ -120,7 +120,7 @@ class QueryProcess:
 
 
 def _end(process: subprocess.Popen[bytes], owner: int) -> None:
-    """Kill a process, unless it belongs to the one that this one was forked from."""
+    """Kill a process, unless it belongs to the parent of this one."""
     if os.getpid() != owner:
         return
     process.kill()
@@ -138,10 +138,10 @@ _processes: weakref.WeakSet[QueryProcess] = weakref.WeakSet()
 
 
 def _forget_after_fork() -> None:
-    """Let go, in a forked child, of processes that are the parent's: they end when the parent does."""
+    """Drop the processes of the parent in a forked child: they end when the parent does."""
     for one in list(_processes):
         one.end.detach()
-        one._process.returncode = 0  # else the child would wait for a process that is not its own
+        one._process.returncode = 0  # otherwise the child would wait for a process of its parent
         _close(one._process)
 
 
@@ -149,6 +149,7 @@ os.register_at_fork(after_in_child=_forget_after_fork)
 
 
 def time_error(limits: QueryLimits) -> QueryTimeoutError:
+    """Return the error for a query that reached its time limit."""
     return QueryTimeoutError(
         f"query: not answered within the time limit of {limits.time:g} s; narrow it down, or give it more time"
     )

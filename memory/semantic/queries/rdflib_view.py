@@ -1,4 +1,4 @@
-"""A memory as an rdflib dataset: live, to be read only, of the six canonical graphs."""
+"""A memory as a live, read-only rdflib dataset of the six canonical graphs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
-    """Return a view of a store's canonical graphs; the copies that say who contributed what are hidden.
+    """Return a view of a store's canonical graphs, without the copies that record contributions.
 
     ``answering`` answers its queries, within the default limits.
     """
@@ -52,10 +52,10 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
         def query(
             self, query: Any, initNs: Mapping[str, Any], initBindings: Mapping[str, Any], queryGraph: Any, **kwargs: Any
         ) -> Result:
-            if not isinstance(query, str):  # rdflib would evaluate it in this process, where nothing can end it
-                raise QueryError("query: a prepared query cannot be asked of a memory; give its text")
+            if not isinstance(query, str):  # rdflib would evaluate it in this process, where it cannot be stopped
+                raise QueryError("query: the query of a memory must be a text, got a prepared query")
             if kwargs:
-                raise QueryError(f"query: a memory knows no parameter '{next(iter(kwargs))}'")
+                raise QueryError(f"query: unknown parameter '{next(iter(kwargs))}'")
             prefixes = {prefix: str(base) for prefix, base in {**self._namespace_for_prefix, **initNs}.items()}
             if queryGraph == "__UNION__":
                 default = [
@@ -93,7 +93,7 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
             pass  # rdflib calls this when a graph is asked for
 
         def _refuse(self, *_: Any, **__: Any) -> NoReturn:
-            raise MemoryFormatError("this view is to be read only: write through the memory's learn and forget")
+            raise MemoryFormatError("this view is read-only: write with the memory's learn and forget")
 
         add = addN = remove = update = remove_graph = _refuse
 

@@ -1,4 +1,4 @@
-"""Answers to queries, and the forms in which they are printed."""
+"""Answers to queries, and their output formats."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ StoreAnswer = ox.QuerySolutions | ox.QueryBoolean | Sequence[ox.Triple]
 _STRING = PREFIXES["xsd"] + "string"
 
 _FORMULA = re.compile(r"[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
-"""How a cell begins that a spreadsheet may take for a formula: see OWASP, CSV injection."""
+"""First characters of cells that a spreadsheet may run as a formula: see OWASP, CSV injection."""
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?|[+-]?INF")
 
 
 MAX_PADDED = 80
-"""Characters of a column of plain text to which shorter cells are filled up."""
+"""Maximum width of a column of plain text to which shorter cells are padded."""
 
 
 class QueryKind(StrEnum):
-    """The four forms of a query."""
+    """Form of a query."""
 
     SELECT = "select"
     ASK = "ask"
@@ -82,10 +82,10 @@ class Row(tuple[Term | None, ...]):
 
 @dataclass(frozen=True, repr=False)
 class QueryResult(Answer):
-    """What a query found: rows of terms, a boolean, or triples, by its kind.
+    """Answer of a query: rows of terms, a boolean, or triples, by its kind.
 
-    Rows come as the store gives them; what is printed is sorted where the query states no order, so that the same
-    memory prints the same answer.
+    Rows are in the order of the store; the printed rows are sorted if the query has no order, so that the same memory
+    prints the same answer.
     """
 
     kind: QueryKind
@@ -93,10 +93,10 @@ class QueryResult(Answer):
     rows: tuple[Row, ...] = ()
     boolean: bool | None = None
     triples: tuple[ox.Triple, ...] = ()
-    ordered: bool = False  # whether the query states an order
+    ordered: bool = False  # True if the query has ORDER BY
 
     def summary(self) -> str:
-        """Return what kind of answer it is, and how many rows or triples it has."""
+        """Return the kind of the answer, and its number of rows or triples."""
         if self.kind is QueryKind.ASK:
             return f"ASK: {'yes' if self.boolean else 'no'}"
         if self.kind is QueryKind.SELECT:
@@ -110,7 +110,7 @@ class QueryResult(Answer):
 
     @classmethod
     def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool, limits: QueryLimits) -> QueryResult:
-        """Return what Oxigraph answers, read to its end; raises QueryMemoryError where that takes too much."""
+        """Return Oxigraph's answer, read completely; raise QueryMemoryError where it is too large."""
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
@@ -124,7 +124,7 @@ class QueryResult(Answer):
         return self.rows if self.ordered else sorted(self.rows, key=_row_key)
 
     def to_table(self) -> list[str]:
-        """Return lines of aligned plain text; IRIs by their known prefixes."""
+        """Return lines of aligned plain text, with IRIs abbreviated by known prefixes."""
         if self.kind is QueryKind.ASK:
             return ["yes" if self.boolean else "no"]
         if self.kind is not QueryKind.SELECT:
@@ -137,12 +137,12 @@ class QueryResult(Answer):
         ]
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Return SPARQL 1.1 results as JSON; of a graph, its triples in N-Triples."""
+        """Return SPARQL 1.1 results as JSON; for a graph, its triples in N-Triples."""
         text = "".join(self.json_parts())
         return text if indent == 2 else json.dumps(json.loads(text), indent=indent, ensure_ascii=False)
 
     def json_parts(self) -> Iterator[str]:
-        """Yield the text of :meth:`to_json` in parts, a row each, so that a large answer need not be held twice."""
+        """Yield the text of :meth:`to_json` in parts, a row each, so that a large answer is not held twice."""
         if self.kind is QueryKind.ASK:
             yield json.dumps({"head": {}, "boolean": self.boolean}, indent=2)
         elif self.kind is QueryKind.SELECT:
@@ -156,12 +156,12 @@ class QueryResult(Answer):
             yield "\n}"
 
     def to_csv(self) -> str:
-        """Return SPARQL 1.1 results as CSV. Raises QueryError for what has no rows.
+        """Return SPARQL 1.1 results as CSV. Raises QueryError for an answer without rows.
 
         A cell that a spreadsheet would run as a formula begins with ``'``; numbers stay as they are.
         """
         if self.kind is not QueryKind.SELECT:
-            raise QueryError(f"{self.kind.upper()} has no rows to write as CSV; use SELECT")
+            raise QueryError(f"the answer of {self.kind.upper()} has no rows to write as CSV; use SELECT")
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\r\n")
         writer.writerow(self.variables)
@@ -169,9 +169,11 @@ class QueryResult(Answer):
         return out.getvalue()
 
     def to_turtle(self) -> str:
-        """Return the triples in Turtle. Raises QueryError for what has none."""
+        """Return the triples in Turtle. Raises QueryError for an answer without triples."""
         if self.kind not in (QueryKind.CONSTRUCT, QueryKind.DESCRIBE):
-            raise QueryError(f"{self.kind.upper()} has no triples to write as Turtle; use CONSTRUCT or DESCRIBE")
+            raise QueryError(
+                f"the answer of {self.kind.upper()} has no triples to write as Turtle; use CONSTRUCT or DESCRIBE"
+            )
         triples = with_blank_nodes(self.triples)
         return (ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=PREFIXES) or b"").decode("utf-8")
 
@@ -183,9 +185,9 @@ def solutions(variables: Sequence[str], rows: Sequence[Sequence[Term | None]]) -
 
 
 def rows_within(answer: ox.QuerySolutions, limits: QueryLimits) -> Iterator[tuple[Term | None, ...]]:
-    """Yield rows, as long as they take no more than an answer may; raise QueryMemoryError where they do.
+    """Yield rows within the limit of an answer; raise QueryMemoryError where they exceed it.
 
-    The text of an answer is bounded where it is written. But of a row without values it says next to nothing.
+    The text of an answer is limited where it is written, but rows without values have nearly no text.
     """
     left, row_bytes = limits.answer, ROW_BYTES + CELL_BYTES * len(answer.variables)
     for row in answer:
@@ -200,7 +202,7 @@ def _binding(variables: Sequence[str], row: Sequence[Term | None]) -> dict[str, 
 
 
 def _json_list(items: Iterator[Any], indent: int) -> Iterator[str]:
-    """Yield the text of a list in parts, as ``json.dumps`` with an indent of 2 writes it so far to the right."""
+    """Yield the text of a list in parts, indented as ``json.dumps`` with an indent of 2 does."""
     space = "\n" + " " * indent
     before = "["
     for item in items:

@@ -1,8 +1,9 @@
 """Queries over a snapshot of a store, in a process of their own.
 
-A store may have no second opener beside its writer. So queries are answered from a snapshot: a backup in the same
-folder, which shares its files with the store by hard links, so that it costs little room and some milliseconds. It is
-made anew for the first query after a change. Where the folder cannot be written, it is a copy in a temporary folder.
+A store cannot be opened a second time beside its writer. So queries are answered from a snapshot: a backup in the same
+folder that shares its files with the store by hard links, which takes little disk space and some milliseconds. It is
+made again for the first query after a change. If the folder cannot be written, the snapshot is a copy in a temporary
+folder.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ from deixis.memory.semantic.queries.process import QueryProcess, time_error
 
 
 class SnapshotQueries(Closing):
-    """Answers queries about the store of one folder. Threads may share it; their queries are answered in turn."""
+    """Queries about the store of one folder. Threads may share it; their queries are answered in turn."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._turn = threading.Lock()
         self._changes = 0
         self._place: Path | None = None
-        self._kept = -1  # the number of changes when the snapshot was made
+        self._kept = -1  # number of changes before the snapshot was made
         self._process: QueryProcess | None = None
 
     def ask(self, store: ox.Store, request: Mapping[str, Any], limits: QueryLimits) -> tuple[bytes, bytes]:
@@ -46,7 +47,7 @@ class SnapshotQueries(Closing):
             self._turn.release()
 
     def changed(self) -> None:
-        """Note that the store has changed: the next query is answered from a new snapshot."""
+        """Record that the store has changed: the next query is answered from a new snapshot."""
         self._changes += 1
 
     def close(self) -> None:
@@ -75,7 +76,7 @@ class SnapshotQueries(Closing):
 
 
 def _place(folder: Path) -> Path:
-    """Return where the snapshot of a store goes."""
+    """Return the path of the snapshot of a store."""
     if os.access(folder, os.W_OK):
         return folder / SNAPSHOT
     return Path(tempfile.mkdtemp(prefix="deixis-query-"))

@@ -1,4 +1,4 @@
-"""Asking SPARQL of a memory: what is let in, what is refused, and where a query is wrong."""
+"""SPARQL queries over a memory: which ones are allowed, and where a query is wrong."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ _PROLOGUE = {"PREFIX", "BASE"}
 
 @dataclass(frozen=True)
 class CheckedQuery:
-    """A query that may be run: its text, its form, and what it says of graphs and order."""
+    """An allowed query: its text, its form, and its graphs and order."""
 
     text: str
     kind: QueryKind
-    names_graphs: bool  # by FROM
-    asks_graphs: bool  # by GRAPH
+    names_graphs: bool  # with FROM
+    asks_graphs: bool  # with GRAPH
     ordered: bool
-    prefixes: Mapping[str, str]  # of those that need no declaration, the ones that it uses
+    prefixes: Mapping[str, str]  # the predeclared prefixes that it uses
     terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespace of the vocabulary, and where each first stands
 
 
 class _Text:
-    """A query's text, decoded, and the places in it as its writer sees them."""
+    """The text of a query, decoded, with the places in the text as given."""
 
     def __init__(self, given: str) -> None:
         self.given = given
@@ -72,14 +72,13 @@ class _Text:
 
 
 Answering = Callable[[Mapping[str, Any], QueryLimits], tuple[bytes, bytes]]
-"""Answers a request as the process of :mod:`.worker` does: the kind of the answer, and its bytes."""
+"""A function that answers a request as the process of :mod:`.worker` does, with the answer's kind and bytes."""
 
 
 def run_query(answering: Answering, sparql: str, union: Sequence[ox.NamedNode], limits: QueryLimits) -> QueryResult:
-    """Return a query's answer. ``union`` are the graphs that it looks at unless it says otherwise.
+    """Return the answer of a query; ``union`` are the graphs that it reads unless it names others.
 
-    Raises QueryError for what is refused or cannot be understood, QueryTimeoutError and QueryMemoryError for what
-    reaches a limit.
+    Raises QueryError for a refused or malformed query, QueryTimeoutError and QueryMemoryError where it reaches a limit.
     """
     checked = _admitted(sparql)
     default = None if checked.names_graphs else [graph.value for graph in union]
@@ -98,9 +97,9 @@ def answer(
     bindings: Mapping[str, Term] | None,
     limits: QueryLimits,
 ) -> StoreAnswer:
-    """Return what Oxigraph answers to a checked query; raises as :func:`run_query`.
+    """Return Oxigraph's answer to a checked query; raise as :func:`run_query`.
 
-    ``default_graph`` and ``named_graphs`` are IRIs, or None for what the query itself says; ``bindings`` are values of
+    ``default_graph`` and ``named_graphs`` are IRIs, or None for those in the query; ``bindings`` are values of
     variables.
     """
     request = {
@@ -124,24 +123,24 @@ def answer(
 
 @lru_cache(maxsize=256)
 def _admitted(sparql: str) -> CheckedQuery:
-    """Return what :func:`check_query` says of a query, looked at once: programs ask the same again and again."""
+    """Return the result of :func:`check_query`, cached, as programs repeat queries."""
     return check_query(sparql)
 
 
 def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQuery:
-    """Return what a query would do, without running it; ``prefixes`` need no declaration.
+    """Return the properties of a query without running it; ``prefixes`` are predeclared.
 
-    Raises QueryError for what is refused.
+    Raises QueryError for a refused query.
 
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>
     """
     if len(sparql) > MAX_LENGTH:
-        raise QueryError(f"query: {len(sparql):,} characters are too many; at most {MAX_LENGTH:,} are read")
+        raise QueryError(f"query: it must have at most {MAX_LENGTH:,} characters, got {len(sparql):,}")
     text = _Text(sparql)
     found = list(islice(tokens(text.text), MAX_TOKENS + 1))
     if len(found) > MAX_TOKENS:
-        raise text.error(found[-1].start, f"the query is too long: it has more than {MAX_TOKENS:,} words and signs")
+        raise text.error(found[-1].start, f"the query must have at most {MAX_TOKENS:,} words and signs")
     declared = {}
     for word, name, iri in zip(found, found[1:], found[2:], strict=False):
         if word.kind is TokenKind.WORD and word.upper == "PREFIX" and name.text.endswith(":"):
@@ -149,39 +148,41 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     known, prologue = {**prefixes, **declared}, _prologue(found)
     deep = too_deep(found, known.keys(), MAX_DEPTH)
     if deep is not None:
-        raise text.error(deep.start, f"nested too deeply: brackets and signs may be nested {MAX_DEPTH} levels deep")
+        raise text.error(
+            deep.start, f"nested too deeply: brackets and signs may be nested at most {MAX_DEPTH} levels deep"
+        )
     for position, token in enumerate(found):
         before = found[position - 1 : position]
         after = found[position + 1 : position + 2]
         if token.kind is TokenKind.WORD:
             if "SERVICE" in token.upper:
-                raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+                raise text.error(token.start, "SERVICE is refused: a query must not read another endpoint")
             if token.upper in _UPDATES:
-                raise text.error(token.start, f"{token.upper} is refused: a query asks and changes nothing")
+                raise text.error(token.start, f"{token.upper} is refused: a query must not change the memory")
         elif token.kind is TokenKind.NAME and not token.text.startswith("_:"):
             given_prefix = token.text.partition(":")[0]
             opens = after and after[0].text == "{" and not (before and before[0].upper == "GRAPH")
             if "SERVICE" in given_prefix.upper() and opens:
-                raise text.error(token.start, "SERVICE is refused: a query stays in the memory and asks no other")
+                raise text.error(token.start, "SERVICE is refused: a query must not read another endpoint")
             if given_prefix not in known and not (before and before[0].upper == "PREFIX"):
                 near = nearest(given_prefix, sorted(known))
                 hint = (
                     f"did you mean '{near}:'?"
                     if near
-                    else f"known without being declared are {', '.join(sorted(PREFIXES))};"
+                    else f"the predeclared prefixes are {', '.join(sorted(PREFIXES))};"
                 )
                 raise text.error(
                     token.start,
-                    f"the prefix '{given_prefix}:' is not known; {hint} else declare it: PREFIX {given_prefix}: <…>",
+                    f"unknown prefix '{given_prefix}:'; {hint} otherwise declare it: PREFIX {given_prefix}: <…>",
                 )
         elif token.kind is TokenKind.IRI and position >= prologue and ambiguous(token, known.keys()):
             raise text.error(
                 token.start,
-                "this can be read as an IRI or as a comparison: write the IRI in full, or put spaces around '<'",
+                "ambiguous: an IRI or a comparison; write the IRI in full, or put spaces around '<'",
             )
     form = next((token for token in _body(found) if token.kind is TokenKind.WORD and token.upper in _FORMS), None)
     if form is None:
-        raise text.error(0, "no query: it must begin with SELECT, ASK, CONSTRUCT or DESCRIBE")
+        raise text.error(0, "a query must begin with SELECT, ASK, CONSTRUCT or DESCRIBE")
     names_graphs = _check_from(text, found, known)
     asks_graphs = any(token.kind is TokenKind.WORD and token.upper == "GRAPH" for token in found)
     used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
@@ -223,7 +224,7 @@ def require_terms(store: ox.Store, sparql: str) -> None:
 
 
 def _prologue(found: list[Token]) -> int:
-    """Return the number of tokens that declare prefixes and bases: no ``<`` among these is a comparison."""
+    """Return the number of tokens that declare prefixes and bases, where ``<`` is never a comparison."""
     end = 0
     while True:
         first, second, third = (*found[end : end + 3], *[None] * 3)[:3]
@@ -246,7 +247,7 @@ def _body(found: list[Token]) -> list[Token]:
 
 
 def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
-    """Return whether the query names its graphs with FROM; raises QueryError for any but the memory's own."""
+    """Return whether the query names graphs with FROM; raise QueryError for graphs that the memory does not have."""
     own, named = {iri.value for iri in CANONICAL}, False
     for position, token in enumerate(found):
         if token.kind is not TokenKind.WORD or token.upper != "FROM":
@@ -255,7 +256,9 @@ def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
         graph = rest[1] if rest and rest[0].upper == "NAMED" and len(rest) > 1 else rest[0] if rest else token
         if _iri(graph, known) not in own:
             listed = ", ".join(f"dxg:{name}" for name in CANONICAL.values())
-            raise text.error(graph.start, f"the memory has no such graph, and none is fetched; it has {listed}")
+            raise text.error(
+                graph.start, f"the memory does not have this graph, and graphs are not fetched; it has {listed}"
+            )
         named = True
     return named
 
@@ -268,7 +271,7 @@ def _iri(token: Token, known: Mapping[str, str]) -> str:
 
 
 def _ordered(found: list[Token]) -> bool:
-    """Return whether the outermost query states an order."""
+    """Return whether the outermost query has an ORDER BY."""
     depth = 0
     for token in found:
         if token.kind is TokenKind.SIGN:
@@ -279,17 +282,17 @@ def _ordered(found: list[Token]) -> bool:
 
 
 def _syntax_error(text: _Text, told: str) -> QueryError:
-    """Return the error for what Oxigraph's parser says is wrong."""
+    """Return the error for a message of Oxigraph's parser."""
     told = " ".join(told.split())
     found = re.match(r"error at (\d+):(\d+): (.*)", told)
     if not found:
         return QueryError(f"query: {told}")
     line, column, what = int(found.group(1)), int(found.group(2)), found.group(3)
-    return text.error(text.offset(line, column), f"not understood here{_expected(what)}")
+    return text.error(text.offset(line, column), f"syntax error{_expected(what)}")
 
 
 def _expected(what: str) -> str:
-    """Return the helpful part of what the parser expected: its words, and not its character classes."""
+    """Return the words, without character classes, that the parser expected."""
     names = re.sub(r"\[[^\]]*\]( \|)?|'[^']*'\.\.='[^']*'", "", what.removeprefix("expected ").removeprefix("one of "))
     told = next((name for name in names.split(", ") if " " in name.strip() and "not found" not in name), None)
     if told:

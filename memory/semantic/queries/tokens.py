@@ -1,8 +1,8 @@
-r"""The words of a SPARQL query, told apart well enough to see what it would do.
+r"""Tokens of a SPARQL query, for checking it before it is run.
 
-This is no parser. It finds keywords, prefixed names, IRIs and strings as Oxigraph's parser does, and where the two
-might disagree about where a string or a comment begins, the query is refused rather than guessed at: ``FILTER(?a<?b#>``
-can be read as an IRI or as a comparison and a comment, and ``trueSERVICE`` as one word or two.
+This is not a parser. It finds keywords, prefixed names, IRIs and strings as Oxigraph's parser does. Where the two could
+disagree about the beginning of a string or a comment, the query is refused: ``FILTER(?a<?b#>`` can be read as an IRI or
+as a comparison and a comment, and ``trueSERVICE`` as one word or two.
 
 >>> [token.text for token in tokens("ASK { ?s a dx:Scene }")]
 ['ASK', '{', '?s', 'a', 'dx:Scene', '}']
@@ -17,7 +17,7 @@ from enum import StrEnum
 
 
 class TokenKind(StrEnum):
-    """What a token is."""
+    """Kind of a token."""
 
     COMMENT = "comment"
     IRI = "iri"
@@ -32,7 +32,7 @@ class TokenKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A token, and where it begins."""
+    """A token, with its kind and its offset."""
 
     kind: TokenKind
     text: str
@@ -40,6 +40,7 @@ class Token:
 
     @property
     def upper(self) -> str:
+        """Text of the token in capitals."""
         return self.text.upper()
 
 
@@ -88,10 +89,10 @@ def tokens(text: str) -> Iterator[Token]:
 
 
 def decoded(text: str) -> tuple[str, list[tuple[int, int]]]:
-    r"""Return the text with codepoint escapes outside strings, comments and IRIs as the letters that they stand for.
+    r"""Return a text with codepoint escapes decoded outside strings, comments and IRIs.
 
-    Also pairs of offsets, in the decoded and in the given text, to translate places by. Escapes of anything but
-    letters, digits and ``_:?$-`` are left standing: they are no SPARQL.
+    Also return pairs of offsets, in the decoded and in the given text, to translate places. Only escapes of letters,
+    digits and ``_:?$-`` are decoded; SPARQL does not allow others there.
 
     >>> decoded(r"SEL\u0045CT * {}")[0]
     'SELECT * {}'
@@ -117,13 +118,13 @@ def _letter(escape: str) -> str | None:
 
 
 def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
-    """Return the offset in the text as given, of an offset in the decoded one."""
+    """Return the offset in the given text for an offset in the decoded text."""
     here, there = max(place for place in places if place[0] <= offset)
     return there + offset - here
 
 
 def ambiguous(token: Token, prefixes: Collection[str]) -> bool:
-    """Return whether an IRI might be a comparison that hides the beginning of a comment, a string or a SERVICE."""
+    """Return whether an IRI may be a comparison that hides the beginning of a comment, a string or a SERVICE."""
     return bool(_may_be_comparison(token, prefixes) and re.search(r"[#']|service", token.text, re.IGNORECASE))
 
 
@@ -134,17 +135,16 @@ def _may_be_comparison(iri: Token, prefixes: Collection[str]) -> bool:
 
 
 _OPENING = {")": "(", "]": "[", "}": "{", ">>": "<<"}
-"""What each closing bracket closes."""
+"""Opening bracket of each closing bracket."""
 
 _PREFIX_OPERATORS = {"!", "-", "+", "^"}
 
 
 def too_deep(found: Sequence[Token], prefixes: Collection[str], limit: int) -> Token | None:
-    """Return the first token that is nested more than ``limit`` levels deep, None where there is none.
+    """Return the first token that is nested more than ``limit`` levels deep, or None.
 
-    Open brackets of all sorts count, ``<<`` among them, and prefix operators that follow each other. The count is
-    never below the nesting that a parser meets: brackets that open in an IRI count too where it may be a comparison,
-    as in ``?a<((?b>?c``.
+    Open brackets of all sorts count, ``<<`` among them, and prefix operators in a row. The count is never below the
+    nesting that a parser meets: brackets within an IRI that may be a comparison count too, as in ``?a<((?b>?c``.
 
     >>> words = list(tokens("ASK { FILTER(!!(?a)) }"))
     >>> too_deep(words, (), 5), too_deep(words, (), 4).start
@@ -161,7 +161,7 @@ def too_deep(found: Sequence[Token], prefixes: Collection[str], limit: int) -> T
                     levels.append((sign, depth + operators + 1))
                 elif any(opened == _OPENING[sign] for opened, _ in levels):
                     while levels.pop()[0] != _OPENING[sign]:
-                        pass  # what is left open inside ends here, or the query is malformed
+                        pass  # brackets left open inside end here, or the query is malformed
                 depth = levels[-1][1] if levels else 0
                 operators = 0
             operators = 0
@@ -171,7 +171,7 @@ def too_deep(found: Sequence[Token], prefixes: Collection[str], limit: int) -> T
 
 
 def _brackets(token: Token, prefixes: Collection[str]) -> list[str]:
-    """Return the brackets in a token: itself, or those that open in an IRI that may be none."""
+    """Return the brackets of a token: itself, or those within an IRI that may be a comparison."""
     if token.kind is TokenKind.SIGN:
         return [token.text] if token.text in _OPENING or token.text in _OPENING.values() else []
     if token.kind is TokenKind.IRI and _may_be_comparison(token, prefixes):

@@ -1,8 +1,8 @@
-"""The union of the ontology and the asserted, inferred and learned graphs, as a query sees it: each triple once.
+"""Union of the ontology and the asserted, inferred and learned graphs, as queries read it: each triple once.
 
-Asked over several graphs at once, Oxigraph gives a triple that is in two of them twice, which SPARQL does not. So as
-soon as the three overlap anywhere, their union is kept as a graph of its own, and queries look at that; as long as they
-do not, which is so for what is loaded in bulk, nothing is written twice.
+A query over several graphs gets a triple that is in two of them twice from Oxigraph, contrary to SPARQL. So as soon as
+the three graphs overlap, their union is stored as a graph of its own that queries read; as long as they do not, as
+after loading in bulk, nothing is stored twice.
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ BUILD = (
 
 
 def default_graph(store: ox.Store) -> list[ox.NamedNode]:
-    """Return the graphs that a query without GRAPH looks at, without a triple in two of them, and without empty
-    ones."""
+    """Return the non-empty graphs that a query without GRAPH reads; none of them share a triple."""
     if store.contains_named_graph(MERGED):
         return [MERGED]
     graphs = [graph_iri(name) for name in UNION]
@@ -31,7 +30,7 @@ def default_graph(store: ox.Store) -> list[ox.NamedNode]:
 
 
 def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Operation]:
-    """Yield the operations that keep the union right under a change; they come after those of the change itself."""
+    """Yield the operations that update the union for a change; they are run after those of the change."""
     if store.contains_named_graph(MERGED):
         gone = {triple for name in UNION for triple in removed.get(name, ())}
         yield from deletion(MERGED, [t for t in gone if not any(_after(store, n, t, added, removed) for n in UNION)])
@@ -39,13 +38,13 @@ def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Opera
 
 
 def building(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]:
-    """The operation in SPARQL that builds the union where there is none and a change makes the graphs overlap."""
+    """Yield the SPARQL operation that builds the union, if it does not exist and a change makes the graphs overlap."""
     if not store.contains_named_graph(MERGED) and overlapping(store, added, removed):
         yield BUILD
 
 
 def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
-    """Whether what a change adds to a graph another graph holds after it."""
+    """Return whether a change adds a triple to a graph that another graph has after it."""
     by_subject: dict[GraphName, dict[object, list[ox.Triple]]] = {name: defaultdict(list) for name in UNION}
     for name in UNION:
         for triple in added.get(name, ()):
@@ -61,14 +60,14 @@ def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
 
 
 def _after(store: ox.Store, name: GraphName, triple: ox.Triple, added: Triples, removed: Triples) -> bool:
-    """Return whether a graph will hold a triple after the change."""
+    """Return whether a graph has a triple after the change."""
     if triple in added.get(name, ()):
         return True
     return triple not in removed.get(name, ()) and quad_of(triple, graph_iri(name)) in store
 
 
 def merge_if_overlapping(store: ox.Store) -> None:
-    """Build the union of a store that was filled in bulk, where the three graphs overlap."""
+    """Build the union in a store that was filled in bulk, if the three graphs overlap."""
     if store.contains_named_graph(MERGED):
         return
     by_size = sorted(UNION, key=lambda name: _size(store, name))

@@ -1,10 +1,9 @@
-"""The program of the process that runs queries: it reads requests, and writes one answer to each.
+"""Program of the process that runs queries: it reads requests, and writes one answer to each.
 
-It is run as a script by :class:`deixis.memory.semantic.queries.process.QueryProcess`, and imports nothing of Deixis, so
-that it starts in milliseconds. A thread of its own evaluates queries, on a stack that deeply nested ones do not
-exhaust; the main thread waits for requests, and ends the process as soon as the one that started it is gone. The
-kernel enforces both limits: the memory limit by ``RLIMIT_DATA``, and the time limit, should the starting process be
-stopped and unable to, by a timer.
+:class:`deixis.memory.semantic.queries.process.QueryProcess` runs it as a script. It imports no module of Deixis, so
+that it starts in milliseconds. One thread evaluates queries, with a stack large enough for deeply nested ones; the main
+thread waits for requests, and ends the process as soon as the starting process is gone. The kernel enforces both
+limits: the memory limit by ``RLIMIT_DATA``, and the time limit by a timer in case the starting process is suspended.
 """
 
 from __future__ import annotations
@@ -22,28 +21,31 @@ import threading
 from typing import Any, BinaryIO
 
 STACK = 256 * 2**20
-"""Bytes of stack for the evaluating thread. Only the touched pages take memory."""
+"""Bytes of stack of the evaluating thread. Only used pages take memory."""
 
 MAX_GROWTH = 128 * 2**20
-"""Bytes of memory beyond those of the open store that a process keeps for its next query; with more it ends."""
+"""Bytes of memory beyond those of the open store that the process may keep between queries; with more it ends."""
 
 BASE = "urn:deixis:query"
-"""What relative IRIs of a query without BASE are relative to."""
+"""Base of relative IRIs in a query without BASE."""
 
 HEAD = struct.Struct("<c?Q")
-"""Head of an answer: its kind, whether the process ends after it, and how many bytes follow."""
+"""Head of an answer: its kind, whether the process ends after it, and the number of bytes that follow."""
 
 READY, SOLUTIONS, TRIPLES, SYNTAX, VALUE, STORAGE, MEMORY, SIZE = b"R", b"S", b"T", b"Y", b"V", b"D", b"M", b"L"
-"""Kinds of answers: a store is open; SPARQL results as JSON; N-Triples; a query that is no SPARQL, or has a value that
-cannot be; a store that cannot be read; the memory limit is reached; the answer is too large."""
+"""Kinds of answers, in this order:
+
+a store is open; SPARQL results as JSON; N-Triples; a malformed query; an impossible value in a query; a store that
+cannot be read; the memory limit is reached; the answer is too large.
+"""
 
 
-class _Full(Exception):
-    """The answer is larger than it may be."""
+class _AnswerTooLargeError(Exception):
+    """The answer is larger than its limit."""
 
 
 class _Answer(io.RawIOBase):
-    """Collects what is written, up to a number of bytes."""
+    """File that collects bytes up to a limit."""
 
     def __init__(self, limit: int) -> None:
         self.content = bytearray()
@@ -54,13 +56,13 @@ class _Answer(io.RawIOBase):
 
     def write(self, data: Any) -> int:
         if len(self.content) + len(data) > self._limit:
-            raise _Full
+            raise _AnswerTooLargeError
         self.content += data
         return len(data)
 
 
 def _taken() -> int:
-    """Return the bytes of this process's data, as ``RLIMIT_DATA`` counts them; 0 where the system does not tell."""
+    """Return the bytes of this process's data, as ``RLIMIT_DATA`` counts them; 0 on systems that do not report them."""
     try:
         with open("/proc/self/statm", "rb") as status:
             return int(status.read().split()[5]) * resource.getpagesize()
@@ -69,15 +71,15 @@ def _taken() -> int:
 
 
 class _Evaluator:
-    """The open store, and what is done with it."""
+    """The open store, and the requests that it answers."""
 
     def __init__(self) -> None:
         self._store: Any = None
-        self._at_start = 0  # bytes of data with the first store open
+        self._at_start = 0  # bytes of data when the first store was opened
 
     @property
     def grown(self) -> int:
-        """Bytes of memory beyond those that the process began with."""
+        """Bytes of memory beyond those at the start."""
         return _taken() - self._at_start
 
     def open(self, path: str) -> tuple[bytes, bytes]:
@@ -115,7 +117,7 @@ class _Evaluator:
             return self.query(request)
         except MemoryError:
             return MEMORY, b""
-        except _Full:
+        except _AnswerTooLargeError:
             return SIZE, b""
         except SyntaxError as error:
             return SYNTAX, str(error).encode("utf-8", "replace")

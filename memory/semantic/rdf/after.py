@@ -1,4 +1,4 @@
-"""A store as it would be after a change that is not written yet, one canonical graph at a time."""
+"""A store as it will be after a change that is not written yet, one canonical graph at a time."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from deixis.memory.semantic.rdf.change import Change
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 
 DATA = tuple(name for name in GraphName if name is not GraphName.SHAPES)
-"""The graphs that say something of the world; those of shapes do not."""
+"""Graphs with statements about the world, unlike those of shapes."""
 
 Node = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple
 
 
 class After:
-    """Look-ups in the canonical graphs of a store as a change leaves them; each costs what it finds."""
+    """Look-ups in the canonical graphs of a store after a change; the cost of each is proportional to its results."""
 
     def __init__(self, store: ox.Store, change: Change | None = None) -> None:
         self.store, self.change = store, change or Change()
@@ -26,7 +26,7 @@ class After:
         self._indexes: dict[tuple[GraphName, str], dict[object, list[ox.Triple]]] = {}
 
     def holds(self, name: GraphName, triple: ox.Triple) -> bool:
-        """Return whether a graph holds a triple after the change."""
+        """Return whether a graph has a triple after the change."""
         if triple in self.change.added.get(name, ()):
             return True
         gone = triple in self.change.removed.get(name, ())
@@ -39,9 +39,9 @@ class After:
         predicate: ox.NamedNode | None = None,
         obj: Node | None = None,
     ) -> Iterator[ox.Triple]:
-        """Yield the triples of a graph with that subject, predicate and object; all where none of the three is given.
+        """Yield the triples of a graph with a subject, predicate and object, where None matches all.
 
-        What the change adds comes last.
+        Triples that the change adds come last.
         """
         gone = self.change.removed.get(name)
         for quad in self.store.quads_for_pattern(subject, predicate, obj, self._graphs[name]):  # type: ignore[arg-type]
@@ -58,17 +58,17 @@ class After:
             yield from self.change.added.get(name, ())
 
     def coming(self, name: GraphName, subject: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
-        """Yield what the change adds about a subject."""
+        """Yield the triples that the change adds about a subject."""
         triples = self._index(name, "subject").get(subject, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
     def arriving(self, name: GraphName, predicate: ox.NamedNode | None, obj: Node) -> Iterator[ox.Triple]:
-        """Yield what the change adds that leads to an object."""
+        """Yield the triples that the change adds with an object."""
         triples = self._index(name, "object").get(obj, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
     def _index(self, name: GraphName, by: str) -> dict[object, list[ox.Triple]]:
-        """Return what the change adds to a graph by subject, predicate or object; made when it is first asked for."""
+        """Return the triples that the change adds to a graph, by subject, predicate or object; cache them."""
         found = self._indexes.get((name, by))
         if found is None:
             found = self._indexes[name, by] = defaultdict(list)
@@ -77,12 +77,12 @@ class After:
         return found
 
     def says(self, subject: Node, predicate: ox.NamedNode) -> bool:
-        """Return whether a predicate may be used of a subject in any graph; where not, none has to be looked at."""
+        """Return whether a subject can have a predicate in any graph; if not, no graph has to be read."""
         stored = self.store.quads_for_pattern(subject, predicate, None, None)  # type: ignore[arg-type]
         return any(True for _ in stored) or any(True for name in DATA for _ in self.coming(name, subject, predicate))
 
     def of_data(self, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
-        """Yield the triples of those stored quads that are in a graph of data and stay there."""
+        """Yield the triples of stored quads that are in a data graph and stay there."""
         for quad in quads:
             name = self._data.get(quad.graph_name)
             if name is not None:

@@ -1,4 +1,4 @@
-"""One change of a memory, worked out before it is written: what comes, what goes, and the update that does it."""
+"""A change of a memory, computed before it is written: added and removed triples, and the update that writes it."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet, graph_iri, le
 from deixis.ontology.triples import content_key, skolem
 
 Models = Mapping[ModelSet, Sequence[ox.Triple]]
-"""Sets of learned models, each to stand in the place of the one that is there; sets that are left out stay."""
+"""Sets of learned models, each replacing the stored one; sets that are left out stay."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """What a write adds to the canonical graphs and removes from them, and the operations of its one update.
+    """Triples that a write adds to the canonical graphs and removes from them, and the operations of its one update.
 
-    What is added was not there, and what is removed was: what a lesson says that is known already changes nothing.
+    Added triples were not stored before, and removed ones were: a lesson with only known triples changes nothing.
     """
 
     added: ledger.Triples = field(default_factory=dict)
@@ -30,7 +30,7 @@ class Change:
 
 
 def together(*changes: Change) -> Change:
-    """Return one change that makes these in one step, in this order."""
+    """Return one change that makes several changes in one step, in their order."""
     added: dict[GraphName, frozenset[ox.Triple]] = {}
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     for change in changes:
@@ -42,14 +42,14 @@ def together(*changes: Change) -> Change:
 
 
 def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
-    """Return the change that a new lesson makes, but for what follows from it."""
+    """Return the change that a new lesson makes, without what follows from it."""
     held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
     added = {name: frozenset(triples).difference(held[name]) for name, triples in said.items()}
     return Change(added=added, operations=tuple(ledger.arrival(store, lesson, said, held)))
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
-    """Return the change that forgetting a lesson makes, but for what followed from it."""
+    """Return the change that forgetting a lesson makes, without what followed from it."""
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     operations: list[ledger.Operation] = []
     for name, triples in ledger.copies(store, lesson).items():
@@ -78,7 +78,7 @@ def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]
 
 
 def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]) -> Change:
-    """Return the change that takes triples out of a copy of learned models and puts others in."""
+    """Return the change that replaces triples in a copy of learned models."""
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
         {GraphName.LEARNED: frozenset(come).difference(ledger.held(store, graph_iri(GraphName.LEARNED), come))},
@@ -88,25 +88,26 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
 
 
 def reconcluding(gone: Iterable[ox.Triple], come: Iterable[ox.Triple]) -> Change:
-    """Return the change that takes triples out of the inferred graph and puts others in; those go that are there."""
+    """Return the change that replaces triples in the inferred graph; only existing triples are removed."""
     graph, gone, come = graph_iri(GraphName.INFERRED), frozenset(gone), frozenset(come)
     operations = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
     return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, operations)
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:
-    """Return contributions as they will be stored. Raises RejectedWriteError for what no lesson may say."""
+    """Return contributions as they will be stored. Raises RejectedWriteError for triples that no lesson may have."""
     if not lesson.strip():
-        raise RejectedWriteError("a lesson needs a name")
+        raise RejectedWriteError("the name of a lesson must not be empty")
     if GraphName.INFERRED in contributions:
-        raise RejectedWriteError(f"lesson '{lesson}' cannot say what is inferred: pass it as the inferred triples")
+        raise RejectedWriteError(
+            f"lesson '{lesson}' must not contribute to the inferred graph: pass such triples as `inferred`"
+        )
     key = content_key(lesson)
     return {GraphName(name): ledger.as_stored(named(key, triples)) for name, triples in contributions.items()}
 
 
 def named(key: str, triples: Iterable[ox.Triple]) -> Iterable[ox.Triple]:
-    """Yield triples whose blank nodes have become names under ``key``; raises RejectedWriteError for triples in
-    triples."""
+    """Yield triples whose blank nodes are named under ``key``; raise RejectedWriteError for nested triples."""
     for triple in triples:
         subject, obj = triple.subject, triple.object
         if isinstance(subject, ox.NamedNode) and isinstance(obj, ox.NamedNode | ox.Literal):
@@ -121,5 +122,5 @@ def _name(key: str, term: ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple) 
     if isinstance(term, ox.BlankNode):
         return skolem(f"{key}.{term.value}")
     if isinstance(term, ox.Triple):
-        raise RejectedWriteError(f"a triple inside a triple cannot be kept: {term}")
+        raise RejectedWriteError(f"a triple inside a triple cannot be stored: {term}")
     return term

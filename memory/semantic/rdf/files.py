@@ -1,10 +1,10 @@
-"""RDF files: read without trust, and written as sorted Turtle and TriG; the prefixes of both.
+"""RDF files: read with checks, and written as sorted Turtle and TriG; the prefixes of both.
 
 >>> import pyoxigraph as ox
 >>> print(turtle([ox.Triple(ox.NamedNode("urn:a"), ox.NamedNode("urn:p"), ox.Literal("x"))]).splitlines()[-2:])
 ['<urn:a>', '    <urn:p> "x" .']
 
-Nothing that a file names is fetched: ``owl:imports`` is a triple like any other.
+Nothing that a file refers to is fetched: ``owl:imports`` is a triple like any other.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _SAFE_LOCAL = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 
 
 def short(iri: str) -> str:
-    """Return an IRI for people to read: by prefix where there is one, else in angle brackets.
+    """Return an IRI for messages: with a prefix where there is a known one, else in angle brackets.
 
     >>> short("https://w3id.org/deixis/learned/layout/dinner-1")
     'lx:layout/dinner-1'
@@ -54,7 +54,7 @@ def short(iri: str) -> str:
 
 
 def turtle_name(iri: str) -> str:
-    """Return an IRI in Turtle: by prefix where what follows is plain, else in angle brackets.
+    """Return an IRI in Turtle: with a prefix where the rest is a plain name, else in angle brackets.
 
     >>> turtle_name("https://w3id.org/deixis/learned/layout/dinner-1")
     '<https://w3id.org/deixis/learned/layout/dinner-1>'
@@ -69,7 +69,7 @@ _STRINGS = {PREFIXES["xsd"] + "string", PREFIXES["rdf"] + "langString", PREFIXES
 
 
 def turtle(triples: Iterable[ox.Triple]) -> str:
-    """Return a Turtle document; names that stand for blank nodes become blank nodes."""
+    """Return a Turtle document; named blank nodes become blank nodes again."""
     return "\n".join([*_prefixes(), "", *_statements(triples, "")]) + "\n"
 
 
@@ -89,7 +89,7 @@ def _prefixes() -> Iterator[str]:
 
 
 def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
-    subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms stand in many triples
+    subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms occur in many triples
     rows = sorted({(subject(t.subject), predicate(t.predicate), term(t.object)) for t in triples})
     for (_, name), about in groupby(rows, key=lambda row: row[0]):
         said = [f"{verb} {obj}" for _, (_, verb), obj in about]
@@ -148,12 +148,12 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
     """Yield the statements of a file. Raises ImportFormatError, with the place where it is malformed."""
     file_format = FORMATS.get(file.suffix.lower())
     if file_format is None:
-        raise ImportFormatError(f"{file}: of no known format; it must end in {', '.join(FORMATS)}; views in .zip")
+        raise ImportFormatError(f"{file}: unknown format; its name must end in {', '.join(FORMATS)} or .zip (views)")
     if not file.is_file():
         raise ImportFormatError(f"{file}: there is no such file")
     size = file.stat().st_size
     if size > MAX_BYTES:
-        raise ImportFormatError(f"{file}: {size} bytes are too many; at most {MAX_BYTES} are read, so split the file")
+        raise ImportFormatError(f"{file}: the file must have at most {MAX_BYTES} bytes, got {size}; split it")
     try:
         content = file.read_bytes()
     except OSError as error:
@@ -164,26 +164,26 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
     except SyntaxError as error:
         place = f"{error.lineno}:{error.offset}: " if error.lineno else ""
         raise ImportFormatError(f"{file}:{place or ' '}{' '.join(str(error.msg).split())}") from None
-    except MemoryError as error:  # what Oxigraph makes of a name or a text that is larger than its buffer
+    except MemoryError as error:  # Oxigraph raises it for a name or a text that is larger than its buffer
         raise ImportFormatError(f"{file}: a name or a text in it is too long to be read; shorten it") from error
     except (OSError, ValueError) as error:
         raise ImportFormatError(f"{file}: {error}") from error
 
 
 def _xml(file: Path, content: bytes) -> str:
-    """Return XML as text, in whatever encoding; refused where it has a DTD or is in an encoding that could hide one."""
+    """Return XML as text, from any encoding; refuse it where it has a DTD, or an encoding that could hide one."""
     start = next(((len(bom), name) for bom, name in _BOMS if content.startswith(bom)), None)
     start = start or next(((0, name) for bare, name in _BARE if content.startswith(bare)), (0, "utf-8"))
     try:
         text = content[start[0] :].decode(start[1])
     except UnicodeDecodeError as error:
-        raise ImportFormatError(f"{file}: is not {start[1].upper()} at byte {error.start}; save it as UTF-8") from None
+        raise ImportFormatError(f"{file}: invalid {start[1].upper()} at byte {error.start}; save it as UTF-8") from None
     declaration = _DECLARATION.match(text)
     named = _ENCODING.search(declaration.group()) if declaration else None
     if named and named.group(1).lower() not in ("utf-8", "us-ascii", start[1], start[1][:6]):
-        raise ImportFormatError(f"{file}: the encoding '{named.group(1)}' is not read; save it as UTF-8")
+        raise ImportFormatError(f"{file}: the encoding '{named.group(1)}' is not supported; save it as UTF-8")
     if declaration:
-        # the text is handed on as UTF-8, whatever it was: its declaration goes, and lines stay where they are
+        # the text is returned as UTF-8: its declaration is removed, and line numbers stay
         text = text[: declaration.start()] + "\n" * declaration.group().count("\n") + text[declaration.end() :]
     found = _DTD.search(text)
     if found:

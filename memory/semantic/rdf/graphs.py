@@ -1,14 +1,13 @@
-"""The named graphs of a memory, and the copies that say which lesson contributed what.
+"""Named graphs of a memory, and the copies that record which lesson contributed what.
 
-The six canonical graphs are what is known. Beside them stands, for every lesson and graph, a copy of what that lesson
-contributed, and for the packaged ontology and shapes likewise: a triple may go when nobody's copy holds it any more.
-What was loaded in bulk belongs to no lesson and stands in the canonical graph alone; of a triple that a lesson
-contributes too, a copy under ``loaded`` says that it stays when the lesson goes. Learned models, which all lessons
-teach together, have copies of their own under ``models``, and are replaced as a whole. What they are learned from,
-counted, stands under ``statistics``: once for all lessons, and a share for each. It follows from the lessons: no query
-looks at it, and no export has it. Nor do they have ``views``, which says what views each lesson taught (see
-:mod:`deixis.memory.semantic.rdf.links`), and ``order``, in which the lessons are numbered as they come (see
-:mod:`deixis.memory.semantic.rdf.ledger`).
+The six canonical graphs are the content. For each lesson and graph there is also a copy of what the lesson contributed,
+and likewise for the packaged ontology and shapes: a triple is removed when no copy has it any more. Triples loaded in
+bulk belong to no lesson and are in the canonical graph only; if a lesson contributes such a triple too, a copy under
+``loaded`` keeps it when the lesson is removed. Learned models, which all lessons teach together, have copies of their
+own under ``models``, and are replaced as a whole. The counts that they are learned from are under ``statistics``: once
+for all lessons, and a share for each. They follow from the lessons: queries and exports leave them out. The same holds
+for ``views``, which has the views that each lesson taught (see :mod:`deixis.memory.semantic.rdf.links`), and ``order``,
+which numbers the lessons as they are learned (see :mod:`deixis.memory.semantic.rdf.ledger`).
 """
 
 from __future__ import annotations
@@ -43,20 +42,20 @@ class GraphName(StrEnum):
 
 
 class ModelSet(StrEnum):
-    """What all lessons together teach: the meaning of relation words, and the sizes of kinds of things."""
+    """Models that all lessons teach together: the meaning of relation words, and the sizes of kinds of things."""
 
     WORDS = "words"
     SIZES = "sizes"
 
 
 CONTRIBUTED = tuple(name for name in GraphName if name is not GraphName.INFERRED)
-"""The graphs that lessons contribute to; the inferred one is always replaced as a whole."""
+"""Graphs that lessons contribute to; the inferred graph is always replaced as a whole."""
 
 UNION = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED)
-"""The graphs that a query without GRAPH looks at: what is known, and the terms in which it is said."""
+"""Graphs that a query without GRAPH reads: what is known, and the vocabulary that it is stated in."""
 
 MERGED = ox.NamedNode(GRAPHS + "merged")
-"""Their union as a graph of its own, kept where they overlap: see :mod:`deixis.memory.semantic.queries.union`."""
+"""Union of these graphs, stored as a graph where they overlap: see :mod:`deixis.memory.semantic.queries.union`."""
 
 
 def graph_iri(name: GraphName) -> ox.NamedNode:
@@ -65,11 +64,11 @@ def graph_iri(name: GraphName) -> ox.NamedNode:
 
 
 CANONICAL = {graph_iri(name): name for name in GraphName}
-"""From IRI to canonical graph."""
+"""Canonical graph by IRI."""
 
 
 def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
-    """Return the graph that holds what one lesson contributed to a canonical one.
+    """Return the graph with the contributions of one lesson to a canonical graph.
 
     >>> lesson_graph("set 1", GraphName.LEARNED).value
     'https://w3id.org/deixis/graph/lesson/set%201/learned'
@@ -78,17 +77,17 @@ def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
 
 
 def package_graph(name: GraphName) -> ox.NamedNode:
-    """Return the graph that holds what the package itself contributes: the ontology and the shapes."""
+    """Return the graph with the contributions of the package: the ontology and the shapes."""
     return ox.NamedNode(PACKAGE + name)
 
 
 def loaded_graph(name: GraphName) -> ox.NamedNode:
-    """Return the graph of the triples that were loaded in bulk and that a lesson contributes too."""
+    """Return the graph of the triples that were loaded in bulk and also come from a lesson."""
     return ox.NamedNode(LOADED + name)
 
 
 def models_graph(models: ModelSet) -> ox.NamedNode:
-    """Return the graph that holds a set of models as the learned graph has it.
+    """Return the graph with the copy of a set of models in the learned graph.
 
     >>> models_graph(ModelSet.SIZES).value
     'https://w3id.org/deixis/graph/models/sizes'
@@ -97,13 +96,13 @@ def models_graph(models: ModelSet) -> ox.NamedNode:
 
 
 def models_of_graph(iri: str) -> ModelSet | None:
-    """Return the set of models that a copy's IRI names, or None where it names none."""
+    """Return the set of models that the IRI of a copy names, or None for another IRI."""
     name = iri.removeprefix(MODELS)
     return ModelSet(name) if iri.startswith(MODELS) and name in list(ModelSet) else None
 
 
 def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
-    """Return the lesson and the graph that a copy's IRI names, or None where it names none.
+    """Return the lesson and the graph that the IRI of a copy names, or None for another IRI.
 
     >>> lesson_of_graph("https://w3id.org/deixis/graph/lesson/set%201/learned")
     ('set 1', <GraphName.LEARNED: 'learned'>)
@@ -119,26 +118,26 @@ def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
 
 
 COUNTED = ox.NamedNode(STATISTICS + "counted")
-"""The graph of what all lessons come to."""
+"""Graph of the counts of all lessons together."""
 
 KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
-"""What the statistics and the inferred graph are right for is said under this, in :data:`COUNTED` about itself."""
+"""Predicate for the rules by which the statistics and the inferred graph are up to date, said of :data:`COUNTED`."""
 
 
 def share_graph(lesson: str) -> ox.NamedNode:
-    """Return the graph that holds what one lesson adds to the statistics."""
+    """Return the graph with the share of one lesson in the statistics."""
     return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
 
 
 ORDER = ox.NamedNode(GRAPHS + "order")
-"""The graph that numbers the lessons in the order in which they came, whatever the clock said."""
+"""Graph that numbers the lessons in the order in which they were learned, independent of the clock."""
 
 NUMBER, NEXT = ox.NamedNode(GRAPHS + "order/number"), ox.NamedNode(GRAPHS + "order/next")
-"""The number of a lesson; and that of the next one, which is said of :data:`ORDER` itself."""
+"""Predicate for the number of a lesson; for :data:`ORDER` itself, the number of the next lesson."""
 
 
 CATEGORY_OF_VIEW = ox.NamedNode(VIEWS + "category")
-"""Says of a view, in the graph of a lesson that taught it, of which category it is."""
+"""Predicate for the category of a view, in the graph of a lesson that taught it."""
 
 
 def views_graph(lesson: str) -> ox.NamedNode:
@@ -147,7 +146,7 @@ def views_graph(lesson: str) -> ox.NamedNode:
 
 
 def lesson_of_views(graph: object) -> str | None:
-    """Return the lesson whose views a graph holds, or None for another graph.
+    """Return the lesson whose views a graph has, or None for another graph.
 
     >>> lesson_of_views(views_graph("set 1"))
     'set 1'
@@ -157,13 +156,15 @@ def lesson_of_views(graph: object) -> str | None:
 
 
 def view_node(id: str) -> ox.NamedNode:
-    """Return the name of a view of the perceptual store."""
+    """Return the IRI of a view of the perceptual store."""
     return ox.NamedNode(f"{VIEWS}id/{quote(id, safe='')}")
 
 
 def copied_graph(iri: str) -> GraphName | None:
-    """Return the canonical graph that a copy, of a lesson, models, the package or loaded, contributes to; None for
-    no copy."""
+    """Return the canonical graph that a copy contributes to, or None for another graph.
+
+    A copy is that of a lesson, of models, of the package, or of loaded triples.
+    """
     found = lesson_of_graph(iri)
     if found:
         return found[1]

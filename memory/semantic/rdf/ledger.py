@@ -1,4 +1,4 @@
-"""Who contributed what: reading the copies in a store, and the one update that a lesson's coming or going takes."""
+"""Contributions of lessons: read the copies in a store, and make the update for a lesson that is added or removed."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Triples = Mapping[GraphName, frozenset[ox.Triple]]
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation of an update: a graph gains triples, loses triples, or goes as a whole."""
+    """One operation of an update: insert triples into a graph, delete them from it, or drop the graph."""
 
     verb: Literal["INSERT", "DELETE", "DROP"]
     graph: ox.NamedNode
@@ -45,7 +45,7 @@ class Operation:
     def texts(self) -> Iterator[str]:
         """Yield the operation in SPARQL, in parts of 10,000 triples.
 
-        Terms write themselves as N-Triples, escapes and all; an IRI that could break out of ``<>`` cannot be made.
+        Terms are written as N-Triples with escapes; an IRI that could end its ``<>`` early cannot be made.
         """
         if self.verb == "DROP":
             yield f"DROP SILENT GRAPH {self.graph}"
@@ -57,19 +57,19 @@ class Operation:
 STARTED = ox.NamedNode(PROV.STARTED_AT_TIME)
 
 NEVER = datetime.min.replace(tzinfo=UTC)
-"""When a lesson started that does not say so: before all others."""
+"""Starting time of a lesson that states none: before all others."""
 
 
 def lessons(store: ox.Store) -> tuple[str, ...]:
-    """Return the lessons that a store holds, in the order learned: see :func:`place`."""
+    """Return the lessons of a store, in the order learned: see :func:`place`."""
     found = {known[0] for graph in store.named_graphs() if (known := lesson_of_graph(graph.value))}
     return tuple(sorted(found, key=lambda lesson: place(store, lesson)))
 
 
 def place(store: ox.Store, lesson: str) -> tuple[int, datetime, str]:
-    """Return what lessons are ordered by: the number that each got when it came, whatever the clock said then.
+    """Return the sort key of a lesson: the number that it got when it was learned, whatever the clock said.
 
-    Lessons that came before there were numbers stand first, by the time at which they started, then by id.
+    Lessons from before there were numbers come first, by their starting time, then by id.
     """
     numbers = store.quads_for_pattern(lesson_node(lesson), NUMBER, None, ORDER)
     number = next((int(getattr(quad.object, "value", "0")) for quad in numbers), 0)
@@ -82,7 +82,7 @@ def lesson_node(lesson: str) -> ox.NamedNode:
 
 
 def numbering(store: ox.Store, come: Sequence[str]) -> Iterator[Operation]:
-    """Yield the operations that number new lessons in the order given, from 1 on; a number is never used again."""
+    """Yield the operations that number new lessons in their order, from 1 on; a number is never reused."""
     kept = [quad.triple for quad in store.quads_for_pattern(ORDER, NEXT, None, ORDER)]
     first = max((int(getattr(triple.object, "value", "1")) for triple in kept), default=1)
     numbers = [
@@ -94,25 +94,27 @@ def numbering(store: ox.Store, come: Sequence[str]) -> Iterator[Operation]:
 
 
 def unnumbering(store: ox.Store, lesson: str) -> Iterator[Operation]:
-    """Yield the operation that takes the number of a lesson away."""
+    """Yield the operation that removes the number of a lesson."""
     numbers = store.quads_for_pattern(lesson_node(lesson), NUMBER, None, ORDER)
     yield from deletion(ORDER, [quad.triple for quad in numbers])
 
 
 def knows(store: ox.Store, lesson: str) -> bool:
-    """Return whether a store holds a lesson."""
+    """Return whether a store has a lesson."""
     return any(store.contains_named_graph(lesson_graph(lesson, name)) for name in CONTRIBUTED)
 
 
 def started(store: ox.Store, lesson: str) -> datetime:
-    """Return when a lesson started; as text, times do not sort, since the store drops zeros at the end of a
-    fraction."""
+    """Return the starting time of a lesson.
+
+    Times cannot be sorted as text, since the store drops zeros at the end of a fraction.
+    """
     node, episodes = lesson_node(lesson), graph_iri(GraphName.EPISODES)
     return earliest(quad.triple for quad in store.quads_for_pattern(node, STARTED, None, episodes))
 
 
 def earliest(triples: Iterable[ox.Triple]) -> datetime:
-    """Return the earliest of the times that some triples say."""
+    """Return the earliest starting time in some triples."""
     times = (getattr(triple.object, "value", "") for triple in triples)
     return min((time for text in times if (time := _time(text)) is not None), default=NEVER)
 
@@ -132,23 +134,23 @@ def triples_in(store: ox.Store, graph: ox.NamedNode) -> Iterator[ox.Triple]:
 
 
 def quad_of(triple: ox.Triple, graph: ox.NamedNode) -> ox.Quad:
-    """Return the triple in a graph."""
+    """Return a triple as a quad in a graph."""
     return ox.Quad(triple.subject, triple.predicate, triple.object, graph)
 
 
 def quads_of(store: ox.Store, triple: ox.Triple) -> Iterator[ox.Quad]:
-    """Return the triple in every graph that holds it."""
+    """Yield the quads of a triple, one for each graph that has it."""
     return store.quads_for_pattern(triple.subject, triple.predicate, triple.object, None)
 
 
 def copies(store: ox.Store, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-    """Return what one lesson contributed, by graph."""
+    """Return the contributions of one lesson, by graph."""
     found = {name: list(triples_in(store, lesson_graph(lesson, name))) for name in CONTRIBUTED}
     return {name: triples for name, triples in found.items() if triples}
 
 
 def only_of(store: ox.Store, copy: ox.NamedNode, name: GraphName, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """Return those of the triples that no copy but this one contributes to the graph of that name."""
+    """Return those of the triples that only this copy contributes to the graph with that name."""
     return [triple for triple in triples if not _held_elsewhere(store, copy, name, triple)]
 
 
@@ -158,14 +160,14 @@ def _held_elsewhere(store: ox.Store, copy: ox.NamedNode, name: GraphName, triple
 
 
 def held(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """Return those of the triples that a graph holds."""
+    """Return those of the triples that a graph has."""
     return [triple for triple in triples if quad_of(triple, graph) in store]
 
 
 def arrival(store: ox.Store, lesson: str, contributions: Contributions, known: Contributions) -> Iterator[Operation]:
     """Yield the operations that write a lesson: its contributions, and the copies of them.
 
-    ``known`` are those of the contributions that the canonical graphs hold already.
+    ``known`` are the contributions that the canonical graphs have already.
     """
     for name, triples in contributions.items():
         yield from insertion(loaded_graph(name), _unowned(store, name, known[name]))
@@ -174,7 +176,7 @@ def arrival(store: ox.Store, lesson: str, contributions: Contributions, known: C
 
 
 def _unowned(store: ox.Store, name: GraphName, triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """Yield those of a canonical graph's triples that were loaded in bulk: no copy has them."""
+    """Yield those of some triples of a canonical graph that were loaded in bulk, so that no copy has them."""
     for triple in triples:
         if not any(_copies(quad.graph_name, name) for quad in quads_of(store, triple)):
             yield triple
@@ -185,7 +187,7 @@ def _copies(graph: ox.NamedNode | ox.BlankNode | ox.DefaultGraph, name: GraphNam
 
 
 def package_update(store: ox.Store, packaged: Contributions) -> Iterator[Operation]:
-    """Yield the operations that bring the packaged ontology and shapes up to date; none where they are."""
+    """Yield the operations that update the packaged ontology and shapes, if they differ."""
     for name, triples in packaged.items():
         copy = package_graph(name)
         gone, come = difference(store, copy, triples)
@@ -195,7 +197,7 @@ def package_update(store: ox.Store, packaged: Contributions) -> Iterator[Operati
 def difference(
     store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]
 ) -> tuple[list[ox.Triple], list[ox.Triple]]:
-    """Return what must go from a graph, and what must come, so that it holds just these triples."""
+    """Return the triples to remove from a graph and those to add, so that it has just the given triples."""
     old, new = set(triples_in(store, graph)), set(as_stored(triples))
     return sorted(old - new, key=str), sorted(new - old, key=str)
 
@@ -203,7 +205,7 @@ def difference(
 def replacement(
     store: ox.Store, copy: ox.NamedNode, name: GraphName, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]
 ) -> Iterator[Operation]:
-    """Yield the operations that exchange triples of a copy and of the canonical graph that it contributes to."""
+    """Yield the operations that replace triples in a copy and in the canonical graph that it contributes to."""
     yield from deletion(graph_iri(name), only_of(store, copy, name, gone))
     yield from deletion(copy, gone)
     yield from insertion(graph_iri(name), come)
@@ -211,21 +213,23 @@ def replacement(
 
 
 def as_stored(triples: Iterable[ox.Triple]) -> list[ox.Triple]:
-    """Return the triples as a store gives them back: numbers, times and language tags in one spelling, sorted."""
+    """Return triples as a store returns them: numbers, times and language tags in one spelling, sorted."""
     store = ox.Store()
     store.extend(ox.Quad(t.subject, t.predicate, t.object) for t in triples)
     return sorted((quad.triple for quad in store), key=str)
 
 
 def kept_up(store: ox.Store) -> str | None:
-    """Return the rules by which a store's inferred graph and statistics are right, None where they are to be made
-    anew."""
+    """Return the rules by which the inferred graph and the statistics of a store are up to date, or None.
+
+    None means that they must be recomputed.
+    """
     found = list(store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED))
     return found[0].object.value if len(found) == 1 and isinstance(found[0].object, ox.Literal) else None
 
 
 def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
-    """Yield the operations that say by which rules they are right from now on; None: by none."""
+    """Yield the operations that record the rules by which a store is up to date; None removes the record."""
     old = {quad.triple for quad in store.quads_for_pattern(COUNTED, KEPT_UP, None, COUNTED)}
     new = {ox.Triple(COUNTED, KEPT_UP, ox.Literal(rules))} if rules is not None else set()
     yield from deletion(COUNTED, old - new)
@@ -233,7 +237,7 @@ def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
 
 
 def marking(store: ox.Store, id: str | None) -> Iterator[Operation]:
-    """Yield the operations that say which write over both stores this commit is part of; none for None.
+    """Yield the operations that record the write over both stores that this commit is part of, if any.
 
     See :mod:`deixis.memory.journal`.
     """
@@ -243,33 +247,33 @@ def marking(store: ox.Store, id: str | None) -> Iterator[Operation]:
 
 
 def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
-    """Yield the operation that puts triples into a graph, none where there are none."""
+    """Yield the operation that inserts triples into a graph, if there are any triples."""
     if some := tuple(triples):
         yield Operation("INSERT", graph, some)
 
 
 def deletion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:
-    """Yield the operation that takes triples out of a graph, none where there are none."""
+    """Yield the operation that deletes triples from a graph, if there are any triples."""
     if some := tuple(triples):
         yield Operation("DELETE", graph, some)
 
 
 def drop(graph: ox.NamedNode) -> Operation:
-    """Return the operation that takes a graph away, where there is one."""
+    """Return the operation that drops a graph, if it exists."""
     return Operation("DROP", graph)
 
 
 def update(store: ox.Store, operations: Iterable[Operation], last: Iterable[str] = ()) -> None:
-    """Carry out operations, and after them some in SPARQL, in one step."""
+    """Run operations, and then some SPARQL updates, in one step."""
     texts = [*(text for operation in operations for text in operation.texts()), *last]
     if texts:
         store.update(" ;\n".join(texts))
 
 
 def update_in_bulk(store: ox.Store, operations: Iterable[Operation]) -> None:
-    """Carry out operations several times as fast, and not in one step: on a store that is thrown away where it fails.
+    """Run operations fast but not atomically, on a store that is discarded if this fails.
 
-    What goes is taken away before anything comes.
+    Deletions are run before insertions.
     """
     come = []
     for operation in operations:

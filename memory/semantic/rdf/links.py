@@ -1,8 +1,8 @@
-"""Which views each lesson taught, and of which category: the semantic store's half of what both stores know.
+"""Links from lessons to the views that they taught, with the category of each: the semantic store's half.
 
-The perceptual store says of such a view which lesson it belongs to. ``verify`` compares the two. A view that a teacher
-names otherwise, or that is forgotten, belongs to no lesson any more. What a memory exports has no links: the views
-are not in it.
+The perceptual store's half is the lesson of each view. ``verify`` compares the two. A view that a teacher names
+otherwise, or that is forgotten, no longer belongs to a lesson. Exports of a semantic memory have no links, as they have
+no views.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from deixis.ontology.triples import text
 
 
 class Link(NamedTuple):
-    """A lesson taught a view of a category."""
+    """Link from a lesson to a view of a category."""
 
     lesson: str
     view: str
@@ -28,20 +28,20 @@ class Link(NamedTuple):
 
 
 def linking(lesson: str, views: Mapping[str, str]) -> Change:
-    """Return the change that says which views a lesson taught; ``views`` leads from their ids to their categories."""
+    """Return the change that links a lesson to its views; ``views`` maps their ids to their categories."""
     triples = [ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category)) for view, category in views.items()]
     return Change(operations=tuple(ledger.insertion(views_graph(lesson), triples)))
 
 
 def unlinking(lesson: str) -> Change:
-    """Return the change that takes away what is said of a lesson's views."""
+    """Return the change that removes the links of a lesson."""
     return Change(operations=(ledger.drop(views_graph(lesson)),))
 
 
 def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: frozenset[str] = frozenset()) -> Change:
-    """Return the change that views are of other categories from now on, by their ids; None: of no lesson any more.
+    """Return the change that gives linked views other categories, by their ids; None removes the links of a view.
 
-    What the lessons ``besides`` say stays as it is. Nothing is changed where no lesson taught such a view.
+    The links of the lessons in ``besides`` stay as they are. Views without links are ignored.
     """
     operations: list[ledger.Operation] = []
     for view, category in categories.items():
@@ -57,7 +57,7 @@ def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: fr
 
 
 def links_of(store: ox.Store, lesson: str) -> tuple[Link, ...]:
-    """Return the views that a lesson taught, in order."""
+    """Return the links of a lesson, in order."""
     return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, views_graph(lesson)))))
 
 
@@ -68,7 +68,7 @@ def lessons_with(store: ox.Store, view: str) -> tuple[str, ...]:
 
 
 def all_links(store: ox.Store) -> tuple[Link, ...]:
-    """Return what all lessons taught, in order: for comparing the two stores."""
+    """Return the links of all lessons, in order, for comparing the two stores."""
     return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, None))))
 
 

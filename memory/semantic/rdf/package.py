@@ -1,4 +1,4 @@
-"""What the package itself contributes to a memory: its ontology and its shapes, and which version they are."""
+"""Contributions of the package to a memory: its ontology and its shapes, with their version."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ SHAPES_FILE = TBOX_FILES[0].with_name("shapes.ttl")
 
 @lru_cache(maxsize=1)
 def packaged() -> dict[GraphName, tuple[ox.Triple, ...]]:
-    """Return the packaged ontology and shapes as triples, blank nodes as names that stay the same."""
+    """Return the packaged ontology and shapes as triples, with stable names instead of blank nodes."""
     return {name: tuple(_read(name, turtle)) for name, turtle in _texts().items()}
 
 
 @lru_cache(maxsize=1)
 def packaged_quads() -> tuple[ox.Quad, ...]:
-    """Return the same where a memory keeps them: in the graph that they make up, and as the package's copy."""
+    """Return the packaged ontology and shapes as quads: in their canonical graphs, and in the package's copies."""
     return tuple(
         ox.Quad(triple.subject, triple.predicate, triple.object, graph)
         for name, triples in packaged().items()
@@ -33,7 +33,7 @@ def packaged_quads() -> tuple[ox.Quad, ...]:
 
 
 def package_digest() -> str:
-    """Return a digest of the packaged texts, to see whether a memory has them already."""
+    """Return a digest of the packaged texts, by which a memory knows whether it has them."""
     return hashlib.sha256("".join(_texts().values()).encode()).hexdigest()
 
 

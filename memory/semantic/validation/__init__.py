@@ -1,1 +1,1 @@
-"""SHACL guards every write to semantic memory."""
+"""SHACL validation of every write to semantic memory."""

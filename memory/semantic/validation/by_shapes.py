@@ -1,8 +1,8 @@
-"""Validation of any data by any SHACL shapes: by pyshacl, in a process of its own that can be ended.
+"""Validate any data by any SHACL shapes, with pyshacl in a process of its own that can be stopped.
 
-pyshacl has no time limit, and shapes may hold SPARQL: the process that runs it is ended when its time is up, and may
-take so much memory and no more. Nothing is fetched: ``owl:imports`` is not followed, and a SPARQL constraint that asks
-another endpoint (``SERVICE``) is refused.
+pyshacl has no time limit, and shapes may have SPARQL: so the process that runs it is stopped when its time is up, and
+has a memory limit. Nothing is fetched: ``owl:imports`` is ignored, and a SPARQL constraint that queries another
+endpoint (``SERVICE``) is refused.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import rdflib
 
 MEMORY_LIMIT = 4 << 30
-"""Bytes that the process may take."""
+"""Memory limit of the process, in bytes."""
 
 _SPARQL = {ox.NamedNode(f"http://www.w3.org/ns/shacl#{name}") for name in ("select", "ask", "construct", "update")}
 _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
@@ -39,7 +39,7 @@ _ESCAPE = re.compile(r"\\u([0-9A-Fa-f]{4})|\\U([0-9A-Fa-f]{8})")
 
 @dataclass(frozen=True)
 class ShapesReport:
-    """Whether data conforms to shapes, every result (violations first), and the standard report as Turtle."""
+    """Result of a validation: conformance, every result (violations first), and the standard report as Turtle."""
 
     conforms: bool
     results: tuple[ShapeResult, ...]
@@ -51,13 +51,19 @@ def validate_by_shapes(
 ) -> ShapesReport:
     """Return the report of SHACL core and SPARQL constraints over some triples.
 
-    Warnings and informations are results too; ``conforms`` is False for them as the standard says. Raises LimitError
-    where the deadline passes or the memory does not suffice, ShapesError for shapes that are not well formed.
+    Warnings and informations are results too; ``conforms`` is False for them, as the standard says.
+
+    Raises
+    ------
+    LimitError
+        The deadline passed, or the memory limit was reached.
+    ShapesError
+        The shapes are malformed.
     """
     shapes = list(shapes)
     for triple in shapes:
         if triple.predicate in _SPARQL and "service" in _unescaped(str(getattr(triple.object, "value", ""))).lower():
-            raise ShapesError("the shapes ask another endpoint (SERVICE): this is refused; copy its data to a file")
+            raise ShapesError("the shapes query another endpoint (SERVICE), which is refused; copy its data to a file")
     with scratch_folder() as folder:
         for name, triples in (("data", data), ("shapes", shapes)):
             (folder / f"{name}.nt").write_bytes(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"")
@@ -75,9 +81,9 @@ def validate_by_shapes(
                 preexec_fn=tied_to_parent(),
             )
         except subprocess.TimeoutExpired:
-            raise LimitError("undecided: the time was up before the shapes were checked; allow it more") from None
+            raise LimitError("undecided: time limit reached before the shapes were checked; allow more time") from None
         if not (folder / "report.json").exists():
-            said = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended without a word"]
+            said = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended without a message"]
             if "MemoryError" in said[-1]:
                 raise LimitError(f"undecided: the shapes take more than {MEMORY_LIMIT >> 30} GB of memory to check")
             raise ShapesError(f"pyshacl cannot check these shapes: {said[-1][:300]}")
@@ -90,7 +96,7 @@ def _unescaped(sparql: str) -> str:
     return _ESCAPE.sub(lambda found: chr(min(int(found[1] or found[2], 16), sys.maxunicode)), sparql)
 
 
-# ---- in the process
+# ---- code that runs in the process
 
 
 def _check(folder: Path) -> None:
@@ -128,19 +134,19 @@ def _result(report: rdflib.Graph, shapes: rdflib.Graph, node: rdflib.term.Node) 
 
     sh = rdflib.SH
 
-    def told(about: rdflib.term.Node | None) -> str:
+    def readable(about: rdflib.term.Node | None) -> str:
         return short(str(about)) if isinstance(about, rdflib.URIRef) else str(about)
 
     shape, path, value = (report.value(node, part) for part in (sh.sourceShape, sh.resultPath, sh.value))
     name = shapes.value(shape, sh.name) or shapes.value(shape, rdflib.RDFS.label)
-    component = told(report.value(node, sh.sourceConstraintComponent))
+    component = readable(report.value(node, sh.sourceConstraintComponent))
     return ShapeResult(
-        focus=told(report.value(node, sh.focusNode)),
-        path=told(path) if isinstance(path, rdflib.URIRef) else None,
+        focus=readable(report.value(node, sh.focusNode)),
+        path=readable(path) if isinstance(path, rdflib.URIRef) else None,
         message=" ".join(str(report.value(node, sh.resultMessage) or component).split()),
         severity=str(report.value(node, sh.resultSeverity)).rsplit("#", 1)[-1],
-        shape=str(name) if name else told(shape) if isinstance(shape, rdflib.URIRef) else component,
-        value=None if value is None else told(value),
+        shape=str(name) if name else readable(shape) if isinstance(shape, rdflib.URIRef) else component,
+        value=None if value is None else readable(value),
     )
 
 

@@ -1,9 +1,9 @@
-"""SHACL shapes as plain checks, so that what is well formed, which is nearly everything, is let through fast.
+"""SHACL shapes compiled to fast checks that accept well-formed data, which is nearly all data.
 
-A check says True only where it is sure; whatever it doubts goes to pyshacl, which decides and words the report. The
-constraints that ``ontology/shapes.ttl`` uses are known, on paths of one step, and no other compiles: a shape, or a part
-of one, that is not understood is an error. Shapes that only warn are left out: they reject nothing. Compiling them
-takes 2.9 times as long from a ``pyoxigraph.Store`` as from the dictionary of their nodes that is used here.
+A check returns True only where it is certain; all doubtful nodes go to pyshacl, which decides and writes the report.
+The constraints that ``ontology/shapes.ttl`` uses are supported, on paths of one step. A shape with any other part is an
+error. Shapes that only warn are left out, as they reject nothing. Compiling takes 2.9 times as long from a
+``pyoxigraph.Store`` as from the dictionary of nodes that is used here.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _CLASSES = {
 
 @dataclass(frozen=True)
 class Shape:
-    """A node shape: what it targets, and what must hold of that."""
+    """A node shape: its targets, and the checks of a focus node."""
 
     classes: tuple[Node, ...]
     subjects_of: tuple[ox.NamedNode, ...]
@@ -56,7 +56,7 @@ class Shape:
     checks: tuple[Check, ...]
 
     def targets(self, view: FocusData, node: Node) -> bool:
-        """Return whether a node is one of its focus nodes."""
+        """Return whether a node is a focus node of the shape."""
         return (
             not view.classes(node).isdisjoint(self.classes)
             or any(view.some(node, predicate, 1) for predicate in self.subjects_of)
@@ -64,11 +64,11 @@ class Shape:
         )
 
     def sure(self, view: FocusData, node: Node) -> bool:
-        """Return whether a focus node surely conforms."""
+        """Return True if a focus node certainly conforms."""
         return all(check(view, node) for check in self.checks)
 
     def focus(self, view: FocusData) -> set[Node]:
-        """Return all focus nodes."""
+        """Return all focus nodes of the shape."""
         found = {node for kind in self.classes for node in view.instances(kind)}
         for predicate in self.subjects_of:
             found |= view.subjects_of(predicate)
@@ -79,7 +79,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Shapes:
-    """Compiled shapes, and what in a change may matter to them."""
+    """Compiled shapes, with the classes and paths by which a change can affect them."""
 
     shapes: tuple[Shape, ...]
     classes: frozenset[Node]
@@ -87,12 +87,14 @@ class Shapes:
 
     @property
     def objects_of(self) -> frozenset[ox.NamedNode]:
+        """Predicates whose objects a shape targets."""
         return frozenset(predicate for shape in self.shapes for predicate in shape.objects_of)
 
     def sure(self, view: FocusData, node: Node) -> bool:
-        """Return whether a node surely conforms to every shape that targets it.
+        """Return True if a node certainly conforms to every shape that targets it.
 
-        Of a node of which much is said, only what changes is looked at; a shape that did not target it before doubts.
+        For a node with many statements only the change is checked; a shape that did not target it before counts as
+        doubtful.
         """
         return all(
             shape.sure(view, node) and not (view.says_much(node) and not shape.targets(view.before, node))
@@ -103,12 +105,12 @@ class Shapes:
 
 @lru_cache(maxsize=1)
 def packaged_shapes() -> Shapes:
-    """Return the shapes that come with the package, compiled once."""
+    """Return the packaged shapes, compiled once."""
     return compile_shapes(SHAPES_FILE)
 
 
 def compile_shapes(file: Path) -> Shapes:
-    """Compile a Turtle file of shapes. Raises OntologyError for a constraint that is not known here."""
+    """Compile a Turtle file of shapes. Raises OntologyError for an unsupported constraint."""
     compiler = _Compiler(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
     shapes = tuple(compiler.node_shape(node) for node in compiler.node_shapes())
     compiler.require_all_read()
@@ -129,11 +131,11 @@ class _Compiler:
         return [node for node, said in self._said.items() if _sh("NodeShape") in said[TYPE]]
 
     def require_all_read(self) -> None:
-        """Raise OntologyError where anything that SHACL has a word for was not compiled."""
+        """Raise OntologyError where a triple with a SHACL term was not compiled."""
         for node, said in self._said.items():
             words = [predicate.value for predicate in said if predicate.value.startswith(SH) and said[predicate]]
             if words and node not in self._read:
-                raise OntologyError(f"the shape {node}, with <{words[0]}>, is of a form that is not compiled")
+                raise OntologyError(f"the shape {node}, with <{words[0]}>, is of an unsupported form")
 
     def _said_of(self, node: Node) -> Said:
         self._read.add(node)
@@ -142,14 +144,14 @@ class _Compiler:
     def node_shape(self, node: Node) -> Shape:
         said = self._said_of(node)
         if not _CLASSES.isdisjoint(said[TYPE]):
-            raise OntologyError(f"the shape {node} is a class, which is its target: say sh:targetClass instead")
+            raise OntologyError(f"the shape {node} must not be a class: use sh:targetClass instead")
         if said[_sh("path")]:
-            raise OntologyError(f"the shape {node} has a path and is no node shape")
+            raise OntologyError(f"the shape {node} must be a node shape, without a path")
         checks = []
         for part in said[_sh("property")]:
             inner = self._said_of(part)
             if inner[_sh("property")] or any(inner[target] for target in _TARGETS):
-                raise OntologyError(f"the property shape {part} has a target or a property shape of its own")
+                raise OntologyError(f"the property shape {part} must not have a target or a property shape")
             checks += self._shape(inner)
         return Shape(
             classes=tuple(said[_sh("targetClass")]),
@@ -159,7 +161,7 @@ class _Compiler:
         )
 
     def _shape(self, said: Said) -> list[Check]:
-        """Return the checks of a node shape or a property shape, if it rejects anything."""
+        """Return the checks of a node shape or a property shape; none for a shape that rejects nothing."""
         if said[_sh("severity")] not in ([], [_sh("Violation")]):
             self._leave_out(said)
             return []
@@ -170,7 +172,7 @@ class _Compiler:
         ]
 
     def _leave_out(self, said: Said) -> None:
-        """Take all that a shape is made of as read."""
+        """Mark all triples of a shape as read."""
         parts = [part for values in said.values() for part in values if part in self._said and part not in self._read]
         for part in parts:
             self._leave_out(self._said_of(part))
@@ -180,7 +182,7 @@ class _Compiler:
         if _names(inverse):
             return _Backwards(_names(inverse)[0])
         if not isinstance(path, ox.NamedNode):
-            raise OntologyError("a shape's path must be one step here, forwards or sh:inversePath")
+            raise OntologyError("the path of a shape must be one step, forwards or sh:inversePath")
         return _Forwards(path)
 
     def _constraint(self, predicate: ox.NamedNode, said: Said, values: Values) -> Check:
@@ -202,15 +204,14 @@ class _Compiler:
     def _or(self, head: Node, values: Values, outer: Said) -> Check:
         outer_path = outer[_sh("path")]
         cases = [self._case(self._said_of(item), outer_path) for item in self._list(head)]
-        if outer_path:  # an alternative about each value of the outer path
+        if outer_path:  # an alternative for each value of the outer path
             return lambda view, node: all(any(case(view, value) for case in cases) for value in values(view, node))
         return lambda view, node: any(case(view, node) for case in cases)
 
     def _case(self, said: Said, outer_path: list[Node]) -> Check:
-        """Return one alternative of sh:or, asked of one value; a class that it asks for is one of the outer path's
-        values."""
+        """Return one alternative of sh:or, checked for one value; a class in it applies to values of the outer path."""
         if said[_sh("property")] or any(said[target] for target in _TARGETS):
-            raise OntologyError("an alternative of sh:or has a target or a property shape of its own")
+            raise OntologyError("an alternative of sh:or must not have a target or a property shape")
         if said[_sh("path")] or not outer_path:
             return _all_of(self._shape(said))
         placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
@@ -229,7 +230,7 @@ def _names(nodes: Iterable[Node]) -> tuple[ox.NamedNode, ...]:
 
 
 class _Itself:
-    """The node alone: no path."""
+    """The path of no steps: the node itself."""
 
     def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         return (node,)
@@ -242,7 +243,7 @@ class _Itself:
 
 @dataclass(frozen=True)
 class _Forwards:
-    """What is said of a node under a predicate."""
+    """The path to the objects of a predicate."""
 
     predicate: ox.NamedNode
 
@@ -258,7 +259,7 @@ class _Forwards:
 
 @dataclass(frozen=True)
 class _Backwards:
-    """The nodes that lead to a node under a predicate."""
+    """The path to the subjects of a predicate."""
 
     predicate: ox.NamedNode
 

@@ -1,6 +1,6 @@
-"""The SHACL constraints that shapes are compiled to: each says True only where it is sure that it holds.
+"""SHACL constraints as compiled checks: each returns True only where it is certain that the constraint holds.
 
-Literals are looked at in their common spellings alone; a rarer one is doubted, and left to pyshacl.
+Literals are checked in their common spellings only; others are doubtful, and left to pyshacl.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from deixis.memory.semantic.validation.focus_data import FocusData
 
 
 class Values(Protocol):
-    """What a path leads to from a node."""
+    """Nodes at the end of a path from a node."""
 
     def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         """Return the nodes that the path leads to."""
 
     def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
-        """Return so many of them at the most."""
+        """Return at most ``number`` of these nodes."""
 
     def fresh(self, view: FocusData, node: Node) -> Iterable[Node]:
-        """Return those whose class may be another than before the change."""
+        """Return the nodes whose class the change may have altered."""
 
 
 Check = Callable[[FocusData, Node], bool]
@@ -68,7 +68,7 @@ def _number(node: Node) -> float | None:
 
 
 def _moment(node: Node) -> datetime | None:
-    """Return the time that a literal names; None for one without a zone, which cannot be compared with the rest."""
+    """Return the time of a literal, or None for one without a time zone, which cannot be compared with others."""
     if isinstance(node, ox.Literal) and node.datatype == _DATE_TIME:
         try:
             moment = datetime.fromisoformat(node.value)
@@ -189,4 +189,4 @@ CONSTRAINTS: dict[str, Make] = {
     "disjoint": _disjoint,
     "lessThanOrEquals": _less_than_or_equals,
 }
-"""By the local name of a SHACL constraint parameter, what makes a check of its arguments."""
+"""Function that makes a check from the arguments of a constraint, by the local name of its SHACL parameter."""

@@ -1,4 +1,4 @@
-"""The data that shapes are checked on: a store as it would be after a change, read node by node."""
+"""Data that shapes are checked on: a store after a change, read node by node."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ TYPE = ox.NamedNode(W3C.RDF_TYPE)
 SUB_CLASS_OF = ox.NamedNode(W3C.RDFS_SUB_CLASS_OF)
 
 MAX_READ_AT_ONCE = 48
-"""Maximum number of statements about a node, lessons' copies included, to read at once.
+"""Maximum number of statements about a node, lessons' copies included, that are read at once.
 
 More are read predicate by predicate. A category that a thousand lessons taught, or the size of a kind from a thousand
-scenes, leads to all of them; a check must not read them all for one lesson more.
+scenes, leads to all of them, and a check must not read all of these for one more lesson.
 """
 
 
 class FocusData:
-    """The union of the data graphs of a store after a change that is not written yet."""
+    """Union of the data graphs of a store after a change that is not written yet."""
 
     def __init__(self, store: ox.Store, change: Change | None = None) -> None:
         self._store, self._after, self._whole = store, After(store, change), change is None
@@ -36,15 +36,15 @@ class FocusData:
 
     @cached_property
     def before(self) -> FocusData:
-        """The data as it is before the change."""
+        """The data before the change."""
         return FocusData(self._store)
 
     def says_much(self, node: Node) -> bool:
-        """Return whether so much is said of a node that it is read predicate by predicate."""
+        """Return whether a node has so many statements that it is read predicate by predicate."""
         return self._few(node) is None
 
     def about(self, node: Node) -> dict[ox.NamedNode, set[Node]]:
-        """Return what is said of a node, by predicate."""
+        """Return the objects of a node, by predicate."""
         found = self._few(node)
         if found is None:
             found = defaultdict(set)
@@ -54,7 +54,7 @@ class FocusData:
         return found
 
     def _few(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
-        """Return what is said of a node, by predicate; None where that is much."""
+        """Return the objects of a node, by predicate; None where there are many."""
         if node not in self._about:
             self._about[node] = self._read(node)
         return self._about[node]
@@ -73,7 +73,7 @@ class FocusData:
         return found
 
     def values(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
-        """Return the objects of a node under a predicate."""
+        """Return the objects of a node for a predicate."""
         few = self._few(node)
         if few is not None:
             return few.get(predicate, ())
@@ -84,7 +84,7 @@ class FocusData:
         return known
 
     def some(self, node: Node, predicate: ox.NamedNode, number: int) -> Iterable[Node]:
-        """Return the objects of a node under a predicate, so many of them at the most."""
+        """Return at most ``number`` objects of a node for a predicate."""
         few = self._few(node)
         if few is not None:
             return list(few.get(predicate, ()))[:number]
@@ -95,17 +95,16 @@ class FocusData:
         return found
 
     def _objects(self, node: Node, predicate: ox.NamedNode) -> Iterator[Node]:
-        """Yield the objects of a node of which much is said, graph by graph; one may come twice."""
+        """Yield the objects of a node with many statements, graph by graph; some may occur twice."""
         if self._after.says(node, predicate):
             for name in DATA:
                 for triple in self._after.triples(name, node, predicate):
                     yield triple.object
 
     def fresh(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
-        """Return the objects of a node under a predicate whose class the change may have altered: new ones, and changed
-        ones.
+        """Return the new objects of a node for a predicate, and those whose class the change may have altered.
 
-        All of them where they are few, and where there is no change.
+        Where there are few objects, and where there is no change, return all of them.
         """
         if self._whole or not self.says_much(node):
             return self.values(node, predicate)
@@ -114,7 +113,7 @@ class FocusData:
 
     @cached_property
     def _to_untyped(self) -> dict[tuple[Node, ox.NamedNode], set[Node]]:
-        """The nodes that lose a class, or whose class loses a broader one, by what leads to them."""
+        """Nodes that lose a class, or whose class loses a broader one, by their subject and predicate."""
         removed = [triple for name in DATA for triple in self._after.change.removed.get(name, ())]
         untyped: set[Node] = {triple.subject for triple in removed if triple.predicate == TYPE}
         for kind in {triple.subject for triple in removed if triple.predicate == SUB_CLASS_OF}:
@@ -126,33 +125,33 @@ class FocusData:
         return found
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
-        """Return the nodes that lead to this one under a predicate."""
+        """Return the subjects of a predicate with this node as object."""
         return {triple.subject for triple in self.leading(node, predicate)}
 
     def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
-        """Return whether any node leads to this one under a predicate."""
+        """Return whether this node is an object of a predicate."""
         return any(True for _ in self.leading(node, predicate))
 
     def leading(self, node: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
-        """Yield what leads to a node, under any predicate or that one; a triple may come twice."""
+        """Yield the triples with a node as object, for one predicate or all; a triple may occur twice."""
         if isinstance(node, ox.NamedNode | ox.Literal | ox.BlankNode):
             yield from self._after.of_data(self._store.quads_for_pattern(None, predicate, node, None))
             for name in DATA:
                 yield from self._after.arriving(name, predicate, node)
 
     def is_a(self, node: Node, kind: Node) -> bool:
-        """Return whether a node is an instance of a class, or of a narrower one."""
+        """Return whether a node is an instance of a class or of a sub-class of it."""
         return kind in self.classes(node)
 
     def classes(self, node: Node) -> frozenset[Node]:
-        """Return the classes that a node is an instance of, the broader ones too."""
+        """Return the classes of a node, with all their super-classes."""
         known = self._classes.get(node)
         if known is None:
             known = self._classes[node] = frozenset[Node]().union(*map(self.broader, self.values(node, TYPE)))
         return known
 
     def broader(self, kind: Node) -> frozenset[Node]:
-        """Return a class and all that it is a sub-class of."""
+        """Return a class and all of its super-classes."""
         known = self._broader.get(kind)
         if known is None:
             known = self._broader[kind] = frozenset(self._closure(kind, upwards=True))
@@ -178,9 +177,9 @@ class FocusData:
             yield from self.subjects(TYPE, narrower)
 
     def subjects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """Return the nodes of which a predicate is used."""
+        """Return all subjects of a predicate."""
         return {triple.subject for name in DATA for triple in self._after.triples(name, None, predicate)}
 
     def objects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """Return the nodes that a predicate leads to."""
+        """Return all objects of a predicate."""
         return {triple.object for name in DATA for triple in self._after.triples(name, None, predicate)}

@@ -1,4 +1,4 @@
-"""pyshacl, asked about a few triples in a graph of rdflib's own: over a live view it misjudges plain strings."""
+"""Run pyshacl on a few triples in a separate rdflib graph, as it misjudges plain strings in a live view."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def shapes_graph() -> rdflib.Graph:
 
 
 def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Return what breaks the packaged shapes, of these focus nodes or of all; warnings left out, sorted."""
+    """Return the violations of the packaged shapes by some focus nodes or by all, sorted and without warnings."""
     triples = list(triples)
     try:
         results = validate(triples, focus)
     except (TypeError, ValueError, ArithmeticError, RuntimeError):
-        # pyshacl gives up on values that cannot be compared, such as a time with a zone and one without
+        # pyshacl fails for values that cannot be compared, such as a time with a zone and one without
         if focus is None or len(focus) == 1:
             return [_incomparable(*(focus or ()))]
         results = [result for node in focus for result in violations(triples, {node})]
@@ -41,12 +41,12 @@ def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = Non
 
 
 def _incomparable(node: str = "somewhere") -> ShapeResult:
-    told = "values that are to be compared cannot be: give numbers and times in the datatypes that the ontology states"
+    told = "values cannot be compared: give numbers and times in the datatypes that the ontology states"
     return ShapeResult(short(node), None, told, "Violation", "comparable values")
 
 
 def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Return every result of validating these triples, of whatever severity; about some focus nodes or about all."""
+    """Return all results of validating triples, of any severity, for some focus nodes or for all."""
     import pyshacl
     import rdflib
 
@@ -74,7 +74,7 @@ def _results(found: rdflib.Graph) -> Iterator[rdflib.term.Node]:
 
 
 def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
-    """Return whether a result is about one of these nodes; a literal, which rdflib spells its own way, always is."""
+    """Return whether a result is about one of some nodes; True for a literal, as rdflib changes its spelling."""
     import rdflib
 
     return isinstance(about, rdflib.Literal) or str(about) in focus
@@ -82,7 +82,7 @@ def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Silence rdflib's log of each literal that is ill-typed, which the report names, and its warnings about itself."""
+    """Silence rdflib's warnings, and its log of ill-typed literals, which the report has."""
     logger = logging.getLogger("rdflib.term")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

@@ -1,7 +1,7 @@
-"""SHACL guards every write: what a change touches is checked before it is written.
+"""Check each change by SHACL before it is written.
 
-Only the nodes that a change can have spoilt are looked at: compiled checks let through what is surely well formed, and
-pyshacl decides about the rest, on a copy of those nodes and of what their shapes reach.
+Only the nodes whose conformance can change are checked: compiled checks accept nodes that are certainly well formed,
+and pyshacl decides about the others, on a copy of those nodes and of what their shapes reach.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from deixis.memory.semantic.validation.compiled_shapes import Shapes, packaged_s
 from deixis.memory.semantic.validation.focus_data import SUB_CLASS_OF, TYPE, FocusData
 
 BATCH = 200
-"""How many doubtful nodes pyshacl is asked about at a time; the first batch with violations ends the search."""
+"""Number of doubtful nodes per run of pyshacl; the first run with violations ends the search."""
 
 
 def check_change(store: ox.Store, change: Change) -> None:
-    """Raise RejectedWriteError where a change would leave something in the store that breaks the shapes."""
+    """Raise RejectedWriteError where the store would break the shapes after a change."""
     shapes, view = packaged_shapes(), FocusData(store, change)
     _check(shapes, view, touched(shapes, view, change))
 
 
 def check_store(store: ox.Store) -> None:
-    """Raise RejectedWriteError where something in the store breaks the shapes."""
+    """Raise RejectedWriteError where the store breaks the shapes."""
     shapes, view = packaged_shapes(), FocusData(store)
     _decide(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view) if not shape.sure(view, node)})
 
@@ -50,7 +50,7 @@ def touched(shapes: Shapes, view: FocusData, change: Change) -> set[Node]:
 
 
 def _leading_to(shapes: Shapes, view: FocusData, node: Node) -> set[Node]:
-    """Return the nodes of which a shape asks that what they lead to be of some class."""
+    """Return the subjects of a node for predicates whose objects a shape requires to be of a class."""
     return {triple.subject for triple in view.leading(node) if triple.predicate in shapes.paths_to_classes}
 
 
@@ -59,7 +59,7 @@ def _check(shapes: Shapes, view: FocusData, nodes: Iterable[Node]) -> None:
 
 
 def _decide(shapes: Shapes, view: FocusData, nodes: set[Node]) -> None:
-    """Ask pyshacl about the doubtful nodes."""
+    """Run pyshacl on the doubtful nodes."""
     doubtful = sorted(nodes, key=str)
     for position, batch in enumerate(_batches(doubtful)):
         results = report(_copy(shapes, view, batch), batch)
@@ -77,8 +77,7 @@ def _batches(nodes: list[Node]) -> Iterator[list[Node]]:
 
 
 def _copy(shapes: Shapes, view: FocusData, nodes: Iterable[Node]) -> set[ox.Triple]:
-    """Return what the shapes reach from these nodes: what is said of them, what leads to them, and the classes of
-    the rest."""
+    """Return the triples that the shapes reach from some nodes: their statements, and the classes of their objects."""
     copied: set[ox.Triple] = set()
     for node in nodes:
         copied.update(_about(view, node))
@@ -109,7 +108,7 @@ def _triple(subject: Node, predicate: ox.NamedNode, obj: Node) -> ox.Triple:
 
 
 def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) -> list[ShapeResult]:
-    """Return the violations that pyshacl finds among these triples, of these focus nodes or of all."""
+    """Return the violations that pyshacl finds among some triples, for some focus nodes or for all."""
     from deixis.memory.semantic.validation.shacl import violations
 
     return violations(triples, None if nodes is None else {str(getattr(node, "value", "")) for node in nodes})

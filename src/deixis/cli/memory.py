@@ -81,7 +81,7 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
     with Session(memory) as session:
         views = session.has_views()
         if views and not session.remembers():
-            raise DeixisError(f"the memory at {memory} has views only, nothing was learned into it; {_VIEWS_TOO}")
+            raise DeixisError(f"the memory at {memory} has views, but no lessons yet; {_VIEWS_TOO}")
         text = export_memory(session.memory(), format.value)
     if out is None:
         sys.stdout.write(text)

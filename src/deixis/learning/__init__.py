@@ -1,1 +1,1 @@
-"""Learning: from a grounding to a lesson, and from all lessons to sizes and words."""
+"""Learn lessons from groundings, and sizes and words from all lessons."""

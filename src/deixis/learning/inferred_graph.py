@@ -1,11 +1,11 @@
-"""What follows from what was learned and seen, and was not said: the content of the inferred graph, kept up to date.
+"""Content of the inferred graph: what follows from learned and asserted triples without being stated.
 
-Every broader class of each class, every broader class of what a thing is said to be, and the wide relations of pairs
-from their exact ones. A change of what is stated decides what is looked at again: the classes that it speaks of, those
-above and below them, the things whose kinds it alters, and the pairs that it relates. Nothing else can follow otherwise
-than before. Lessons speak in a part of OWL in which subsumption needs no reasoner
-(:mod:`deixis.reasoning.description_logic.subsumption`); of a memory into which more was brought, HermiT classifies
-everything, as ``deixis reason`` does on demand.
+These are the broader classes of each class, the broader classes of each thing, and the wide relations of pairs that
+follow from exact ones. After a change only some triples are looked at again: those about the classes in the change and
+the classes above and below them, about the things whose kinds change, and about the pairs that the change relates.
+Nothing else can change. Lessons use a part of OWL in which subsumption needs no reasoner
+(:mod:`deixis.reasoning.description_logic.subsumption`). In a memory with other axioms HermiT classifies everything, as
+``deixis reason`` does on demand.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from deixis.reasoning.description_logic.subsumption import (
 from deixis.reasoning.errors import InconsistencyError
 
 ENGINES = {"Deixis": "broader classes, kinds of things, and wide relations of pairs from exact ones"}
-"""What works out the inferred graph."""
+"""Engines that compute the inferred graph, and what each infers."""
 
 OWL, RDFS = "http://www.w3.org/2002/07/owl#", "http://www.w3.org/2000/01/rdf-schema#"
 RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
@@ -44,17 +44,17 @@ INVERSE_OF, MEMBERS, DISJOINT_WITH = (iri(OWL + name) for name in ("inverseOf", 
 ON_PROPERTY, SOME_VALUES_FROM = iri(OWL + "onProperty"), iri(OWL + "someValuesFrom")
 
 CLASSES = (GraphName.ONTOLOGY, GraphName.LEARNED)
-"""The graphs that say what classes are."""
+"""Graphs that hold class axioms."""
 
 STATED = (GraphName.LEARNED, GraphName.ASSERTED)
-"""The graphs whose triples are not inferred as well."""
+"""Graphs whose triples are stated, so that they are not inferred again."""
 
 
 def following(after: After, relations: Relations) -> Change:
-    """The change of the inferred graph that a change of the others asks for.
+    """Return the change of the inferred graph that a change of the other graphs requires.
 
-    ``after`` is a store whose inferred graph is right for what it holds now. Raises InconsistencyError where a class
-    becomes impossible; BeyondLessonsError where more is said of classes than lessons say.
+    ``after`` is a store whose inferred graph fits its content before the change. Raises InconsistencyError where a
+    class becomes unsatisfiable; BeyondLessonsError where the class axioms are not of the form that lessons write.
     """
     said = _Said(after, relations)
     said.require_lessons_only(after.change.added)
@@ -93,7 +93,7 @@ def following(after: After, relations: Relations) -> Change:
 
 
 def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple]:
-    """The inferred graph of a store, worked out anew; raises as :func:`following` does."""
+    """Return the inferred graph of a store, computed from scratch; raise as :func:`following` does."""
     said = _Said(after, relations)
     said.require_lessons_only({name: after.triples(name) for name in CLASSES})
     names = {_value(t.subject) for name in CLASSES for t in after.triples(name, None, SUB_CLASS_OF)}
@@ -103,7 +103,7 @@ def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple
 
 
 def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
-    """The same of a store that says more of classes than lessons do; raises InconsistencyError as the others."""
+    """Return the inferred graph of a store with any class axioms, classified by HermiT; raise as :func:`following`."""
     learned = list(after.triples(GraphName.LEARNED))
     axioms = with_blank_nodes([*after.triples(GraphName.ONTOLOGY), *class_axioms(learned)])
     text = (ox.serialize(axioms, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
@@ -117,28 +117,28 @@ def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
 
 
 def impossible(classes: Iterable[str]) -> InconsistencyError:
-    """The error that says that nothing can belong to some classes any more."""
+    """Return the error for classes that cannot have instances."""
     listed = ", ".join(name.rsplit("/", 1)[-1] for name in sorted(classes))
     return InconsistencyError(
-        f"nothing can be a '{listed}' any more: what was learned about it before says it is of another kind; "
+        f"no instance of '{listed}' is possible: an earlier lesson declares it to be of another kind; "
         "forget that lesson, or declare the same kind in both scripts"
     )
 
 
 def class_axioms(learned: list[ox.Triple]) -> list[ox.Triple]:
-    """What learned triples say of classes; roles, statements and matches are no business of classification."""
+    """Return the class axioms among learned triples, without roles, statements and matches."""
     classes = {t.subject for t in learned if t.predicate == TYPE and _value(t.object) == W3C.OWL_CLASS}
     return [t for t in learned if t.subject in classes or _value(t.subject).startswith(GENID)]
 
 
 @lru_cache(maxsize=4)
 def _classified(axioms: str) -> Classification:
-    """HermiT's answer, which takes a second."""
+    """Classify class axioms with HermiT, which takes a second."""
     return classify(axioms)
 
 
 class _Said:
-    """What is stated after a change, as the rules look at it; ``classified`` is what HermiT made of the classes."""
+    """The stated triples after a change, as the rules read them; ``classified`` are HermiT's triples, if it was run."""
 
     def __init__(self, after: After, relations: Relations, classified: set[ox.Triple] | None = None) -> None:
         self._after, self.classified = after, classified
@@ -156,7 +156,7 @@ class _Said:
         return any(self._after.holds(name, triple) for name in STATED)
 
     def require_lessons_only(self, triples: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
-        """Raises BeyondLessonsError where classes are said to be more than lessons say; ``triples`` are new ones."""
+        """Raise BeyondLessonsError where class axioms are not of the form that lessons write; ``triples`` are new."""
         for predicate in map(iri, BEYOND):
             for name in CLASSES:
                 if any(True for _ in self._after.triples(name, None, predicate)):
@@ -164,10 +164,10 @@ class _Said:
         for name in CLASSES:
             for triple in triples.get(name, ()):
                 if triple.predicate == SUB_CLASS_OF and _value(triple.subject).startswith(GENID):
-                    raise BeyondLessonsError(f"the {name} graph says what <{_value(triple.subject)}> is narrower than")
+                    raise BeyondLessonsError(f"the {name} graph has a super-class of <{_value(triple.subject)}>")
 
     def module(self, classes: set[str]) -> set[str]:
-        """Some classes, and all above and below them: those whose super-classes can have changed."""
+        """Return some classes with all above and below them: the classes whose super-classes can have changed."""
         module = classes.union(*(self._broader(name) for name in classes))
         todo = list(classes)
         while todo:
@@ -185,25 +185,25 @@ class _Said:
             raise impossible(wrong)
 
     def class_triples(self, name: str) -> set[ox.Triple]:
-        """What follows about a class and is nowhere said."""
+        """Return the triples that follow about a class and are not stated."""
         found = (ox.Triple(iri(name), SUB_CLASS_OF, iri(other)) for other in self._broader(name))
         return {t for t in found if not self.stated(t) and not self._after.holds(GraphName.ONTOLOGY, t)}
 
     def types(self, thing: ox.NamedNode | ox.BlankNode | ox.Triple) -> set[ox.Triple]:
-        """Every broader class of what a thing is said to be."""
+        """Return the broader classes of the stated classes of a thing, as triples."""
         kinds = {_value(t.object) for t in self._after.triples(GraphName.ASSERTED, thing, TYPE)}
         broader = set[str]().union(*map(self._broader_of_kind, kinds)) - kinds
         found = (ox.Triple(thing, TYPE, iri(kind)) for kind in broader)
         return {triple for triple in found if not self.stated(triple)}
 
     def wide(self, subject: ox.NamedNode | ox.BlankNode | ox.Triple, object: Node) -> set[ox.Triple]:
-        """The wide relations of a pair by its exact ones."""
+        """Return the wide relations of a pair that follow from its exact ones."""
         exact = (t.predicate for t in self._after.triples(GraphName.ASSERTED, subject, None, object))
         found = {ox.Triple(subject, wide, object) for name in exact for wide in self.wider.get(name, ())}
         return {triple for triple in found if not self.stated(triple)}
 
     def of_things(self) -> set[ox.Triple]:
-        """What follows of all things and pairs."""
+        """Return the triples that follow about all things and pairs."""
         asserted = list(self._after.triples(GraphName.ASSERTED))
         things = {triple.subject for triple in asserted if triple.predicate == TYPE}
         pairs = {(t.subject, t.object) for t in asserted if t.predicate in self.wider}
@@ -213,7 +213,7 @@ class _Said:
         return self._subsumption.broader(name)
 
     def _broader_of_kind(self, kind: str) -> set[str]:
-        """The classes above a kind, but those of which only the ontology says it."""
+        """Return the classes above a kind, without those that follow from the ontology only."""
         found = set(self._broader(kind)) if self.classified is None else self._by_hermit.get(kind, set())
         told = {
             name: {_value(t.object) for t in self._after.triples(name, iri(kind), SUB_CLASS_OF)} for name in CLASSES
@@ -224,7 +224,10 @@ class _Said:
 
 @dataclass(frozen=True)
 class _Told:
-    """What the ontology and the lessons say of a class; apart from what asks, so that no circle keeps a store open."""
+    """Lookup of what the ontology and the lessons state about a class.
+
+    It does not refer to its user, so that no reference cycle keeps a store open.
+    """
 
     after: After
 
@@ -246,12 +249,12 @@ class _Told:
             for predicate in (ON_PROPERTY, SOME_VALUES_FROM)
         ]
         if [len(end) for end in ends] != [1, 1] or any(value.startswith(GENID) for end in ends for value in end):
-            raise BeyondLessonsError(f"<{_value(node)}> is no restriction to some values of one property")
+            raise BeyondLessonsError(f"<{_value(node)}> is not a restriction owl:someValuesFrom of one property")
         return ends[0].pop(), ends[1].pop()
 
 
 def _schema(after: After) -> tuple[Callable[[str], PropertyEnds], list[frozenset[str]]]:
-    """What the ontology and the lessons say of the ends of properties, and of disjoint classes."""
+    """Return the lookup of domains and ranges of properties, and the groups of disjoint classes."""
 
     def pairs(predicate: ox.NamedNode) -> list[tuple[str, str]]:
         found = (t for name in CLASSES for t in after.triples(name, None, predicate))
@@ -266,15 +269,15 @@ def _schema(after: After) -> tuple[Callable[[str], PropertyEnds], list[frozenset
     inverses += [(other, one) for one, other in inverses]
     domains, ranges = pairs(DOMAIN), pairs(RANGE)
 
-    def ends(property: str) -> PropertyEnds:
-        forwards, backwards, size = {property}, set[str](), 0
+    def ends(name: str) -> PropertyEnds:
+        forwards, backwards, size = {name}, set[str](), 0
         while size < len(forwards) + len(backwards):  # super-properties, and inverses as often as there are any
             size = len(forwards) + len(backwards)
             forwards |= {high for low, high in broader if low in forwards} | {o for p, o in inverses if p in backwards}
             backwards |= {high for low, high in broader if low in backwards} | {o for p, o in inverses if p in forwards}
         here = [*(kind for p, kind in domains if p in forwards), *(kind for p, kind in ranges if p in backwards)]
         there = [*(kind for p, kind in ranges if p in forwards), *(kind for p, kind in domains if p in backwards)]
-        functional = any(_is_functional(after, name) for name in forwards)
+        functional = any(_is_functional(after, each) for each in forwards)
         return PropertyEnds(frozenset(here), frozenset(there), functional)
 
     return ends, groups
@@ -295,9 +298,9 @@ def _list(after: After, name: GraphName, head: Node) -> Iterator[str]:
 
 
 def origin(engines: Mapping[str, str] = ENGINES) -> Iterator[ox.Triple]:
-    """Where the inferred graph comes from, said in it: from what, and by which engines.
+    """Yield the provenance of the inferred graph: its sources and its engines.
 
-    It bears no time: the same facts always come to the same graph.
+    It has no time, so that the same facts always give the same graph.
     """
     graph, inference = graph_iri(GraphName.INFERRED), iri(learned_iri("inference"))
     sources = [graph_iri(name) for name in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)]

@@ -1,4 +1,4 @@
-"""From a grounding to a lesson: what is kept of a script, a scene and who was who; and what follows from it all."""
+"""Make a lesson from a grounding: its script, its scene and its matches."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answer import Grounding
 
 MAX_PAIRS = 2000
-"""Ordered pairs of a scene whose relations are all kept; of a larger scene only those that the script compares."""
+"""Maximum number of ordered pairs of things for which all relations are kept.
+
+In a larger scene only the pairs that the script compares are kept.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Occasion:
-    """When and by what something was learned."""
+    """Time span in which something was learned, and the version of the program that learned it."""
 
     started: datetime
     ended: datetime
@@ -32,7 +35,7 @@ class Occasion:
 
 
 def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[str, ...]] = ()) -> LayoutConcept:
-    """The layout that a script describes, as a concept of that lesson."""
+    """Return the layout that a script describes, as a concept of a lesson."""
     graph = script.graph()
     roles = [
         Role(name, kind, name in script.kinds, script.colours[name].iri if name in script.colours else None)
@@ -50,7 +53,7 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
 
 
 def layout_name(script: Script) -> str:
-    """The name in the header, or one made from the file's that a header can bear."""
+    """Return the layout name in the header of a script, or a valid name made from its file name."""
     if script.name:
         return script.name
     stem = Path(script.file).name.strip("<>.").split(".")[0]
@@ -59,7 +62,7 @@ def layout_name(script: Script) -> str:
 
 
 def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion: Occasion) -> Lesson:
-    """Everything that one grounding teaches."""
+    """Return the lesson that a grounding teaches."""
     return Lesson(
         layout=layout_concept(script, id, found.interchangeable),
         scene=scene,

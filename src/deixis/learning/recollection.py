@@ -1,4 +1,4 @@
-"""What a memory remembers of its lessons, ready to be learned from again: what was said, what was seen, who was who."""
+"""Lessons of a memory, ready to be learned from again: descriptions, scenes and matches."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Who:
-    """What each object of a description was taken for: a place in the scene's list, or None; and how sure that is."""
+    """The thing that each object of a description was matched with: its place in the scene's list, or None."""
 
     things: tuple[int | None, ...]
     sureness: tuple[float, ...]  # 0 to 1
@@ -38,7 +38,7 @@ class Who:
 
 @dataclass(frozen=True)
 class Remembered:
-    """One lesson. ``texts`` are its script and its scene as they were kept: equal ones say the same thing again."""
+    """One lesson. ``texts`` are its script and its scene as they were stored; lessons with equal texts count once."""
 
     lesson: str
     description: RelationGraph
@@ -49,21 +49,21 @@ class Remembered:
 
 @dataclass(frozen=True)
 class Recollection:
-    """All lessons that can be read, by id; and of the others, a line each, why not."""
+    """All lessons that can be read, and a line for each other lesson with the reason."""
 
     lessons: tuple[Remembered, ...]
     unreadable: tuple[str, ...] = ()
 
     def of(self, ids: Iterable[str]) -> Recollection:
-        """Those lessons alone."""
+        """Return the lessons with these ids only."""
         wanted = set(ids)
         return Recollection(tuple(one for one in self.lessons if one.lesson in wanted))
 
 
 def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> LayoutConcept:
-    """The layout of the lesson with that id, or of that name, learned last among several; no other is read.
+    """Return the layout with this lesson id, or the one learned last with this name; read no other layout.
 
-    Raises UnknownTermError with the nearest name there is.
+    Raises UnknownTermError with the nearest known name.
     """
     store, graph = memory.store, graph_iri(GraphName.LEARNED)
     is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
@@ -84,7 +84,7 @@ def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> Layo
 
 
 def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontology: Ontology) -> Recollection:
-    """Reads the lessons in the triples of the learned graph and of the episodes."""
+    """Read the lessons from the triples of the learned graph and of the episodes graph."""
     learned = list(learned)
     by_lesson = {layout.lesson: layout for layout in layouts(learned, ontology.relations)}
     found: list[Remembered] = []
@@ -98,7 +98,7 @@ def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontol
 
 
 def remembered_lesson(lesson: Lesson | WordLesson, ontology: Ontology) -> Remembered:
-    """A lesson that is just learned, as it would be read again."""
+    """Return a lesson that was just learned as it will be read from the memory."""
     layout, matches = (lesson.layout, lesson.matches) if isinstance(lesson, Lesson) else (None, ())
     texts = (lesson.script_file, lesson.script_text, lesson.scene_text)
     return _remembered(LessonRecord(lesson.id, *texts, matches, layout is None), layout, ontology)
@@ -129,7 +129,7 @@ def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> 
 
 
 def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
-    """What labels say: an object is the one thing whose label fits it, as surely as the label is."""
+    """Match each object with the only thing whose label fits it, with the confidence of that label."""
     from deixis.learning.scene_evidence import scene_labels
     from deixis.reasoning.grounding.evidence.labels import naming
 

@@ -1,4 +1,4 @@
-"""What speaks for who is who: a description and a scene, with what an ontology and a memory know, as evidence."""
+"""Evidence for matching a description with a scene, given an ontology and what a memory has learned."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
-    """All that speaks for who is who: the script's facts, and the scene's relations, labels, sizes and colours."""
+    """Return the evidence of a script's facts, and a scene's relations, labels, sizes and colours, for each match."""
     return graph_evidence(script.graph(), scene, script.ontology, meaning)
 
 
@@ -30,8 +30,15 @@ def graph_evidence(
     label_error: float = LABEL_ERROR,
     deadline: Deadline = Deadline.never(),
 ) -> Evidence:
-    """The same of a description that is a graph already, to be worked out until the deadline; of labels said to be
-    certain a share ``label_error`` is wrong."""
+    """Return the evidence for a description that is a graph already; see :func:`evidence_of`.
+
+    Parameters
+    ----------
+    label_error
+        Share of the labels with confidence 1 that are wrong.
+    deadline
+        Time limit of the computation.
+    """
     return evidence_from(
         description,
         scene.relations(ontology.relations, deadline=deadline),
@@ -53,10 +60,15 @@ def shortlisted_evidence(
     gigabytes: float,
     deadline: Deadline,
 ) -> Evidence:
-    """Return the same for the few things of a large scene that the objects may be.
+    """Return the evidence for the few things of a large scene that can match the description.
 
-    Neither all pairs of things are compared, nor is memory for them taken: the whole takes ``gigabytes`` at the most.
-    Raises OutOfMemoryError or OutOfTimeError where what is known of the things by themselves leaves too many.
+    Neither all pairs of things are compared, nor is memory for them allocated: the computation takes at most
+    ``gigabytes``.
+
+    Raises
+    ------
+    OutOfMemoryError, OutOfTimeError
+        Too many things are left after each was judged alone.
     """
     known = thing_evidence(
         description,
@@ -73,7 +85,7 @@ def shortlisted_evidence(
 
 
 def _perceived(scene: Scene) -> dict[str, Any]:
-    """Return what perception says of the things of a scene, as the evidence of things takes it."""
+    """Return what perception reports about the things of a scene, as keyword arguments for the evidence functions."""
     labels = scene_labels(scene)
     ranked = [named_by_candidates(thing) for thing in scene.objects]
     return {
@@ -87,27 +99,27 @@ def _perceived(scene: Scene) -> dict[str, Any]:
 
 
 def scene_labels(scene: Scene) -> dict[str, Label | None]:
-    """What perception calls each thing of a scene."""
+    """Return the label of each thing of a scene by its id, or None where it has none."""
     return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}
 
 
 def named_by_candidates(thing: PerceivedObject) -> bool:
-    """Return whether the candidates of a thing weigh in a grounding, and not its label: where that is not certain."""
+    """Return True if the candidates of a thing are used instead of its label: if it has some and no certain label."""
     return bool(thing.candidates) and (thing.label is None or thing.confidence < 1)
 
 
 def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
-    """Return what is to be said where a script speaks from another viewpoint than that of the scene."""
+    """Return a note if the viewpoint of a script differs from that of the scene."""
     if viewpoint is None or viewpoint == scene.viewpoint:
         return ()
     return (
-        f"the script speaks as seen from '{viewpoint}' and the scene is seen from '{scene.viewpoint}': "
-        "left and right were compared as they stand",
+        f"the viewpoint of the script is '{viewpoint}' and that of the scene is '{scene.viewpoint}': "
+        "left and right were compared without conversion",
     )
 
 
 def conflict_notes(conflict: Conflict | None) -> tuple[str, ...]:
-    """Return what is to be said with an answer where a script contradicts itself."""
+    """Return a note if a script contradicts itself."""
     if conflict is None:
         return ()
     return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)

@@ -1,9 +1,9 @@
-"""How large things of a kind are, from all that is remembered, whether or not the ontology knows the kind.
+"""Sizes of the kinds of things, learned from all lessons, also of kinds that the ontology does not know.
 
-A lesson's share are its views: things that are known to be of a kind, each with its size. They are added to counts by
-kind, and taken out when the lesson is forgotten (:mod:`deixis.reasoning.grounding.fitting.size_statistics`); the same
-box counts once, however many lessons show it. A model is made from the counts of its kind, near a usual size, or near
-what all kinds have in common. So a lesson touches the kinds that it shows, and no others unless what is common changes.
+The share of a lesson is its views: things of a known kind, each with its size. They are added to counts by kind, and
+removed when the lesson is forgotten (:mod:`deixis.reasoning.grounding.fitting.size_statistics`). A box counts once,
+however many lessons show it. The model of a kind is computed from its counts; its prior is the usual size of the kind,
+or what all kinds have in common. So a lesson changes only the kinds that it shows, unless the common prior changes.
 """
 
 from __future__ import annotations
@@ -27,28 +27,29 @@ from deixis.reasoning.grounding.fitting.size_statistics import BUCKET, SCALE, Di
 from deixis.reasoning.grounding.fitting.sizes import SizePrior, pool, size_of, usual_prior
 
 FEWEST = 3
-"""Views that take the place of a usual size. With fewer, one wrong view moves the median at will."""
+"""Minimum number of views that override a usual size. With fewer, one wrong view moves the median at will."""
 
 SURE = 0.9
-"""Confidence from which a label says what a thing is like; a median bears the tenth that is wrong."""
+"""Minimum confidence of a label or match that counts; a median tolerates the tenth that is wrong."""
 
 SETTLED = 64
-"""Views of all kinds together from which on what they have in common is rounded.
+"""Minimum number of views of all kinds together from which on the common prior is rounded.
 
-Else every lesson would alter the model of every kind of which no usual size is known, by nothing that matters.
+Without rounding, every lesson would change the model of every kind without a usual size by a negligible amount.
 """
 
 GRAIN = 1 / 32
-"""What it is rounded to then: 3 per cent of a length."""
+"""Step to which the common prior is rounded, in logarithms: 3 per cent of a length."""
 
 AXES = ("length", "aspect")
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class SizeView:
-    """One thing of a kind, seen in one scene: logarithms of its length and aspect, in steps, in metres and relative.
+    """One thing of a kind in one scene, with its size.
 
-    ``box`` tells boxes apart. Of several views of one box the least counts, in the order of these fields.
+    ``plain`` and ``relative`` are the logarithms of its length and aspect in steps: in metres, and relative to the
+    scene. ``box`` identifies its box. Of several views of one box the smallest counts, in the order of these fields.
     """
 
     kind: str
@@ -60,23 +61,24 @@ class SizeView:
 
     @property
     def place(self) -> str:
-        """What views of the same box as of the same kind share."""
+        """Key that views of the same box and kind share."""
         return content_key(f"{self.kind} {self.box}")
 
     def written(self) -> str:
-        """The view as a text; :meth:`read` is its inverse."""
+        """Return the view as a text; :meth:`read` is the inverse."""
         numbers = (int(self.metric), *self.plain, *self.relative)
         return " ".join((self.kind, self.box, self.scene, *map(str, numbers)))
 
     @classmethod
     def read(cls, text: str) -> SizeView:
+        """Read a view from the text that :meth:`written` returns."""
         kind, box, scene, *numbers = text.split(" ")
         metric, *sizes = map(int, numbers)
         return cls(kind, box, scene, bool(metric), (sizes[0], sizes[1]), (sizes[2], sizes[3]))
 
 
 def size_views(lesson: Remembered, kinds: Kinds) -> list[SizeView]:
-    """What a lesson adds to the statistics of sizes: every thing that is known to be of a kind."""
+    """Return what a lesson adds to the statistics of sizes: a view of each thing whose kind is known."""
     boxes, scene = lesson.scene.boxes, scene_text_iri(lesson.texts[1])
     metric = lesson.scene.unit == "m"
     known = dict.fromkeys([*_matched(lesson), *_labelled(lesson, kinds)])
@@ -111,13 +113,13 @@ def _labelled(lesson: Remembered, kinds: Kinds) -> Iterator[tuple[str, int]]:
 # ---- the statistics
 
 Row = dict[str, str]
-"""What is counted about one thing: values by key."""
+"""Counts about one thing: values by key."""
 
 
 class Counts:
-    """Rows of counts, read as they are needed, and what of them has changed since.
+    """Rows of counts, read when they are needed, and their changes since then.
 
-    ``value`` reads one key of a row and ``row`` all of them, from where the counts are kept.
+    ``value`` reads one key of a row from the store, ``row`` reads all of them.
     """
 
     def __init__(
@@ -147,12 +149,12 @@ class Counts:
         return {key: value for key, value in self._now[name].items() if value is not None}
 
     def set(self, name: str, key: str, value: str | None) -> None:
-        """Set one value; None takes it away."""
+        """Set one value; None removes it."""
         self.get(name, key)
         self._now[name][key] = value
 
     def add(self, name: str, key: str, number: int) -> int:
-        """Add to a whole number, which is not kept where it is 0; return the sum."""
+        """Add to an integer, which is not stored where it is 0; return the sum."""
         total = int(self.get(name, key) or 0) + number
         self.set(name, key, str(total) if total else None)
         return total
@@ -165,7 +167,7 @@ class Counts:
                 yield key, old, new
 
     def difference(self) -> tuple[list[tuple[str, str, str]], list[tuple[str, str, str]]]:
-        """Return what is no longer so, and what is new: rows, keys and values."""
+        """Return the removed and the added entries, each as row, key and value."""
         every = [
             (name, *entry) for name in sorted(self._now) for entry in sorted(self.changed(name), key=lambda e: e[0])
         ]
@@ -175,7 +177,7 @@ class Counts:
 
 @dataclass(frozen=True, slots=True)
 class _Used:
-    """The views that the model of a kind is made from: those in metres where they are enough, else all by scene."""
+    """Summary of the views that a kind's model is computed from: those in metres if they suffice, else all."""
 
     mode: str | None  # 'm', 'r', or None for too few views
     views: int
@@ -187,7 +189,7 @@ METRES, RELATIVE = "m", "r"
 
 
 class SizeStatistics:
-    """Counts of views by kind, and the models that they come to."""
+    """Counts of views by kind, and the models computed from them."""
 
     def __init__(self, counts: Counts, sizes: Sizes) -> None:
         self._counts, self._sizes = counts, sizes
@@ -196,13 +198,13 @@ class SizeStatistics:
         self._priors: dict[str, SizePrior | None] | None = None
 
     def add(self, view: SizeView) -> None:
-        """Count a view, unless one of the same box counts already that comes first."""
+        """Count a view, unless a smaller one of the same box counts already."""
         counted = self._counts.get("views", view.place)
         if counted is None or view < SizeView.read(counted):
             self._exchange(None if counted is None else SizeView.read(counted), view)
 
     def remove(self, view: SizeView, others: Iterable[SizeView]) -> None:
-        """Take a view out; ``others`` are those of the same box that other lessons have, and one of them counts now."""
+        """Remove a view; the smallest of ``others``, the views of its box in other lessons, counts instead."""
         if self._counts.get("views", view.place) == view.written():
             left = min(others, default=None)
             if left != view:
@@ -226,12 +228,13 @@ class SizeStatistics:
                     self._bucket(_row(axis, mode, view.kind), str(value // BUCKET), times, times * value)
 
     def _bucket(self, row: str, key: str, count: int, total: int) -> None:
-        """Add views to a bucket, or take them out: their number, and the sum of their steps."""
-        before, sum = _pair(self._counts.get(row, key))
-        self._counts.set(row, key, f"{before + count} {sum + total}" if before + count else None)
+        """Add to the number of views in a bucket, and to the sum of their steps; negative numbers remove views."""
+        old_count, old_total = _pair(self._counts.get(row, key))
+        value = f"{old_count + count} {old_total + total}" if old_count + count else None
+        self._counts.set(row, key, value)
 
     def _touch(self, kind: str) -> None:
-        """Take a kind out of what all have in common, before its views change."""
+        """Remove a kind from the common prior, before its views change."""
         if self._priors is None:
             self._priors = {mode: self._prior(mode) for mode in (METRES, RELATIVE)}
         if kind not in self._before:
@@ -252,7 +255,7 @@ class SizeStatistics:
         return Distribution({int(key): _pair(value) for key, value in self._counts.row(row).items()})
 
     def _pool(self, kind: str, used: _Used, times: int) -> None:
-        """Add the views of a kind to what all have in common, or take them out."""
+        """Add the views of a kind to the common prior, or remove them with ``times=-1``."""
         if used.mode is None:
             return
         self._counts.set(f"kinds/{used.mode}", kind, "" if times > 0 else None)
@@ -266,7 +269,7 @@ class SizeStatistics:
                 self._bucket(common, key, times * count, times * total)
 
     def _prior(self, mode: str) -> SizePrior | None:
-        """What all kinds have in common; None without any."""
+        """Return the prior that all kinds have in common, or None without any kind."""
         kinds = int(self._counts.get("pool", f"kinds/{mode}") or 0)
         if not kinds:
             return None
@@ -283,15 +286,15 @@ class SizeStatistics:
         return SizePrior(centre, np.maximum(between, GRAIN), np.maximum(within, GRAIN))
 
     def settle(self) -> None:
-        """Count the kinds that were touched among what all have in common; to be called once, when all views are in."""
+        """Add the changed kinds to the common prior; call it once, after all views are in."""
         self._after = {kind: self._used(kind) for kind in self._before}
         for kind, used in self._after.items():
             self._pool(kind, used, 1)
 
     def models(self) -> dict[str, tuple[SizeModel | None, set[str], set[str]]]:
-        """The models that are not as they were, by kind: the model, or None, scenes that are gone, and new ones.
+        """Return the changed models by kind: the model or None, the scenes that are gone, and the new ones.
 
-        To be called after :meth:`settle`.
+        Call it after :meth:`settle`.
         """
         if self._priors is None:
             return {}
@@ -317,7 +320,7 @@ class SizeStatistics:
         return size_of(used.views, medians, deviations, prior, used.mode == RELATIVE), gone, come
 
     def _scenes(self, kind: str) -> tuple[set[str], set[str]]:
-        """The scenes that a kind's model is no longer derived from, and those that it is newly derived from."""
+        """Return the scenes that a kind's model is no longer derived from, and those that it is newly derived from."""
         old, new = self._before[kind].mode, self._after[kind].mode
         rows = {mode: _row("scenes", mode, kind) for mode in (old, new) if mode is not None}
         changed = {mode: list(self._counts.changed(row)) for mode, row in rows.items()}

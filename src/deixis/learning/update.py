@@ -1,9 +1,9 @@
-"""Writing to a memory: lessons in and out, with all that follows from what is there then, in one step each.
+"""Add lessons to a memory and remove them, with all that follows from them, in one step each.
 
-What a lesson costs does not depend on how many came before: what follows is changed where it is touched, and sizes are
-counts that views are added to and taken out of. A memory says by which rules it was kept up; where that is not how it
-would be done now, because it is of an earlier version, was filled by hand, or knows another ontology, the next lesson
-works everything out anew.
+The cost of a lesson does not depend on how many came before: only the inferences that it touches are changed, and sizes
+are counts that views are added to and removed from. A memory records the version of the rules by which it was last
+updated. Where the record differs from the current rules, because the memory is of an earlier version, was filled by
+hand, or has another ontology, the next lesson recomputes everything.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ from deixis.reasoning.errors import NothingFoundError
 from deixis.scratch import scratch_folder
 
 RULES = 1
-"""The version of the rules by which what follows from lessons, and what is counted of them, is worked out."""
+"""Version of the rules for inferences and counts; a memory records it."""
 
 BY_HERMIT = " by HermiT"
-"""What is said beside the rules where more is said of classes than lessons say."""
+"""Suffix of the recorded rules where HermiT classified the memory, as it has more class axioms than lessons write."""
 
 AT_ONCE = 100
 """Maximum number of lessons in one change of the store; a change takes 1 to 2 MB of memory a lesson.
@@ -62,16 +62,19 @@ MAX_NAMED = 3
 """Maximum number of differing statements that a line of :func:`stale` names."""
 
 SEEN = iri(STATISTICS + "seen")
-"""What a lesson's share says of a place in the counts: the view that the lesson has of it."""
+"""Predicate from a place in the counts to the view that a lesson has of it."""
 
 
 def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
-    """All lessons of a memory, ready to be learned from."""
+    """Return all lessons of a memory, ready to be learned from."""
     return _recollected(After(memory.store), ontology)
 
 
 Commit = Callable[[str | None], None]
-"""Commits a change that is worked out; it is told the journal of the write over both stores that it decides, if any."""
+"""A function that commits a prepared change.
+
+Its argument is the id of the journal if the commit decides a write over both stores, else None.
+"""
 
 
 def keeping(
@@ -80,10 +83,10 @@ def keeping(
     lessons: Sequence[Lesson],
     seen: Mapping[str, Sequence[View]] = MappingProxyType({}),
 ) -> Commit:
-    """What writes lessons, with the views that each taught, by its id: all of them, or none.
+    """Return a function that commits lessons, with the views that each taught, by lesson id: all of them, or none.
 
-    What follows from them is worked out here, so that nothing slow is left to the commit; of more lessons than
-    :data:`AT_ONCE` it is worked out in the commit, on the copy of the store that takes its place.
+    What follows from the lessons is computed here, so that the commit itself is fast. For more than :data:`AT_ONCE`
+    lessons it is computed in the commit, on the copy of the store that then replaces the store.
     """
     if len(lessons) <= AT_ONCE:
         change, rules = _arrived(memory, ontology, lessons, seen)
@@ -100,7 +103,7 @@ def keeping(
 def _arrived(
     memory: SemanticMemory, ontology: Ontology, lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]]
 ) -> tuple[Change, str]:
-    """The change that new lessons make, with what follows from it, and its rules."""
+    """Return the change that new lessons make, with what follows from it, and its rules."""
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     change, rules = _followed(memory, ontology, change, [remembered_lesson(lesson, ontology) for lesson in lessons])
     links = []
@@ -113,15 +116,12 @@ def _arrived(
 def keep_words(
     memory: SemanticMemory, ontology: Ontology, lessons: Sequence[WordLesson], strength: float
 ) -> LearnedWords:
-    """Writes lessons about words, and the models fitted anew to everything remembered.
-
-    Raises NothingFoundError, having written nothing, where there is nothing to learn from.
-    """
+    """Write lessons about words, and the models refitted to all lessons."""
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     words = fit(_recollected(After(memory.store, change), ontology), strength)
     if not words.taught:
-        told = "; ".join(("nothing to learn: no fact of a lesson has both its objects in its scene", *words.left_out))
-        raise NothingFoundError(f"{told}; learn from a script with a labelled scene, or ground one ('deixis learn')")
+        why = "; ".join(("nothing to learn: no fact of a lesson has both its objects in its scene", *words.left_out))
+        raise NothingFoundError(f"{why}; learn from a script with a labelled scene, or ground one ('deixis learn')")
     models = _worded(memory, words)
     rules = memory.kept_up()
     if lessons:
@@ -132,10 +132,10 @@ def keep_words(
 
 
 def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commit:
-    """What takes back one lesson, with what follows from it alone and what it taught.
+    """Return a function that removes one lesson, with what follows from it only and what it taught.
 
-    Where it was among the lessons that words were fitted to, it is taken out of the fit's statistics; where that
-    cannot be done, words are fitted anew from the others of those.
+    If relation words were fitted to the lesson, it is removed from the statistics of the fit; where that is impossible,
+    the words are refitted to the other lessons of the fit.
     """
     one = _remembered_one(memory, ontology, lesson)
     change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
@@ -151,28 +151,33 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
 
 
 def forget_words(memory: SemanticMemory) -> None:
-    """Takes the learned models of relation words away, and the statistics of their fit; lessons stay."""
+    """Remove the learned models of relation words, and the statistics of their fit; keep the lessons."""
     memory.commit(_worded(memory, None), memory.kept_up())
 
 
 def _worded(memory: SemanticMemory, words: LearnedWords | None) -> Change:
-    """The change that replaces the learned words and the statistics of their fit."""
+    """Return the change that replaces the learned words and the statistics of their fit."""
     models = modelling(memory.store, {ModelSet.WORDS: word_triples(words.changed) if words is not None else []})
     return together(models, Change(operations=tuple(replacing(words))))
 
 
 def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
-    """Takes a file into the memory at a place, which nobody has open; what is there stays.
+    """Import a file into the memory at a path, which must not be open; keep what the memory has.
 
-    What follows from both together is worked out first, and words that both had learned are fitted from the lessons of
-    both: raises InconsistencyError, having changed nothing, where they contradict each other.
+    What follows from both together is computed first, and words that both had learned are fitted to the lessons of
+    both.
+
+    Raises
+    ------
+    InconsistencyError
+        The file contradicts the memory. Nothing was changed.
     """
     with scratch_folder() as scratch:
         import_dump(file, scratch / "memory")
         with SemanticMemory.open(scratch / "memory") as theirs:
             brought = models_from_triples(theirs.models(ModelSet.WORDS))
             if inspect(target) in (FolderState.ABSENT, FolderState.EMPTY):
-                theirs.commit(*_followed(theirs, ontology, Change(), anew=True))
+                theirs.commit(*_followed(theirs, ontology, Change(), from_scratch=True))
                 open_memory(target, create=True, fill=lambda store: store.bulk_extend(theirs.store)).close()
                 return
     with SemanticMemory.open(target) as memory:
@@ -183,12 +188,12 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
         if ours and brought and informed(brought)[0] != lessons:
             both = _recollected(After(memory.store, change), ontology).of(lessons | informed(brought)[0])
             words = _worded(memory, fit(both, strength))
-        change, rules = _followed(memory, ontology, change, anew=True)
+        change, rules = _followed(memory, ontology, change, from_scratch=True)
         memory.commit(together(change, words), rules)
 
 
 def word_triples(models: Iterable[RelationModel]) -> list[ox.Triple]:
-    """Learned models as a memory keeps them."""
+    """Return learned models as the triples that a memory stores."""
     return list(dict.fromkeys(triple for model in models for triple in model_triples(model)))
 
 
@@ -201,7 +206,7 @@ def _contributions(lesson: Lesson | WordLesson, ontology: Ontology) -> dict[Grap
 
 
 def _remembered_one(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Remembered | None:
-    """One lesson, ready to be learned from; None where it cannot be read."""
+    """Return one lesson, ready to be learned from, or None where it cannot be read."""
     lessons = _recollected_from([memory.contributions(lesson)], ontology).lessons if memory.knows(lesson) else ()
     return lessons[0] if lessons else None
 
@@ -209,7 +214,7 @@ def _remembered_one(memory: SemanticMemory, ontology: Ontology, lesson: str) -> 
 def _recollected_from(
     contributions: Sequence[Mapping[GraphName, Sequence[ox.Triple]]], ontology: Ontology
 ) -> Recollection:
-    """The lessons that contributed so much."""
+    """Return the lessons in some contributions."""
     learned, episodes = (
         [triple for said in contributions for triple in said.get(name, ())]
         for name in (GraphName.LEARNED, GraphName.EPISODES)
@@ -230,30 +235,30 @@ def _followed(
     change: Change,
     come: Sequence[Remembered] = (),
     gone: Sequence[str] = (),
-    anew: bool = False,
+    from_scratch: bool = False,
 ) -> tuple[Change, str]:
-    """A change of what is said together with that of what follows from it, and the rules that it keeps to.
+    """Return a change together with what follows from it, and the rules that hold after it.
 
-    ``come`` are the lessons that it brings, ``gone`` the ids of those that it takes back; with ``anew`` they are not
-    asked for. Raises InconsistencyError where a class becomes impossible.
+    ``come`` are the lessons that the change adds, ``gone`` the ids of those that it removes. With ``from_scratch``
+    everything is recomputed and both are ignored. Raises InconsistencyError where a class becomes unsatisfiable.
     """
-    rules, known = kept_up_rules(ontology), None if anew else memory.kept_up()
+    rules, known = kept_up_rules(ontology), None if from_scratch else memory.kept_up()
     after = After(memory.store, change)
     inferred, by_hermit = _inferred(after, ontology, stepwise=known == rules)
     if known in (rules, rules + BY_HERMIT):
         sizes = _recounted(memory.store, ontology, come, gone)
     else:
-        sizes = _counted_anew(memory.store, ontology, _recollected(after, ontology))
+        sizes = _recounted_from_scratch(memory.store, ontology, _recollected(after, ontology))
     return together(change, inferred, sizes), rules + BY_HERMIT if by_hermit else rules
 
 
 def kept_up_rules(ontology: Ontology) -> str:
-    """The rules by which a memory is kept up with an ontology, as a memory says them."""
+    """Return the rules by which a memory is updated with an ontology, as a memory records them."""
     return f"{RULES} {package_digest()[:16]} {ontology.kinds_key}"
 
 
 def _inferred(after: After, ontology: Ontology, stepwise: bool) -> tuple[Change, bool]:
-    """The change of the inferred graph, and whether it took HermiT."""
+    """Return the change of the inferred graph, and whether HermiT was needed for it."""
     try:
         if stepwise:
             return following(after, ontology.relations), False
@@ -263,7 +268,7 @@ def _inferred(after: After, ontology: Ontology, stepwise: bool) -> tuple[Change,
 
 
 def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], gone: Sequence[str]) -> Change:
-    """The change of the statistics and models of sizes when lessons come and go."""
+    """Return the change of the statistics and models of sizes when lessons are added and removed."""
     counts = Counts(lambda row, key: _value(store, row, key), lambda row: _row(store, row))
     statistics = SizeStatistics(counts, ontology.sizes)
     operations: list[ledger.Operation] = []
@@ -291,8 +296,8 @@ def _recounted(store: ox.Store, ontology: Ontology, come: Sequence[Remembered], 
     return together(remodelling(store, copy, left, come_now), Change(operations=(*operations, *_rows(counts))))
 
 
-def _counted_anew(store: ox.Store, ontology: Ontology, recollection: Recollection) -> Change:
-    """The same from all lessons, whatever was counted before."""
+def _recounted_from_scratch(store: ox.Store, ontology: Ontology, recollection: Recollection) -> Change:
+    """Return the change that recomputes the statistics and models of sizes from all lessons."""
     counts, shares, triples = _counted(recollection, ontology)
     operations = [ledger.drop(graph) for graph in _share_graphs(store)]
     operations += ledger.deletion(COUNTED, sorted(_kept_rows(store), key=str))
@@ -301,7 +306,7 @@ def _counted_anew(store: ox.Store, ontology: Ontology, recollection: Recollectio
 
 
 def _counted(recollection: Recollection, ontology: Ontology) -> tuple[Counts, list[ledger.Operation], list[ox.Triple]]:
-    """The counts of all lessons, the operations that write the share of each, and the models."""
+    """Return the counts of all lessons, the operations that write the share of each, and the size models as triples."""
     counts = Counts()
     statistics = SizeStatistics(counts, ontology.sizes)
     shares = _shares(statistics, recollection.lessons, ontology)
@@ -318,14 +323,14 @@ def _share_graphs(store: ox.Store) -> list[ox.NamedNode]:
 
 
 def _kept_rows(store: ox.Store) -> set[ox.Triple]:
-    """What is counted, but for what the store says of itself."""
+    """Return the stored counts, without what the graph says about itself."""
     return {quad.triple for quad in store.quads_for_pattern(None, None, None, COUNTED) if quad.subject != COUNTED}
 
 
 def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
-    """What of that which follows from a memory's lessons is not as it would be worked out from nothing, a line each.
+    """Yield a line for each part of a memory that differs from what its lessons lead to when recomputed.
 
-    A memory of which it is to be made anew anyhow has nothing stale.
+    A memory of other rules has nothing stale: its next lesson recomputes everything.
     """
     known, rules = ledger.kept_up(store), kept_up_rules(ontology)
     if known not in (rules, rules + BY_HERMIT):
@@ -353,20 +358,20 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
             differing = [*(("too many", each) for each in kept - right), *(("missing", each) for each in right - kept)]
             named = "; ".join(sorted(f"{how}: {_shortened(each)}" for how, each in differing)[:MAX_NAMED])
             yield (
-                f"{what} are not what the lessons come to: {len(kept - right)} too many, {len(right - kept)} missing "
-                f"({named})"
+                f"{what} differ from what the lessons lead to: {len(kept - right)} too many, "
+                f"{len(right - kept)} missing ({named})"
             )
 
 
 def _shortened(statement: object) -> str:
-    """A triple or quad in few characters: the last parts of its IRIs."""
+    """Return a triple or quad as a short text: the last parts of its IRIs."""
     terms = (getattr(statement, name) for name in ("subject", "predicate", "object"))
     values = (str(getattr(term, "value", term)) for term in terms)
     return " ".join(value.rsplit("/", 1)[-1].rsplit("#", 1)[-1][:40] for value in values)
 
 
 def _shares(statistics: SizeStatistics, lessons: Iterable[Remembered], ontology: Ontology) -> list[ledger.Operation]:
-    """Adds what lessons show to the statistics; returns the operations that write their shares."""
+    """Add what lessons show to the statistics; return the operations that write their shares."""
     operations: list[ledger.Operation] = []
     for lesson in lessons:
         views = size_views(lesson, ontology.kinds)
@@ -400,7 +405,7 @@ def _row(store: ox.Store, row: str) -> Row:
 
 
 def _rows(counts: Counts) -> list[ledger.Operation]:
-    """The operations that bring the rows up to date."""
+    """Return the operations that update the stored rows."""
     gone, come = (
         [ox.Triple(_node(row), _node(key), text(value)) for row, key, value in side] for side in counts.difference()
     )

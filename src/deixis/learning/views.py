@@ -1,4 +1,4 @@
-"""What is taught and recognised: views of things in the perceptual memory, and the recogniser that they make."""
+"""Views of things in the perceptual memory, and the recogniser that is made from them."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ from deixis.perception.scene import Scene
 
 @dataclass(frozen=True)
 class ViewDescriptor:
-    """A descriptor of views: what computes it, the name under which a view keeps it, and how distances are judged."""
+    """A descriptor of views: its algorithm, the name under which views store it, and the prior of its distances."""
 
     name: str
     describer: Describer
     root: bool = False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """What a thing's points are compared by, (k, d); none of too few points."""
+        """Return the descriptors of a cloud, shape (k, d); k is 0 for a cloud with too few points."""
         found = self.describer.describe(cloud)
         return roots(found) if self.root else found
 
@@ -57,46 +57,50 @@ class ViewDescriptor:
 
 
 UPRIGHT = ViewDescriptor("upright", UprightDescriber())
-"""The descriptor of views in a table's frame, where all of them have it."""
+"""Descriptor of views in the frame of a table, used where all views have it."""
 
 FORM = ViewDescriptor("form", FormDescriber())
-"""What such views are compared by beside it."""
+"""Descriptor of views in the frame of a table that is compared beside :data:`UPRIGHT`."""
 
 SPIN_IMAGE_ROOTS = ViewDescriptor("spin_image_roots", SpinImageDescriber(support=0.2), root=True)
-"""The descriptor of all other views, whatever their frame, and of views that were kept before there was another one.
+"""Descriptor of all other views, whatever their frame, and of views stored before there was a choice.
 
-With square roots the distance of equation 1 is Hellinger's; a support of 20 cm takes in most of a thing on a table."""
+With square roots the distance of equation 1 is the Hellinger distance. A support of 20 cm covers most of a thing on a
+table.
+"""
 
 COLOUR = ViewDescriptor("colour", ColourDescriber())
-"""What views are compared by beside their shape, where all of them and what is seen have colours."""
+"""Descriptor of colour, compared beside the shape where all views and the seen thing have colours."""
 
 TABLE = "table"
-"""The frame in which z is up, and 0 on the table."""
+"""Name of the frame in which z points up and is 0 on the table."""
 
 DISTANCES, IDS, COMPARED, DESCRIBED = "distances", "views", "compared", "described"
-"""The names of a category's state: D_V between its views, the ids of the views, in the same order, the descriptor
-in which they were compared, and all descriptors that every one of them has."""
+"""Names in the state and metadata of a category: D_V between its views; the ids of the views, in the same order; the
+descriptor in which they were compared; all descriptors that each of the views has.
+"""
 
 GROUNDING = "grounding"
-"""Who teaches what a grounding has found."""
+"""Name of the teacher of views that come from a grounding."""
 
 LEAST_CONFIDENCE = 0.01
 MOST_CONFIDENCE = 0.99
-"""A recognised label is never certain, since a certain one would silence the description."""
+"""Maximum confidence of a recognised label: a certain label would override the description."""
 
 
 MAPPED = 10_000
-"""From so many views on they are not held in memory."""
+"""Minimum number of views whose descriptors are mapped from a file and not held in memory."""
 
 Pack = Callable[[Iterable[tuple[str, NDArray[np.float32]]]], PackedViews]
-"""How the descriptors of views are held; it reads all of them before it returns."""
+"""A function that stores the descriptors of views; it reads all of them before it returns."""
 
 
 @dataclass(frozen=True)
 class Taught:
-    """A view that was kept. ``before`` is the category that it was in, where a teacher corrects an earlier word.
+    """A view that was stored.
 
-    ``again`` is whether it was a view of this category before.
+    ``before`` is its earlier category, where a teacher corrects an earlier word. ``again`` is True if the view was in
+    this category already.
     """
 
     view: str
@@ -108,7 +112,7 @@ class Taught:
 
 @dataclass(frozen=True)
 class StandingWord:
-    """A thing of a scene that a teacher named otherwise than a grounding did: the teacher's word stands."""
+    """A thing that a teacher named otherwise than a grounding; the teacher's name is kept."""
 
     thing: str
     taught: str
@@ -116,12 +120,15 @@ class StandingWord:
     grounded: str
 
     def __str__(self) -> str:
-        return f"{self.thing} stays a view of '{self.taught}', as {self.teacher} taught, and not of '{self.grounded}'"
+        return (
+            f"{self.thing} stays a view of '{self.taught}', as {self.teacher} taught; "
+            f"the grounding matched it with '{self.grounded}'"
+        )
 
 
 @dataclass(frozen=True, repr=False)
 class Recognised(Answer):
-    """A scene with the names that were recognised, and what speaks for each, by the thing's id."""
+    """A scene with the recognised names, and the recogniser's answer for each thing by its id."""
 
     scene: Scene
     answers: Mapping[str, Recognition]
@@ -133,7 +140,7 @@ class Recognised(Answer):
 
 
 Comparison = tuple[ViewDescriptor, ...]
-"""The descriptors that views are compared by together. A category keeps distances by the first one."""
+"""Descriptors that views are compared by together. A category stores distances in the first one."""
 
 COMPARISONS: tuple[Comparison, ...] = (
     (UPRIGHT, FORM, COLOUR),
@@ -142,18 +149,18 @@ COMPARISONS: tuple[Comparison, ...] = (
     (SPIN_IMAGE_ROOTS, COLOUR),
     (SPIN_IMAGE_ROOTS,),
 )
-"""All of them, the best first."""
+"""All comparisons, the best first."""
 
 
 def comparisons_in(frame: str) -> tuple[Comparison, ...]:
-    """The ways to compare what is seen in a frame, the best first."""
+    """Return the comparisons for views in a frame, the best first."""
     return COMPARISONS if frame == TABLE else tuple(way for way in COMPARISONS if way[0] is SPIN_IMAGE_ROOTS)
 
 
 def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
-    """A view of a thing of a category, ready to be kept; raises CloudError where nothing on it can be described.
+    """Return a view of a thing of a category, ready to be stored; raise CloudError where it cannot be described.
 
-    It is kept with what every descriptor needs in which it can be compared; without colours it has none of these.
+    The view has the data for every descriptor by which it can be compared; without colours it has no colour descriptor.
     """
     needed = dict.fromkeys(chain.from_iterable(comparisons_in(frame)))
     if cloud.colours is None:
@@ -167,7 +174,7 @@ def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metada
 
 
 def thing_of(view: View) -> str | None:
-    """The thing that a view shows: the object of the scene that it was taught from. None where that is not known.
+    """Return a key of the thing that a view shows, made of the scene and the object's id; None where these are unknown.
 
     The same file with other boxes is another scene: the next table, perceived into the same file.
     """
@@ -178,10 +185,11 @@ def thing_of(view: View) -> str | None:
 def batch_of(
     memory: PerceptualMemory, views: Sequence[View], lessons: Mapping[str, str] | None = None
 ) -> tuple[Batch, tuple[Taught, ...]]:
-    """Return the batch that keeps views, in turn, and what that teaches; the same points under another word correct it.
+    """Return the batch that stores views in turn, and what each view taught.
 
-    ``lessons`` says which lesson a view belongs to, by the view's id; the others are a teacher's and belong to none. To
-    be written before anything else is, so inside :meth:`PerceptualMemory.exclusive`.
+    Views with the same points under another word correct the earlier word. ``lessons`` maps the id of a view to its
+    lesson; the other views are from a teacher and belong to no lesson. Write the batch before anything else is written,
+    so inside :meth:`PerceptualMemory.exclusive`.
     """
     with memory.exclusive():
         place = {id: view.category for id, view in _kept(memory, views).items()}
@@ -206,18 +214,18 @@ def batch_of(
             for name, category in known.items()
             if len(category)
         ]
-        empty = [name for name, category in known.items() if not len(category)]  # nothing is left of these
+        empty = [name for name, category in known.items() if not len(category)]
         coming = list({view.id: view for view in views}.values())
     return Batch(coming, records, dropped=empty, lessons=dict(lessons or {})), tuple(taught)
 
 
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
-    """Those of some views that a teacher named already, as they are kept, by id; what is damaged says nothing."""
+    """Return, by id, the stored form of those views that a teacher has named already; ignore damaged ones."""
     return {id: view for id, view in _kept(memory, views).items() if view.metadata.get("teacher") != GROUNDING}
 
 
 def _kept(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
-    """Those of some views that a memory has already, as they are kept, by id; what is damaged counts as missing."""
+    """Return, by id, the stored form of those views that a memory has already; damaged ones count as missing."""
     kept = {}
     for view in views:
         with contextlib.suppress(UnknownViewError, DamagedMemoryError):
@@ -226,7 +234,7 @@ def _kept(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
 
 
 def _involved(memory: PerceptualReading, views: Sequence[View], place: Mapping[str, str]) -> list[str]:
-    """The categories that there are and that the views are of, or were of."""
+    """Return the stored categories that the views belong to, or belonged to."""
     named = {view.category for view in views} | {place[view.id] for view in views if view.id in place}
     return [name for name in memory.categories() if name in named]
 
@@ -236,13 +244,13 @@ def _of(views: Iterable[View], category: str) -> list[View]:
 
 
 def described_by_all(views: Iterable[View]) -> set[str]:
-    """The names of the descriptors that all of some views have."""
+    """Return the names of the descriptors that each of some views has."""
     named = [set(view.descriptors) for view in views]
     return set.intersection(*named) if named else set()
 
 
 def comparison_of(views: Iterable[View]) -> Comparison:
-    """The best way to compare these views, by what all of them have."""
+    """Return the best comparison for which each of some views has the descriptors."""
     shared = described_by_all(views)
     return next((way for way in COMPARISONS if {each.name for each in way} <= shared), COMPARISONS[-1])
 
@@ -250,9 +258,9 @@ def comparison_of(views: Iterable[View]) -> Comparison:
 def instances_of(
     record: CategoryRecord, views: Iterable[View], comparison: Comparison, pack: Pack = PackedViews.of
 ) -> tuple[InstanceCategory, ...]:
-    """A category by each descriptor of a comparison; distances that its record has are not worked out again.
+    """Return a category for each descriptor of a comparison; distances in its record are not recomputed.
 
-    Of each view only what is compared is held, that of the first descriptor by ``pack``.
+    Of each view only the compared descriptors are held, the first one stored by ``pack``.
     """
     descriptor, *others = comparison
     things: dict[str, str] = {}
@@ -284,13 +292,13 @@ def instances_of(
 
 
 def _compared(record: CategoryRecord, ids: Iterable[str], descriptor: ViewDescriptor) -> bool:
-    """Whether a record has the distances between these views, in this descriptor."""
+    """Return whether a record has the distances between these views in a descriptor."""
     compared = record.metadata.get(COMPARED, SPIN_IMAGE_ROOTS.name)  # before there was a choice
     return compared == descriptor.name and DISTANCES in record.state and record.metadata.get(IDS) == sorted(ids)
 
 
 def record_of(category: InstanceCategory, descriptor: ViewDescriptor, described: Iterable[str]) -> CategoryRecord:
-    """What a category has learned, its views in the order of their ids; ``described`` are what all of these have."""
+    """Return the record of a category, its views ordered by id; ``described`` are the descriptors of all views."""
     order = np.argsort(np.array(category.views.ids, dtype=str))
     return CategoryRecord(
         category.name,
@@ -303,7 +311,7 @@ def record_of(category: InstanceCategory, descriptor: ViewDescriptor, described:
 class Known:
     """A recogniser, and the descriptors by which it compares.
 
-    Where colour is one of these, ``by_shape`` compares by the others; it names what is seen without colours.
+    Where colour is one of them, ``by_shape`` compares by the others; it names things that are seen without colours.
     """
 
     recogniser: JointRecogniser
@@ -317,18 +325,18 @@ class Known:
         return self.recogniser.recognise([descriptor.describe(cloud) for descriptor in self.comparison])
 
     def calibrated(self, progress: Progress | None = None) -> Known:
-        """Return the same with weights, threshold and probabilities from its own views."""
+        """Return this recogniser with weights, threshold and probabilities from its own views."""
         held = self.recogniser.held_out(progress)
         ways = [way.recogniser.calibrated_by(held[: len(way.comparison)]).calibration for way in self._ways]
         return self.with_calibrations(ways)
 
     @property
     def calibrations(self) -> tuple[Calibration, ...]:
-        """The calibration, and that by shape alone where there is one."""
+        """Calibration of the recogniser, and that of ``by_shape`` where there is one."""
         return tuple(way.recogniser.calibration for way in self._ways)
 
     def with_calibrations(self, calibrations: Sequence[Calibration]) -> Known:
-        """Return the same with other calibrations, in the order of :attr:`calibrations`."""
+        """Return this recogniser with other calibrations, in the order of :attr:`calibrations`."""
         whole, *rest = calibrations
         by_shape = None if self.by_shape is None else self.by_shape.with_calibrations(rest)
         return replace(self, recogniser=replace(self.recogniser, calibration=whole), by_shape=by_shape)
@@ -339,7 +347,7 @@ class Known:
 
 
 def nothing_known(frame: str) -> Known:
-    """What recognises nothing, as nothing was taught."""
+    """Return a recogniser without categories."""
     return known_by(comparisons_in(frame)[-1], [])
 
 
@@ -348,7 +356,7 @@ def known_by(
     categories: Iterable[tuple[InstanceCategory, ...]],
     settings: RecognitionSettings = DEFAULT,
 ) -> Known:
-    """The recogniser of categories, each given by every descriptor of a comparison, as it is shipped."""
+    """Return the recogniser of categories, given for each descriptor of a comparison, with the shipped calibrations."""
     by_descriptor = list(zip(*categories, strict=True)) or [()] * len(comparison)
     parts = tuple(
         Recogniser.of(own, replace(settings, prior_spread=PRIOR_SPREADS[descriptor.name]))
@@ -363,10 +371,10 @@ def known_by(
 
 
 def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = None) -> Known:
-    """The recogniser of everything that was taught for what is seen in a frame, with its threshold from its own views.
+    """Return the recogniser of all taught categories in a frame, with its threshold calibrated on its own views.
 
-    That is worked out anew when a tenth of the views are others than the last time, and kept in the memory. From
-    ``MAPPED`` views on, their descriptors are mapped from a file.
+    The calibration is recomputed when a tenth of the views differ from the last time, and stored in the memory. From
+    :data:`MAPPED` views on, their descriptors are mapped from a file.
     """
     with memory.exclusive():
         names, listed = memory.categories(), list(memory.listing())
@@ -388,8 +396,11 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
 
 
 def _comparison_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewKey]) -> Comparison:
-    """The best comparison in a frame by which all that was taught can be compared: by the categories' records, and
-    where they do not say so, by their views, until one cannot."""
+    """Return the best comparison in a frame for which all taught views have the descriptors.
+
+    The records of the categories list their descriptors. Where they do not, the views are read until one lacks a
+    descriptor.
+    """
     ids = defaultdict(list)
     for key in listed:
         ids[key.category].append(key.id)
@@ -406,12 +417,12 @@ def _comparison_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewK
 
 
 def candidates_of(answer: Recognition) -> tuple[tuple[str, float], ...]:
-    """The names that a thing may bear, with their probabilities, the likeliest first."""
+    """Return the names that a thing can have, with their probabilities, the most probable first."""
     return tuple((one.category, round(one.probability, 4)) for one in answer.candidates)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
-    """Names the things of a scene that have a cloud; what a scene says already stays."""
+    """Name the things of a scene that have a cloud; keep the names that the scene has already."""
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:

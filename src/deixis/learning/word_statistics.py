@@ -1,7 +1,7 @@
-"""The statistics of a fit of relation words, kept in a memory, so that a lesson can be taken out of the fit later.
+"""Statistics of the fit of relation words, kept in a memory, so that a lesson can be removed from the fit later.
 
-They stand in a graph of their own under ``statistics``: the sums as one JSON text, and for each lesson that is in
-them a key that lessons with the same script and scene share.
+They are stored in a graph of their own under ``statistics``: the sums as one JSON text, and a key for each lesson that
+the sums include. Lessons with the same script and scene share a key.
 """
 
 from __future__ import annotations
@@ -27,8 +27,7 @@ SUMS, SAYS = iri(STATISTICS + "sums"), iri(STATISTICS + "says")
 
 
 def replacing(words: LearnedWords | None) -> list[ledger.Operation]:
-    """The operations that put the statistics of learned words in the place of those that were kept; None: there are
-    none."""
+    """Return the operations that replace the stored statistics of learned words; ``None`` only removes them."""
     operations = [ledger.drop(GRAPH)]
     if words is not None and words.statistics is not None and words.taught:
         sums = json.dumps({"made": _made(words), **_packed(words.statistics)}, sort_keys=True)
@@ -38,7 +37,7 @@ def replacing(words: LearnedWords | None) -> list[ledger.Operation]:
 
 
 def kept(store: ox.Store) -> LearnedWords | None:
-    """The learned models of a store with their statistics; None where it keeps none that belong to these models."""
+    """Return the learned models of a store with their statistics, or None where no statistics match the models."""
     quad = next(store.quads_for_pattern(GRAPH, SUMS, None, GRAPH), None)
     changed = models_from_triples(ledger.triples_in(store, models_graph(ModelSet.WORDS)))
     if quad is None or not changed:

@@ -1,4 +1,4 @@
-"""What relation words mean, learned from all that is remembered, and lessons that teach nothing but that."""
+"""Models of relation words, learned from all lessons, and lessons that teach relation words only."""
 
 from __future__ import annotations
 
@@ -24,11 +24,12 @@ from deixis.version import VERSION
 
 @dataclass(frozen=True)
 class LearnedWords:
-    """The models after learning, and what they were learned from.
+    """Models of relation words after learning, and what they were learned from.
 
-    ``taught`` are the names of the models that changed, ``lessons`` the ids that taught them, ``kept`` those of the
-    lessons that were new; ``left_out`` says, a line each, what taught nothing, and why. ``statistics`` are the sums
-    that a lesson can be taken out of, and ``texts`` the lessons with what tells equal ones from others.
+    ``taught`` has the names of the models that changed, ``lessons`` the ids of the lessons that taught them, ``kept``
+    those of the lessons that were new. ``left_out`` has a line for each lesson or example that taught nothing, with the
+    reason. ``statistics`` are the sums that a lesson can be removed from; ``texts`` maps the id of each lesson to a key
+    that equal lessons share.
     """
 
     models: RelationModels
@@ -41,6 +42,7 @@ class LearnedWords:
 
     @property
     def changed(self) -> tuple[RelationModel, ...]:
+        """Models that differ from those before learning."""
         return tuple(self.models[name] for name in self.taught)
 
 
@@ -51,10 +53,11 @@ def fit(
     more: Sequence[SaidPairs] = (),
     sources: Sequence[str] = (),
 ) -> LearnedWords:
-    """The models that everything remembered teaches, and ``more`` from other ``sources``.
+    """Fit the models of relation words to all lessons, and to ``more`` pairs from other ``sources``.
 
-    The prior is what is shipped, never what was learned before: so nothing counts twice, and what is forgotten is. Of
-    lessons with the same script and scene one counts. Raises SettingError for a strength that is not above 0.
+    The prior is the shipped models, never learned ones: so no lesson counts twice, and a forgotten one does not count.
+    Of several lessons with the same script and scene, one counts. Raises SettingError for a strength that is not above
+    0.
     """
     known = prior or shipped_models()
     teaching = {one.lesson: _pairs(one) for one in recollection.lessons}
@@ -67,9 +70,10 @@ def fit(
 
 
 def without(one: Remembered, words: LearnedWords, strength: float) -> LearnedWords | None:
-    """The models without one of the lessons that they were fitted to, in a time that depends on that lesson alone.
+    """Return the models without one of the lessons that they were fitted to, in a time that depends on it only.
 
-    None where they are to be fitted anew from the others: see :func:`take_out`, and where a lesson says the same.
+    Return None where the models must be refitted to the other lessons: where :func:`take_out` cannot remove the lesson,
+    and where another lesson has the same script and scene.
     """
     if words.statistics is None or [*words.texts.values()].count(words.texts[one.lesson]) > 1:
         return None
@@ -87,7 +91,7 @@ def _learned(
     texts: Mapping[str, str],
     left_out: tuple[str, ...] = (),
 ) -> LearnedWords:
-    """What was fitted, with the lessons and the strength in the provenance of the models that changed."""
+    """Return a fit with its lessons and its strength added to the provenance of the models that changed."""
     taught = tuple(name for name in found.models.models if found.models[name] != known[name])
     lessons, marked = tuple(sorted(texts)), []
     for name in taught:
@@ -102,7 +106,7 @@ def _pairs(one: Remembered) -> SaidPairs:
 
 
 def informed(models: Iterable[RelationModel]) -> tuple[frozenset[str], float]:
-    """The lessons that taught some learned models, and the strength with which they were fitted."""
+    """Return the lessons that taught some learned models, and the strength with which they were fitted."""
     models = list(models)
     strengths = [model.provenance.strength for model in models if model.provenance.strength is not None]
     return frozenset(id for model in models for id in model.provenance.lessons), strengths[0] if strengths else 1.0
@@ -112,7 +116,7 @@ Example = tuple[Script, Scene]
 
 
 def example_pairs(example: Example) -> SaidPairs:
-    """The pairs of a labelled scene of which a script says a word."""
+    """Return the pairs of things in a labelled scene that the facts of a script are about."""
     script, scene = example
     description = script.graph()
     who = labelled(description, scene, script.ontology.kinds)
@@ -120,7 +124,7 @@ def example_pairs(example: Example) -> SaidPairs:
 
 
 def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
-    """The examples that teach something, and of the others, a line each, why not."""
+    """Return the examples that teach something, and a line for each of the others with the reason."""
     taught, left_out = [], []
     for script, scene in examples:
         if example_pairs((script, scene)).weights.sum() > 0:
@@ -134,9 +138,9 @@ def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
 def new_lessons(
     examples: Sequence[Example], known: Recollection, taken: Callable[[str], bool]
 ) -> tuple[list[WordLesson], list[str]]:
-    """Lessons about words from the examples that teach something new; and of the others, a line each, why not.
+    """Return lessons about words from examples that teach something new, and a line for each other one with the reason.
 
-    Their ids are not ``taken``.
+    ``taken`` reports the lesson ids that are in use already.
     """
     taught, left_out = teaching(examples)
     texts, ids = {one.texts: one.lesson for one in known.lessons}, set[str]()
@@ -155,7 +159,7 @@ def new_lessons(
 
 
 def word_lesson(script: Script, scene: Scene, id: str, occasion: Occasion) -> WordLesson:
-    """The lesson that a script and a labelled scene are; the script's includes become a part of its text."""
+    """Return a script and a labelled scene as a lesson; the includes of the script become part of its text."""
     return WordLesson(
         id=id,
         scene=scene,

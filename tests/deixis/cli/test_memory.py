@@ -69,7 +69,7 @@ def test_a_memory_of_views_alone_is_not_called_empty(views: Path, tmp_path: Path
     for arguments in (("memory", "export"), ("retrieve", SCENE), ("show", "table"), ("query", "ASK {}")):
         code, out, err = deixis(*arguments, "--memory", views)
         assert (code, out) == (2, ""), arguments
-        assert "has views only" in err
+        assert "has views, but no lessons" in err
         assert len(err.splitlines()) == 1
     assert "'--format views -o FILE' writes them" in deixis("memory", "export", "--memory", views)[2]
     assert deixis("memory", "export", "--format", "views", "-o", tmp_path / "v.zip", "--memory", views)[0] == 0
@@ -147,4 +147,4 @@ def test_a_store_that_is_gone_is_told_and_nothing_is_begun_anew(views: Path) -> 
     for arguments in (("memory", "verify"), ("category", "list"), ("memory", "stats")):
         code, out, err = deixis(*arguments, "--memory", views)
         assert (code, out) == (2, ""), arguments
-        assert "are gone" in err
+        assert "are lost" in err

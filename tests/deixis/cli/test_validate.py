@@ -98,5 +98,5 @@ def test_a_time_limit_ends_the_check(data: Path, tmp_path: Path) -> None:
     code, out, err = deixis("validate", data, "--shapes", shapes(tmp_path), "--time-limit", "0.01")
     assert (code, out) == (3, "")
     assert "undecided" in err
-    with pytest.raises(LimitError, match="the time was up"):
+    with pytest.raises(LimitError, match="time limit reached"):
         validate_by_shapes((quad.triple for quad in read_quads(data)), [], Deadline.after(0))

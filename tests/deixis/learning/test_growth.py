@@ -1,4 +1,4 @@
-"""What a lesson leaves does not depend on the order of lessons, nor on those that came and went."""
+"""The effect of a lesson does not depend on the order of lessons, nor on forgotten ones."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ SCRIPT = "layout {name}; fork left of dinner_plate; gizmo right of dinner_plate;
 
 
 def table(shift: float, unit: str = "m") -> Scene:
-    """Five labelled things in a row, each of a size of its own."""
+    """Return a scene of five labelled things in a row, each of another size."""
     objects = [
         {"id": f"p{place}", "min": [place, 0], "max": [place + 0.1 * (place + 1) + shift, 0.3 + shift], "label": name}
         for place, name in enumerate(NAMES)
@@ -51,7 +51,7 @@ def table(shift: float, unit: str = "m") -> Scene:
 
 @pytest.fixture(scope="module")
 def lessons(tmp_path_factory: pytest.TempPathFactory) -> list[Lesson]:
-    """Six lessons that were never kept; two are of one scene, one is in pixels, one says another kind of the gizmo."""
+    """Six lessons that were never stored; two share a scene, one is in pixels, one gives the gizmo another kind."""
     shifts = [(0.0, "m"), (0.01, "m"), (0.01, "m"), (0.05, "px"), (0.02, "m"), (0.3, "m")]
     found = []
     with Session(tmp_path_factory.mktemp("made") / "memory") as session:
@@ -64,7 +64,7 @@ def lessons(tmp_path_factory: pytest.TempPathFactory) -> list[Lesson]:
 
 
 def kept(memory: SemanticMemory) -> tuple[str, set[ox.Quad]]:
-    """Everything in a memory: what is exported, and what is counted."""
+    """Return the content of a memory: its export and its counts."""
     own = {q for q in memory.store if str(getattr(q.graph_name, "value", "")).startswith(STATISTICS)}
     return export_memory(memory), {quad for quad in own if quad.subject != COUNTED}
 
@@ -78,7 +78,7 @@ def forget(memory: SemanticMemory, lesson: str) -> None:
 
 
 def right(memory: SemanticMemory) -> bool:
-    """Whether what follows is what would be worked out from nothing."""
+    """Return whether the inferences equal those computed from scratch."""
     return memory.kept_up() == keeping.kept_up_rules(ONTOLOGY) and not list(keeping.stale(memory.store, ONTOLOGY))
 
 
@@ -91,7 +91,7 @@ NUMBERS = count()
 def test_any_order_of_learning_and_forgetting_comes_to_the_same(
     lessons: list[Lesson], tmp_path: Path, turns: list[int]
 ) -> None:
-    """A lesson that is there when its turn comes is forgotten."""
+    """Forget a lesson that is stored when its turn comes; otherwise learn it."""
     folder = tmp_path / str(next(NUMBERS))
     known: set[int] = set()
     with SemanticMemory.open(folder / "turns", create=True) as memory:
@@ -182,7 +182,7 @@ def test_sizes_forget_what_was_added(stay: list[SizeView], go: list[SizeView], r
 
 
 def as_version_1(folder: Path) -> None:
-    """Makes a memory what the version before statistics would have left."""
+    """Convert a memory to the version before statistics."""
     store = ox.Store(folder / "semantic")
     for graph in list(store.named_graphs()):
         if str(getattr(graph, "value", "")).startswith(STATISTICS):
@@ -193,7 +193,7 @@ def as_version_1(folder: Path) -> None:
     (folder / "memory.json").write_text(json.dumps({**mark, "version": 1}))
 
 
-def test_a_memory_without_statistics_is_counted_with_the_next_lesson(lessons: list[Lesson], tmp_path: Path) -> None:
+def test_the_next_lesson_counts_a_memory_without_statistics(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
         keep(memory, lessons[:3])
     with SemanticMemory.open(tmp_path / "other", create=True) as memory:
@@ -217,10 +217,10 @@ def test_verify_finds_what_does_not_follow_from_the_lessons(lessons: list[Lesson
     store.flush()
     del store
     (finding,) = verify(*check).findings
-    assert "counts are not what the lessons come to: 0 too many, 1 missing" in finding.what
+    assert "counts differ from what the lessons lead to: 0 too many, 1 missing" in finding.what
 
 
-def test_what_is_written_by_hand_is_worked_out_anew(lessons: list[Lesson], tmp_path: Path) -> None:
+def test_a_memory_changed_by_hand_is_recomputed(lessons: list[Lesson], tmp_path: Path) -> None:
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
         keep(memory, lessons[:3])
         expected = kept(memory)
@@ -294,7 +294,7 @@ def test_of_many_lessons_all_are_kept_or_none(
     with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
         keep(memory, [lessons[0]])
         before = kept(memory)
-        with pytest.raises(RejectedWriteError, match="is known already"):
+        with pytest.raises(RejectedWriteError, match="there is already a lesson"):
             keep(memory, [*lessons[1:5], lessons[0]])
         assert kept(memory) == before and right(memory)
         assert not (tmp_path / "memory" / "semantic.new").exists()
@@ -310,7 +310,7 @@ def test_of_many_lessons_all_are_kept_or_none(
         (["alone"], "there is no tea.scene.json beside it"),
     ],
 )
-def test_what_is_no_pair_is_told(folder: Path, tmp_path: Path, given: list[str], said: str) -> None:
+def test_an_invalid_pair_is_reported(folder: Path, tmp_path: Path, given: list[str], said: str) -> None:
     (tmp_path / "empty").mkdir()
     (tmp_path / "alone").mkdir()
     shutil.copy(folder / "tea.layout", tmp_path / "alone")
@@ -324,7 +324,7 @@ def test_what_is_no_pair_is_told(folder: Path, tmp_path: Path, given: list[str],
 
 @pytest.fixture
 def half_forgotten(lessons: list[Lesson], tmp_path: Path) -> tuple[Path, str]:
-    """A memory in which so much was forgotten that closing it would write it anew; and what it exports."""
+    """Make a memory that is rewritten at its next closing, as many lessons were forgotten; also return its export."""
     many = [replace(lessons[0], layout=replace(lessons[0].layout, lesson=f"many-{n}")) for n in range(11)]
     memory = SemanticMemory.open(tmp_path / "memory", create=True)
     keep(memory, [*many, lessons[1]])

@@ -1,4 +1,4 @@
-"""What was inferred goes with what it follows from: no stale inference, judged by an engine that did not infer it."""
+"""Inferences are removed with their premises, as judged by an engine that did not infer them."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ def said(memory: SemanticMemory, *names: GraphName) -> set[Triple]:
 
 
 def stale(memory: SemanticMemory) -> set[Triple]:
-    """What the inferred graph says of the world and the rules of OWL 2 RL do not make of what is stated."""
+    """Return the inferred triples about the world that the rules of OWL 2 RL do not derive from the stated ones."""
     stated = said(memory, GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)
     known = Materialisation(stated)
     return {t for t in said(memory, GraphName.INFERRED) if t not in known and not is_origin(t)}
 
 
 def is_origin(triple: Triple) -> bool:
-    """Whether a triple is about the inferred graph itself, or who made it."""
+    """Return whether a triple is about the inferred graph itself, or its engines."""
     return triple.subject.startswith(
         (f"<{graph_iri(GraphName.INFERRED).value}", "<https://w3id.org/deixis/learned/inference")
     ) or triple.subject in {f"<https://w3id.org/deixis/learned/agent/{name}>" for name in ENGINES}
 
 
-def test_after_learning_and_forgetting_nothing_inferred_is_without_its_reasons(tmp_path: Path) -> None:
+def test_no_inference_outlives_its_premises(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(FULL, SCENE)
         session.learn(SCRIPT1, TABLE2)
@@ -61,7 +61,7 @@ def test_after_learning_and_forgetting_nothing_inferred_is_without_its_reasons(t
         assert not any("/learned/" in triple.subject for triple in rest)
 
 
-def test_a_triple_that_follows_from_nothing_is_seen_and_goes_with_the_next_lesson(tmp_path: Path) -> None:
+def test_the_next_lesson_removes_an_unfounded_triple(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(FULL, SCENE)
         memory = session.memory()
@@ -73,7 +73,7 @@ def test_a_triple_that_follows_from_nothing_is_seen_and_goes_with_the_next_lesso
         assert stale(memory) == set()
 
 
-def test_the_inferred_graph_says_from_what_and_by_whom_it_was_made(tmp_path: Path) -> None:
+def test_the_inferred_graph_has_its_provenance(tmp_path: Path) -> None:
     with Session(tmp_path / "memory") as session:
         session.learn(FULL, SCENE)
         path = f"<{PROV.WAS_GENERATED_BY}>/<{PROV.WAS_ASSOCIATED_WITH}>/rdfs:label"

@@ -1,4 +1,4 @@
-"""Learned words and sizes in a session: in force at once, with where they come from, and gone with their lessons."""
+"""Learned words and sizes in a session: used at once, recorded with their provenance, removed with their lessons."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SCRIPT = "layout tea; cup left of dinner_plate; spoon right of dinner_plate"
 
 
 def table(shift: float, plate: float = 0.4, labels: bool = True) -> Scene:
-    """A cup, a dinner plate of some breadth, and a spoon, all named."""
+    """Return a scene with a cup, a dinner plate of some width, and a spoon, all labelled."""
     sides = {"cup": (-0.2, -0.1), "dinner_plate": (0.0, plate), "spoon": (plate + 0.05, plate + 0.08)}
     objects = [
         {"id": name[:2], "min": [low + shift, 0], "max": [high + shift, plate], "label": name if labels else None}
@@ -42,16 +42,16 @@ def taught(path: Path, *shifts: float) -> Session:
     return session
 
 
-def test_without_a_memory_what_is_shipped_is_in_force_and_no_memory_is_made(tmp_path: Path) -> None:
+def test_without_a_memory_the_shipped_models_are_in_force(tmp_path: Path) -> None:
     with Session(tmp_path / "none") as session:
         assert session.meaning() is SHIPPED
         assert session.recollection().lessons == ()
-        with pytest.raises(NothingFoundError, match="nothing is remembered at"):
+        with pytest.raises(NothingFoundError, match="there are no lessons at"):
             session.learn_relations()
     assert not (tmp_path / "none").exists()
 
 
-def test_learned_words_and_sizes_are_in_force_at_once_and_in_the_next_session(tmp_path: Path) -> None:
+def test_learned_words_and_sizes_are_in_force_at_once_and_later(tmp_path: Path) -> None:
     with taught(tmp_path / "memory", 0.0, 0.1, 0.2) as session:
         now = session.meaning()
     with Session(tmp_path / "memory") as session:
@@ -63,13 +63,13 @@ def test_learned_words_and_sizes_are_in_force_at_once_and_in_the_next_session(tm
     assert now.models == later.models
     where = later.models["horizontal"].provenance
     assert (where.examples, where.lessons) == (6, ("words_tea-1", "words_tea-2", "words_tea-3"))
-    assert 0.36 < np.exp(later.sizes[PLATE].length[0]) < 0.4  # plates are 0.27 across as a rule
+    assert 0.36 < np.exp(later.sizes[PLATE].length[0]) < 0.4  # plates are usually 0.27 wide
     assert later.sizes[PLATE].views == 3
 
 
 @pytest.mark.slow
 def test_grounding_a_check_and_a_lesson_go_by_what_was_learned(tmp_path: Path) -> None:
-    """Of two things, one as large as the plates that were seen, one as plates usually are, the former is the plate."""
+    """Match the thing of the learned size with the plate, not the thing of the usual size."""
     sides = {"usual": (0.0, 0.27), "seen": (0.5, 0.9)}
     things = [{"id": id, "min": [low, 0], "max": [high, high - low]} for id, (low, high) in sides.items()]
     scene = read_scene({"objects": [*things, {"id": "near", "min": [-0.2, 0], "max": [-0.1, 0.2]}]})
@@ -103,7 +103,7 @@ def test_forgetting_a_lesson_takes_back_what_it_taught(tmp_path: Path) -> None:
 
 
 def test_forgetting_one_of_many_lessons_looks_at_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Words are what the others teach, within a quarter of what a lesson changes that contradicts all of them."""
+    """Bound the difference to the words of the other lessons by a quarter of what the contradicting lesson changes."""
     shifts = [number / 10 for number in range(FEW_SCENES + 5)]
     gone = [(read_script(text="layout tea; spoon left of dinner_plate"), table(0.05))]
     with taught(tmp_path / "memory", *shifts) as session:
@@ -126,7 +126,7 @@ def test_forgetting_one_of_many_lessons_looks_at_no_other(tmp_path: Path, monkey
     assert np.abs(values[1] - values[2]).max() < 0.25 * np.abs(values[0] - values[2]).max()
 
 
-def test_the_shipped_models_come_back_and_the_lessons_teach_again(tmp_path: Path) -> None:
+def test_after_a_reset_the_lessons_can_teach_again(tmp_path: Path) -> None:
     with taught(tmp_path / "memory", 0.0) as session:
         learned = session.meaning().models
         session.forget_relations()
@@ -151,7 +151,7 @@ def test_a_grounding_teaches_words_by_how_sure_it_is(tmp_path: Path) -> None:
     assert learned.models["horizontal"].provenance.examples == pytest.approx(expected)
 
 
-def test_what_was_learned_survives_export_and_import_and_two_memories_learn_from_both(tmp_path: Path) -> None:
+def test_learned_models_survive_export_and_merge_on_import(tmp_path: Path) -> None:
     with taught(tmp_path / "first", 0.0, 0.1) as session:
         (tmp_path / "first.trig").write_text(export_memory(session.memory()), encoding="utf-8")
     with Session(tmp_path / "copy") as session:

@@ -1,4 +1,4 @@
-"""How large things are, from what is remembered: which views count, once, and from how many a size is learned."""
+"""Sizes learned from lessons: which views count, each box once, and from how many views a size is learned."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def seen(
     confidence: float = 1.0,
     unit: str = "m",
 ) -> Remembered:
-    """A lesson of a thing that is half as broad as long, beside one of length 1 that nothing is known of."""
+    """Return a lesson of a thing half as wide as long, beside an unknown one of length 1."""
     description = RelationGraph.from_facts(ONTOLOGY.relations, ["x"], [], kinds=[kind])
     place = len(lesson) / 100
     thing = PerceivedObject("o1", (place, 0.0), (place + length, length / 2), label, confidence)
@@ -41,7 +41,7 @@ def seen(
 
 
 def learned_size_triples(recollection: Recollection, ontology: Ontology) -> list[ox.Triple]:
-    """The sizes that lessons teach, with the scenes that they are derived from, counted from nothing."""
+    """Return the sizes that lessons teach, with the scenes that they are derived from, counted from scratch."""
     statistics = SizeStatistics(Counts(), ontology.sizes)
     for lesson in recollection.lessons:
         for view in size_views(lesson, ontology.kinds):
@@ -58,7 +58,7 @@ def sizes(lessons: Sequence[Remembered]) -> dict[str, SizeModel]:
     return sizes_from_triples(learned_size_triples(Recollection(tuple(lessons)), ONTOLOGY))
 
 
-def test_a_size_lies_between_the_usual_one_and_the_median_of_the_views() -> None:
+def test_a_size_lies_between_the_usual_one_and_the_median() -> None:
     usual = math.log(ONTOLOGY.sizes.of(PLATE).length.typical)
     lengths = (0.2, 0.21, 0.22, 0.23, 2.3)
     (found,) = sizes([seen("a" * n, length) for n, length in enumerate(lengths, 1)]).values()
@@ -68,7 +68,7 @@ def test_a_size_lies_between_the_usual_one_and_the_median_of_the_views() -> None
     assert (many.relative, many.views) == (False, 59)
 
 
-def test_one_view_teaches_the_size_of_what_the_ontology_does_not_know() -> None:
+def test_one_view_teaches_the_size_of_an_unknown_kind() -> None:
     thingummies = [seen("a" * n, 0.2, kind=None, label=f"Thingummy_{n}") for n in (1, 2)]
     found = sizes([thingummies[0], seen("bbb", 0.4, kind=None)])
     assert sorted(found) == [category_of("thingummy"), category_of("x")]
@@ -82,7 +82,7 @@ def test_with_too_few_views_the_usual_size_stays() -> None:
     assert list(sizes(lessons)) == [PLATE]
 
 
-def test_what_was_seen_at_one_place_counts_once_however_many_lessons_show_it() -> None:
+def test_a_box_counts_once_for_all_lessons_that_show_it() -> None:
     assert sizes([seen("abc", 0.2), seen("xyz", 0.2), seen("123", 0.2)]) == {}
 
 
@@ -91,7 +91,7 @@ def test_what_is_doubtful_teaches_nothing(doubt: dict[str, object]) -> None:
     assert sizes([seen("a" * n, 0.2, **doubt) for n in range(1, 5)]) == {}  # type: ignore[arg-type]
 
 
-def test_labels_teach_where_they_are_sure_and_name_a_kind_with_or_without_a_number() -> None:
+def test_confident_labels_teach_with_or_without_a_number() -> None:
     def labelled(label: str, confidence: float) -> list[Remembered]:
         return [seen("a" * n, 0.2, kind=None, label=label, confidence=confidence, decided=False) for n in range(1, 5)]
 
@@ -100,7 +100,7 @@ def test_labels_teach_where_they_are_sure_and_name_a_kind_with_or_without_a_numb
     assert sizes(labelled("fork", 0.6)) == {}
 
 
-def test_scenes_in_pixels_teach_sizes_relative_to_the_scene_unless_enough_was_measured() -> None:
+def test_scenes_in_pixels_teach_relative_sizes() -> None:
     pixels = [seen("a" * n, 0.5, unit="px") for n in range(1, 4)]
     (found,) = sizes(pixels).values()
     assert found.relative

@@ -1,4 +1,4 @@
-"""What is taught and recognised, where a memory is older than the way in which views are compared now."""
+"""Teach and recognise in a memory that is older than the present comparison of views."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def as_before(one: View) -> View:
 
 @pytest.fixture
 def before(tmp_path: Path) -> Path:
-    """A memory as it was kept when there was nothing but roots of spin images."""
+    """Memory from the time when views had only square roots of spin images."""
     views = [as_before(view(kind, seed)) for kind, seed in THINGS]
     records = []
     for kind in ("plate", "fork"):
@@ -71,7 +71,7 @@ def test_an_older_memory_is_compared_as_it_was(before: Path) -> None:
         assert answer.candidates[0].category == "plate"
 
 
-def test_what_is_taught_to_an_older_memory_can_be_compared_with_what_it_has(before: Path) -> None:
+def test_new_views_in_an_older_memory_can_be_compared(before: Path) -> None:
     with LevelMemory.open(before) as memory:
         keep_views(memory, [view("plate", 3), view("mug", 1), view("mug", 2)])
         assert memory.category("plate").metadata[COMPARED] == SPIN_IMAGE_ROOTS.name
@@ -83,7 +83,7 @@ def test_what_is_taught_to_an_older_memory_can_be_compared_with_what_it_has(befo
         np.testing.assert_allclose(mug.distances, fresh.distances)
 
 
-def test_an_older_memory_whose_older_views_are_gone_is_compared_in_the_new_way(before: Path) -> None:
+def test_without_older_views_the_new_comparison_is_used(before: Path) -> None:
     with LevelMemory.open(before) as memory:
         keep_views(memory, [view("mug", 1), view("mug", 2)])
         memory.forget("plate")
@@ -109,7 +109,7 @@ PAINT = {"bills cup": (180, 40, 40), "anns cup": (40, 60, 170)}
 
 
 def teach_painted_cups(memory: LevelMemory, count: int) -> None:
-    """Cups of the same shapes, which only their colours tell apart."""
+    """Return cups of the same shapes that differ only in colour."""
     views = [
         view_of(painted("cup", seed, 100 * place + seed, colour), TABLE, name, datetime(2026, 1, seed, tzinfo=UTC), {})
         for place, (name, colour) in enumerate(PAINT.items())
@@ -123,7 +123,7 @@ def test_colour_tells_apart_what_shape_cannot(tmp_path: Path) -> None:
         teach_painted_cups(memory, 6)
         known = recogniser_of(memory, TABLE)
         assert known.comparison == (UPRIGHT, FORM, COLOUR)
-        assert known.recogniser.calibration.weights[-1] > 3 * COLOUR_WEIGHT  # as its own views showed
+        assert known.recogniser.calibration.weights[-1] > 3 * COLOUR_WEIGHT  # as computed from its own views
         for name, colour in PAINT.items():
             dim = painted("cup", 9, 9, tuple(0.6 * part for part in colour))  # in the shade
             assert known.recognise(dim).candidates[0].category == name
@@ -147,7 +147,7 @@ def test_colour_counts_only_where_all_views_have_it(tmp_path: Path) -> None:
         assert recogniser_of(memory, TABLE).comparison == (UPRIGHT, FORM)
 
 
-def test_what_is_seen_in_another_frame_than_a_tables_is_compared_by_what_needs_none(tmp_path: Path) -> None:
+def test_another_frame_uses_descriptors_that_need_no_frame(tmp_path: Path) -> None:
     with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
         keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
         known = recogniser_of(memory, "camera")
@@ -161,9 +161,7 @@ def test_what_is_seen_in_another_frame_than_a_tables_is_compared_by_what_needs_n
         assert {one.name: len(one) for one in both.recogniser.categories} == {"plate": 3, "fork": 2}
 
 
-def test_very_many_views_are_mapped_from_a_file_and_give_the_same_answers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_many_views_mapped_from_a_file_give_the_same_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
         keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
         held = recogniser_of(memory, TABLE)
@@ -174,7 +172,7 @@ def test_very_many_views_are_mapped_from_a_file_and_give_the_same_answers(
     assert held.recognise(seen("plate", 9)) == mapped.recognise(seen("plate", 9))
 
 
-def test_a_view_without_a_descriptor_can_be_kept_and_taught_anew(tmp_path: Path) -> None:
+def test_a_view_without_a_descriptor_can_be_kept_and_retaught(tmp_path: Path) -> None:
     bare = replace(view("plate", 1), descriptors={UPRIGHT.name: np.zeros((0, 171), np.float32)})
     with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
         memory.write(Batch([bare]))

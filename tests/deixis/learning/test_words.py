@@ -1,4 +1,4 @@
-"""Fitting words to what is remembered: what counts, how much, and once."""
+"""Fit words to lessons: which lessons count, with which weight, and equal ones once."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ def test_a_fact_counts_by_how_sure_both_its_matches_are() -> None:
     assert examples(remembered("a-1", sure)) == pytest.approx(0.5 * 0.8 + 0.8 * 1.0)
 
 
-def test_the_same_script_in_the_same_scene_counts_once_and_both_lessons_are_named() -> None:
+def test_equal_lessons_count_once_and_are_both_named() -> None:
     twice = fit(Recollection((remembered("a-1", texts=("s", "t")), remembered("a-2", texts=("s", "t")))))
     assert twice.models["horizontal"].provenance.examples == 2
     assert twice.lessons == ("a-1", "a-2")
     assert examples(remembered("a-1"), remembered("b-1")) == 4
 
 
-def test_what_teaches_nothing_is_no_source_and_without_anything_the_shipped_models_stay() -> None:
+def test_lessons_that_teach_nothing_leave_the_shipped_models() -> None:
     unsure = remembered("b-1", (0.0, 0.0, 0.0))
     assert fit(Recollection((remembered("a-1"), unsure))).lessons == ("a-1",)
     nothing = fit(Recollection((unsure,), ("c-1: broken",)))
@@ -67,14 +67,14 @@ def test_what_teaches_nothing_is_no_source_and_without_anything_the_shipped_mode
     assert nothing.models == shipped_models()
 
 
-def test_models_say_which_lessons_taught_them_and_how_strongly_the_prior_held() -> None:
+def test_models_record_their_lessons_and_the_prior_strength() -> None:
     learned = fit(Recollection((remembered("a-1"), remembered("b-1"))), 2.5)
     assert learned.taught == ("horizontal", "saying")
     assert informed(learned.changed) == (frozenset({"a-1", "b-1"}), 2.5)
     assert informed([]) == (frozenset(), 1.0)
 
 
-def test_more_examples_move_a_model_further_and_a_stronger_prior_less() -> None:
+def test_examples_move_a_model_and_a_strong_prior_holds_it() -> None:
     def moved(number: int, strength: float) -> float:
         lessons = tuple(remembered(f"a-{i}") for i in range(number))
         model, prior = (models["saying"] for models in (fit(Recollection(lessons), strength).models, shipped_models()))
@@ -87,19 +87,19 @@ def test_more_examples_move_a_model_further_and_a_stronger_prior_less() -> None:
     assert moved(8, 1.0) > moved(1, 1.0) > moved(1, 20.0) > 0
 
 
-def test_a_strength_that_is_none_is_refused() -> None:
+def test_an_invalid_strength_is_refused() -> None:
     with pytest.raises(SettingError, match="strength"):
         fit(Recollection((remembered("a-1"),)), 0.0)
 
 
-def test_a_label_is_one_thing_or_nothing_and_as_sure_as_it_says() -> None:
+def test_a_label_matches_one_thing_with_its_confidence() -> None:
     graph = read_script(text=SCRIPT).graph()
     who = labelled(graph, scene("fork", "plate", confidence=0.7), KINDS)
     by_name = dict(zip(graph.nodes, zip(who.things, who.sureness, strict=True), strict=True))
     assert by_name == {"fork": (0, 0.7), "plate": (1, 0.7), "knife": (None, 0.0)}
 
 
-def test_a_narrower_label_is_the_object_that_no_other_thing_is_called() -> None:
+def test_a_narrower_label_matches_the_only_fitting_object() -> None:
     graph = read_script(text=SCRIPT).graph()
     labels = {"o0": "dinner fork", "o1": "dinner plate", "o2": "knife"}
     seen = scene()
@@ -113,7 +113,7 @@ def test_a_narrower_label_is_the_object_that_no_other_thing_is_called() -> None:
     assert set(labelled(graph, seen, KINDS).things) == {None}
 
 
-def test_new_examples_become_lessons_that_are_read_back_as_they_were_and_none_twice(tmp_path: Path) -> None:
+def test_new_examples_become_lessons_once_and_round_trip(tmp_path: Path) -> None:
     included, file = tmp_path / "more.layout", tmp_path / "t.layout"
     included.write_text("knife right of plate", encoding="utf-8")
     file.write_text('layout tea\ninclude "more.layout"\nusually fork left of plate\n', encoding="utf-8")
@@ -135,7 +135,7 @@ def test_new_examples_become_lessons_that_are_read_back_as_they_were_and_none_tw
     assert new_lessons([(script, whole)], recollection, [].__contains__)[0] == []
 
 
-def test_a_lesson_that_cannot_be_read_is_left_out_with_the_reason() -> None:
+def test_an_unreadable_lesson_is_left_out_with_the_reason() -> None:
     script = read_script(text=SCRIPT)
     (lesson,), _ = new_lessons([(script, scene(*THINGS))], Recollection(()), [].__contains__)
     found = recollect([], episode_triples(replace(lesson, scene_text="{")), ONTOLOGY)

@@ -93,7 +93,7 @@ def test_views_that_cannot_be_written_are_once_they_can(
 ) -> None:
     with Session(memory) as session, monkeypatch.context() as patched:
         patched.setattr(Handle, "write", full)
-        with pytest.raises(MemoryWriteError, match="what was learned is kept, and what the things look like will be"):
+        with pytest.raises(MemoryWriteError, match="the lessons are stored, and their views will be"):
             session.learn(example.script, example.scene(4))
     assert (memory / "perceptual" / JOURNAL).exists()
     with Session(memory) as session:
@@ -133,15 +133,15 @@ def test_verify_names_where_the_stores_differ(example: Example, memory: Path) ->
         session.views().rename("fork", "prongs")  # behind the back of the lessons
         session.memory().commit(session.memory().departure("tea-1"))
     told = " ".join(findings(memory))
-    assert "it belongs to the lesson 'tea-1', and there is no such lesson" in told
+    assert "it belongs to the lesson 'tea-1', which is missing" in told
     with Session(memory) as session:
         session.learn(example.script, example.scene(3))
         session.views().rename("fork", "prongs")
         session.views().forget("plate")
     told = " ".join(findings(memory))
-    assert "of 'fork', which is of 'prongs'" in told and "of 'plate', which is not there" in told
+    assert "of 'fork', which is now of 'prongs'" in told and "of 'plate', which is missing" in told
     shutil.rmtree(memory / "perceptual")
-    assert sum("which is not there" in line for line in findings(memory)) == 3
+    assert sum("which is missing" in line for line in findings(memory)) == 3
 
 
 def test_what_is_refused_makes_no_journal(example: Example, memory: Path) -> None:

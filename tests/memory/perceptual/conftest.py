@@ -1,4 +1,4 @@
-"""Views by hand, and both kinds of memory."""
+"""Small views, and both kinds of memory."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from deixis.memory.perceptual.records import CategoryRecord, View
 from deixis.memory.perceptual.transient import TransientMemory
 
 IN_MEMORY = "/dev/shm"
-"""A folder in memory, where the system has one: what is asked here is what outlives a process, not a machine, and
-waiting for a disk takes most of the time."""
+"""Folder in memory, where the system has one.
+
+The tests check what survives a process, not a machine, and waiting for a disk takes most of the time.
+"""
 
 ROOM = 1 << 30
-"""Bytes that there have to be in it; containers often have less."""
+"""Minimum number of free bytes in the folder; containers often have fewer."""
 
 NOON = datetime(2026, 5, 1, 12, tzinfo=UTC)
 
@@ -65,7 +67,7 @@ def _content(memory: PerceptualReading) -> tuple[list[dict[str, Any]], list[dict
 
 @pytest.fixture(autouse=True, scope="module")
 def _in_memory() -> Iterator[None]:
-    """Temporary folders lie in memory."""
+    """Put temporary folders in memory."""
     with pytest.MonkeyPatch.context() as patched:
         if os.access(IN_MEMORY, os.W_OK) and shutil.disk_usage(IN_MEMORY).free > ROOM:
             patched.setattr(tempfile, "tempdir", IN_MEMORY)
@@ -74,38 +76,38 @@ def _in_memory() -> Iterator[None]:
 
 @pytest.fixture
 def tmp_path() -> Iterator[Path]:
-    """A folder of a test's own."""
+    """Folder of a test's own."""
     with tempfile.TemporaryDirectory() as folder:
         yield Path(folder)
 
 
 @pytest.fixture(scope="session")
 def make_view() -> Callable[..., View]:
-    """Makes a view whose arrays follow from its id and a seed."""
+    """Make a view with arrays computed from its id and a seed."""
     return _view
 
 
 @pytest.fixture(scope="session")
 def make_record() -> Callable[..., CategoryRecord]:
-    """Makes a category's record, with a threshold."""
+    """Make a record of a category, with a threshold."""
     return _record
 
 
 @pytest.fixture(scope="session")
 def said() -> Callable[[View | CategoryRecord], dict[str, Any]]:
-    """All that a record says, to be compared: arrays by type, shape and bytes."""
+    """Return the content of a record for comparisons: arrays by type, shape and bytes."""
     return _said
 
 
 @pytest.fixture(scope="session")
 def content() -> Callable[[PerceptualReading], tuple[list[dict[str, Any]], list[dict[str, Any]]]]:
-    """All that a memory keeps, in its order."""
+    """Return the content of a memory, in its order."""
     return _content
 
 
 @pytest.fixture(params=["level", "transient"])
 def memory(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[PerceptualMemory]:
-    """An empty memory of each kind."""
+    """Empty memory of each kind."""
     if request.param == "level":
         with LevelMemory.open(tmp_path / "perceptual", create=True) as level:
             yield level
@@ -116,7 +118,7 @@ def memory(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Perceptua
 
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
-    """A closed memory of ten views in three categories, written in two sittings."""
+    """Closed memory of ten views in three categories, written in two sessions."""
     from deixis.memory.perceptual.records import Batch
 
     folder = tmp_path / "kept"

@@ -1,4 +1,4 @@
-"""Values: what is written comes back, in the format it is said to be in, and a change is noticed."""
+"""Values can be read back, have the stated format, and reveal changes."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_what_is_shorter_than_a_checksum_is_noticed() -> None:
 
 
 def test_changes_in_several_places_are_noticed() -> None:
-    """Signs flipped in two places or in all, words, pages or blocks that changed places, zeros for a page."""
+    """Flip signs in two places or in all, swap words, pages or blocks, and zero a page."""
     rng = np.random.default_rng(1)
     value = rng.random((100, 153), np.float32)
     words = value.reshape(-1).view(np.uint64)
@@ -72,7 +72,7 @@ def test_changes_in_several_places_are_noticed() -> None:
 
 
 def test_checksums_are_the_same_for_ever() -> None:
-    """Golden values: whoever changes the sum must raise the version, or every memory there is will look damaged."""
+    """Check golden values: a change of the checksum needs a new version, or every existing memory looks damaged."""
     assert checksum(b"key", b"value").hex() == "b19fcf792e11118e"
     assert checksum(b"key", bytes(range(200)) * 99).hex() == "74ab9d07b6509251"
     assert checksum(b"", b"").hex() == "412f1275e10017f3"

@@ -1,4 +1,4 @@
-"""Flip a byte of any file: it is detected or harmless, and never a wrong value."""
+"""A flipped byte of any file is detected or harmless, and never gives a wrong value."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FLIPS = 5  # positions in each file
 
 
 def outcome(folder: Path, before: Any, content: Content, said: Said) -> str:
-    """Whether damage was detected, and where; fails where a wrong value was given out, or a loss went unnoticed."""
+    """Return whether damage was detected, and where; fail for a wrong value or an unnoticed loss."""
     views, records = before
     known = {view["id"]: view for view in views} | {("record", record["name"]): record for record in records}
     try:
@@ -51,7 +51,7 @@ def outcome(folder: Path, before: Any, content: Content, said: Said) -> str:
 
 
 def flips(file: Path, rng: random.Random) -> Iterator[int]:
-    """Positions: the first bytes, the last ones, and some between."""
+    """Return positions in a file: the first bytes, the last ones, and some in between."""
     size = file.stat().st_size
     places = {0, 4, 6, size - 1, size - 9, size // 2, *(rng.randrange(size) for _ in range(FLIPS))} if size else set()
     return (place for place in sorted(places) if 0 <= place < size)
@@ -62,7 +62,7 @@ def flips(file: Path, rng: random.Random) -> Iterator[int]:
 def test_a_flipped_byte_of_any_file_is_detected_or_harmless(
     kept: Path, tmp_path: Path, content: Content, said: Said, make_view: Callable[..., View], state: str
 ) -> None:
-    """Of a memory that was closed, of one whose process was killed, and of one whose seal somebody deleted."""
+    """Test a closed memory, one whose process was killed, and one whose seal was deleted."""
     rng, outcomes = random.Random(state), Counter[str]()
     whole = tmp_path / "whole"
     with LevelMemory.open(kept) as memory:
@@ -89,7 +89,7 @@ def test_a_flipped_byte_of_any_file_is_detected_or_harmless(
 
 
 def tampered(folder: Path, kind: bytes, change: Callable[[bytes], bytes | None]) -> None:
-    """Changes the first value of a kind behind the back of the memory, with LevelDB's own checksums right."""
+    """Change the first value of a kind in the database, with correct checksums of LevelDB."""
     with plyvel.DB(str(folder / "store-2")) as db:
         key, value = next(iter(db.iterator(prefix=kind)))
         new = change(value)
@@ -98,7 +98,7 @@ def tampered(folder: Path, kind: bytes, change: Callable[[bytes], bytes | None])
 
 
 KINDS = {
-    keys.VIEW: "what is said",
+    keys.VIEW: "header",
     keys.ARRAYS: "arrays",
     keys.CATEGORY: "category",
     keys.COUNT: "counts",
@@ -107,7 +107,7 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("position", [0, -1])
-def test_a_value_that_was_changed_behind_leveldbs_checksums_is_told(kept: Path, kind: bytes, position: int) -> None:
+def test_a_change_with_right_leveldb_checksums_is_detected(kept: Path, kind: bytes, position: int) -> None:
     def flip(value: bytes) -> bytes:
         changed = bytearray(value)
         changed[position] ^= 1
@@ -115,24 +115,24 @@ def test_a_value_that_was_changed_behind_leveldbs_checksums_is_told(kept: Path, 
 
     tampered(kept, kind, flip)
     if kind == keys.COUNT:
-        with pytest.raises(DamagedMemoryError, match="the counts are not what was written"):
+        with pytest.raises(DamagedMemoryError, match="the counts differ from what was written"):
             LevelMemory.open(kept)
         return
     with LevelMemory.open(kept) as memory:
         findings = memory.verify()
         assert any(KINDS[kind] in str(finding) for finding in findings), findings
-        with pytest.raises(DamagedMemoryError, match="not what was written"):
+        with pytest.raises(DamagedMemoryError, match=r"differs? from what was written"):
             [list(memory.views()), [memory.category(name) for name in memory.categories()]]
 
 
 @pytest.mark.parametrize("kind", [keys.VIEW, keys.ARRAYS])
-def test_a_value_that_is_gone_is_told(kept: Path, kind: bytes) -> None:
+def test_a_missing_value_is_detected(kept: Path, kind: bytes) -> None:
     tampered(kept, kind, lambda value: None)
     with LevelMemory.open(kept) as memory:
         assert memory.verify()
 
 
-def test_values_that_changed_places_are_told(kept: Path) -> None:
+def test_swapped_values_are_detected(kept: Path) -> None:
     with plyvel.DB(str(kept / "store-2")) as db:
         (one, first), (two, second) = list(db.iterator(prefix=keys.ARRAYS))[:2]
         db.put(one, second)
@@ -140,15 +140,15 @@ def test_values_that_changed_places_are_told(kept: Path) -> None:
     (kept / "seal.json").unlink()
     with LevelMemory.open(kept) as memory:
         assert [finding.what.split(": ")[-1] for finding in memory.verify()] == [
-            "its arrays are not what was written"
+            "its arrays differ from what was written"
         ] * 2
-        with pytest.raises(DamagedMemoryError, match="view 'fork-1-0' of 'fork': its arrays are not what was written"):
+        with pytest.raises(DamagedMemoryError, match="view 'fork-1-0' of 'fork': its arrays differ from"):
             memory.view("fork-1-0")
         assert memory.view("plate-0-0").id == "plate-0-0"
 
 
-def test_older_arrays_under_the_same_key_are_told(kept: Path) -> None:
-    """As where the newer ones' key is damaged in its table, and LevelDB finds the older ones in another."""
+def test_older_arrays_under_the_same_key_are_detected(kept: Path) -> None:
+    """Simulate a damaged key of the newer arrays, so that LevelDB finds the older ones in another table."""
     with LevelMemory.open(kept) as memory:
         view = memory.view("fork-1-0")
         with memory.handle as db:
@@ -160,7 +160,7 @@ def test_older_arrays_under_the_same_key_are_told(kept: Path) -> None:
     (kept / "seal.json").unlink()
     with LevelMemory.open(kept) as memory:
         for read in (lambda: memory.view("fork-1-0"), lambda: list(memory.views("fork"))):
-            with pytest.raises(DamagedMemoryError, match="'fork-1-0' of 'fork': its arrays are not what was written"):
+            with pytest.raises(DamagedMemoryError, match="'fork-1-0' of 'fork': its arrays differ from"):
                 read()
         assert [finding.where for finding in memory.verify()] == ["view 'fork-1-0' of 'fork'"]
 
@@ -174,7 +174,7 @@ def test_other_views_stay_readable_beside_a_damaged_one(kept: Path, make_view: C
 
 
 def test_listing_reads_no_arrays(kept: Path) -> None:
-    """So that a memory larger than the machine's own can be listed: with every array spoilt, nothing is noticed."""
+    """List a memory whose arrays are all damaged: as listing does not read them, it also works for a huge memory."""
     with plyvel.DB(str(kept / "store-2")) as db:
         for key in list(db.iterator(prefix=keys.ARRAYS, include_value=False)):
             db.put(key, b"")

@@ -1,4 +1,4 @@
-"""A perceptual memory as a file, and a file as a memory."""
+"""Export a perceptual memory to a file, and import it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def file(kept: Path, tmp_path: Path) -> Path:
     return tmp_path / "views.zip"
 
 
-def test_progress_is_told_of_every_view(kept: Path, memory: PerceptualMemory, tmp_path: Path) -> None:
+def test_progress_is_called_for_every_view(kept: Path, memory: PerceptualMemory, tmp_path: Path) -> None:
     exported: list[tuple[int, int]] = []
     imported: list[tuple[int, int]] = []
     with LevelMemory.open(kept) as original:
@@ -79,10 +79,10 @@ def test_a_larger_file_goes_in_in_several_steps(
         assert content(memory) == content(original)
 
 
-def test_a_state_is_kept_only_where_it_describes_the_views_there_are(
+def test_a_state_is_kept_only_if_it_describes_all_views(
     memory: PerceptualMemory, file: Path, make_view: MakeView, make_record: MakeRecord
 ) -> None:
-    """The file knows three categories: one is mixed with other views, of one nothing more is known here, one is new."""
+    """Import three categories: one is mixed with other views, one is known here without views, one is new."""
     mine = TransientMemory()
     import_views(file, mine)
     fork = next(mine.views("fork"))
@@ -103,7 +103,7 @@ def test_what_is_there_stays_where_the_file_knows_less(
     assert float(memory.category("fork").state["threshold"]) == 0.9
 
 
-def test_another_view_of_a_known_id_is_refused_and_nothing_is_written(
+def test_another_view_with_a_known_id_is_refused(
     memory: PerceptualMemory, file: Path, make_view: MakeView, content: Content
 ) -> None:
     memory.write(Batch([make_view("fork-1-0", "fork", seed=99)]))
@@ -145,24 +145,24 @@ def _head(**more: Any) -> bytes:
 
 
 BAD: dict[str, tuple[dict[str, bytes | None], str]] = {
-    "no head": ({"memory.json": None}, r"this is no export of a memory: it has no 'memory\.json'"),
-    "head is no json": ({"memory.json": b"{"}, "memory.json: Expecting"),
+    "no head": ({"memory.json": None}, r"this is not an export of a memory: it has no 'memory\.json'"),
+    "head is not json": ({"memory.json": b"{"}, "memory.json: Expecting"),
     "head is a list": ({"memory.json": b"[]"}, "memory.json"),
-    "other format": ({"memory.json": _head(format="x")}, "does not say deixis-perceptual-memory"),
+    "other format": ({"memory.json": _head(format="x")}, "its format must be deixis-perceptual-memory"),
     "newer": ({"memory.json": _head(version=9)}, r"newer version \(format 9\); upgrade deixis"),
-    "fewer views": ({"memory.json": _head(views=9)}, "it says 9 views"),
-    "a view missing": ({VIEW: None}, "others are there"),
-    "path": ({VIEW: None, "../../etc/passwd": b"x"}, "has no place in an archive"),
+    "fewer views": ({"memory.json": _head(views=9)}, "it lists 9 views"),
+    "a view missing": ({VIEW: None}, "not those in the file"),
+    "path": ({VIEW: None, "../../etc/passwd": b"x"}, "does not belong in an archive"),
     "no safetensors": ({VIEW: b"x"}, f"{VIEW}: .*header too small"),
     "huge header": ({VIEW: b"\xff" * 20}, "header too large"),
     "no note": ({VIEW: save({"d": np.zeros(1)})}, "'__metadata__' is missing"),
-    "note is no json": ({VIEW: _note("{")}, "Expecting"),
+    "note is not json": ({VIEW: _note("{")}, "Expecting"),
     "note is a list": ({VIEW: _note([])}, VIEW),
     "note is deep": ({VIEW: _note("[" * 100_000)}, VIEW),
     "no id": ({VIEW: _note({"category": "mug"})}, "is missing"),
     "id is a number": ({VIEW: _note({**GOOD, "id": 7})}, "a view's id"),
     "time without zone": ({VIEW: _note({**GOOD, "time": "2026-05-01T12:00:00"})}, "time zone"),
-    "time is no time": ({VIEW: _note({**GOOD, "time": "noon"})}, "isoformat"),
+    "time is not a time": ({VIEW: _note({**GOOD, "time": "noon"})}, "isoformat"),
     "time is a number": ({VIEW: _note({**GOOD, "time": 1})}, "fromisoformat"),
     "metadata is a list": ({VIEW: _note({**GOOD, "metadata": [1]})}, VIEW),
     "strange array": (
@@ -171,15 +171,13 @@ BAD: dict[str, tuple[dict[str, bytes | None], str]] = {
     ),
     "float64": (
         {VIEW: save({"descriptor/d": np.zeros((1, 1))}, {"deixis": json.dumps(GOOD)})},
-        "float32 with two dimensions",
+        "float32 array with two dimensions",
     ),
 }
 
 
 @pytest.mark.parametrize("damage", BAD)
-def test_a_file_that_cannot_be_believed_is_refused_in_one_line(
-    memory: PerceptualMemory, file: Path, damage: str
-) -> None:
+def test_an_invalid_file_is_refused_with_a_one_line_error(memory: PerceptualMemory, file: Path, damage: str) -> None:
     changes, message = BAD[damage]
 
     def change(entries: dict[str, bytes]) -> None:
@@ -197,7 +195,7 @@ def test_a_file_that_cannot_be_believed_is_refused_in_one_line(
 
 
 def test_a_compressed_archive_is_refused(memory: PerceptualMemory, file: Path) -> None:
-    """So that no small file can become a large one."""
+    """Refuse compressed entries, so that a small file cannot become a large one."""
     rewritten(file, lambda entries: None, zipfile.ZIP_DEFLATED)
     with pytest.raises(ImportFormatError, match="compressed"):
         import_views(file, memory)
@@ -218,10 +216,10 @@ def test_an_archive_that_was_cut_short_is_known_for_one(
     assert not is_archive(file)
 
 
-def test_what_is_no_archive_is_refused(memory: PerceptualMemory, tmp_path: Path) -> None:
+def test_a_file_that_is_not_an_archive_is_refused(memory: PerceptualMemory, tmp_path: Path) -> None:
     (tmp_path / "x.zip").write_bytes(b"no zip")
     for name in ("x.zip", "gone.zip", "."):
-        with pytest.raises(ImportFormatError, match="no archive of views can be read"):
+        with pytest.raises(ImportFormatError, match="cannot be read as an archive of views"):
             import_views(tmp_path / name, memory)
 
 
@@ -244,7 +242,7 @@ def test_cut_or_changed_archives_never_give_a_wrong_view(file: Path, kept: Path,
 
 
 def test_what_the_commands_call(kept: Path, tmp_path: Path, make_view: MakeView, content: Content) -> None:
-    """A memory without views, one with some, and a file between two."""
+    """Run the functions behind the commands on a memory without views, on one with some, and on an exported file."""
     one, two, file = tmp_path / "one", tmp_path / "two", tmp_path / "x.zip"
     one.mkdir()
     assert stats_of(one) is None

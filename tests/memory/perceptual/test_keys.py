@@ -1,4 +1,4 @@
-"""The order of keys is the order of what they name."""
+"""The order of keys is the order of the names in them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_keys_are_in_order_of_category_view_and_time(first: tuple[str, str, int]
 
 
 @given(places)
-def test_a_key_says_what_it_was_made_of(place: tuple[str, str, int]) -> None:
+def test_a_key_can_be_split_into_its_parts(place: tuple[str, str, int]) -> None:
     assert keys.split_view_key(keys.view_key(keys.VIEW, *place)) == place
 
 
@@ -48,6 +48,6 @@ def test_a_key_by_hand() -> None:
 @pytest.mark.parametrize(
     "key", [b"v", b"vabc", b"va\0\0b\0\0short", b"va\0\0b\0\0longer than 8", b"v\xff\0\0b\0\x0012345678"]
 )
-def test_what_is_no_key_is_refused(key: bytes) -> None:
+def test_an_invalid_key_is_refused(key: bytes) -> None:
     with pytest.raises(ValueError, match=r"end|eight|utf-8"):
         keys.split_view_key(key)

@@ -1,4 +1,4 @@
-"""What every perceptual memory does, whatever keeps it."""
+"""Behaviour of every perceptual memory, on disk or not."""
 
 from __future__ import annotations
 
@@ -118,10 +118,10 @@ def test_a_batch_that_cannot_be_done_does_nothing(
     assert memory.stats().batches == 1
 
 
-def test_a_batch_says_each_thing_once(make_view: MakeView, make_record: MakeRecord) -> None:
-    with pytest.raises(RecordError, match="the view 'v1' comes twice"):
+def test_a_batch_with_a_repeated_name_is_refused(make_view: MakeView, make_record: MakeRecord) -> None:
+    with pytest.raises(RecordError, match="the view 'v1' must occur only once"):
         Batch([make_view("v1")], [], ["v1"])
-    with pytest.raises(RecordError, match="the category 'mug' comes twice"):
+    with pytest.raises(RecordError, match="the category 'mug' must occur only once"):
         Batch([], [make_record("mug"), make_record("mug")])
 
 
@@ -142,13 +142,13 @@ def test_rename_takes_views_and_record_along(
 
 def test_rename_to_a_name_that_is_taken_is_refused(memory: PerceptualMemory, make_view: MakeView) -> None:
     memory.write(Batch([make_view("v1", "mug"), make_view("v2", "cup")]))
-    with pytest.raises(RejectedWriteError, match="there is a category 'cup' already: merge 'mug' into it"):
+    with pytest.raises(RejectedWriteError, match="there is already a category 'cup': merge 'mug' into it"):
         memory.rename("mug", "cup")
     with pytest.raises(RejectedWriteError, match="already"):
         memory.rename("mug", "mug")
 
 
-def test_merge_moves_the_views_and_drops_what_no_longer_describes_them(
+def test_merge_moves_the_views_and_drops_the_outdated_state(
     memory: PerceptualMemory, make_view: MakeView, make_record: MakeRecord, said: Said
 ) -> None:
     memory.write(Batch([make_view("v1", "mug"), make_view("v2", "cup")], [make_record("mug"), make_record("cup")]))
@@ -195,7 +195,7 @@ def test_forget_takes_views_and_record_away(
         lambda memory: memory.forget("mugg"),
     ],
 )
-def test_an_unknown_category_is_told_with_the_nearest_at_once(
+def test_an_unknown_category_suggests_the_nearest_at_once(
     memory: PerceptualMemory, make_view: MakeView, ask: Callable[[PerceptualMemory], object]
 ) -> None:
     memory.write(Batch([make_view("v1")]))
@@ -204,14 +204,12 @@ def test_an_unknown_category_is_told_with_the_nearest_at_once(
     assert isinstance(caught.value, KeyError) and isinstance(caught.value, DeixisError)
 
 
-def test_an_unknown_category_near_none_is_told_with_some_and_that_there_are_others(
-    memory: PerceptualMemory, make_view: MakeView
-) -> None:
+def test_an_unknown_category_without_a_near_one_lists_some(memory: PerceptualMemory, make_view: MakeView) -> None:
     memory.write(Batch([make_view(f"v{k}", name) for k, name in enumerate("abcde")]))
-    with pytest.raises(UnknownCategoryError, match=r"known are: a, b, c, d, e$"):
+    with pytest.raises(UnknownCategoryError, match=r"the memory has: a, b, c, d, e$"):
         memory.category("xylophone")
     memory.write(Batch([make_view("v9", "f")]))
-    with pytest.raises(UnknownCategoryError, match=r"known are: a, b, c, d, e, among others$"):
+    with pytest.raises(UnknownCategoryError, match=r"the memory has: a, b, c, d, e, among others$"):
         memory.category("xylophone")
 
 
@@ -260,7 +258,7 @@ def test_verify_tells_how_far_it_is(tmp_path: Path, make_view: MakeView) -> None
     seen: list[tuple[int, int]] = []
     with LevelMemory.open(tmp_path / "m", create=True) as memory:
         memory.write(Batch([make_view("v1"), make_view("v2")]))
-        memory.verify(lambda done, all: seen.append((done, all)))
+        memory.verify(lambda done, total: seen.append((done, total)))
     assert seen == [(1, 2), (2, 2)]
 
 

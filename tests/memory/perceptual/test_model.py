@@ -1,4 +1,4 @@
-"""Both kinds of memory against two dictionaries, through random histories; names of any characters."""
+"""Compare both kinds of memory with two dictionaries through random histories, with names of any characters."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ few_ids = st.sampled_from([f"v{number}" for number in range(6)])
 
 
 class Histories(RuleBasedStateMachine):
-    """A memory beside a dictionary of views and one of records."""
+    """State machine of a memory, a dictionary of views and one of records."""
 
     memory: PerceptualMemory
 
@@ -156,7 +156,7 @@ class Histories(RuleBasedStateMachine):
 
 
 class LevelHistories(Histories):
-    """In a LevelDB, which is closed and opened again now and then."""
+    """Memory in a LevelDB, which is sometimes closed and opened again."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -174,7 +174,7 @@ class LevelHistories(Histories):
 
 
 class TransientHistories(Histories):
-    """In dictionaries."""
+    """Memory in dictionaries."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Nothing lost: processes killed at random moments, full disks, read-only folders."""
+"""No acknowledged write is lost: processes killed at random moments, full disks, read-only folders."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def work(folder, seed):
 
 
 def check(memory: LevelMemory, seed: int, acknowledged: int) -> int:
-    """A seed's last turn, and that just its views are there, whole."""
+    """Return the last turn of a seed, after checking that just its views are complete."""
     category = f"c{seed}"
     if category not in memory.categories():
         assert acknowledged == 0
@@ -54,8 +54,8 @@ def check(memory: LevelMemory, seed: int, acknowledged: int) -> int:
 
 
 @pytest.mark.slow
-def test_kills_in_the_middle_of_writing_lose_no_acknowledged_batch_and_leave_no_half_one(tmp_path: Path) -> None:
-    """The memory is opened after every fifth kill; the children between begin where one was killed."""
+def test_kills_lose_no_acknowledged_batch_and_leave_no_half_one(tmp_path: Path) -> None:
+    """Open the memory after every fifth kill; the children in between start where one was killed."""
     rng, folder = random.Random(3), tmp_path / "m"
     acknowledged, turns = dict[int, int](), dict[int, int]()
     with forks_of(WRITERS) as writers:
@@ -105,7 +105,7 @@ memory.close()
 
 
 @pytest.mark.parametrize("limit", [2_000, 100_000, 1_000_000])
-def test_a_full_disk_is_told_in_one_line_and_loses_nothing(kept: Path, content: Callable[..., Any], limit: int) -> None:
+def test_a_full_disk_is_a_one_line_error_and_loses_nothing(kept: Path, content: Callable[..., Any], limit: int) -> None:
     with LevelMemory.open(kept) as memory:
         before = content(memory)[0]
     run = subprocess.run(
@@ -113,7 +113,7 @@ def test_a_full_disk_is_told_in_one_line_and_loses_nothing(kept: Path, content: 
     )
     assert not run.stderr, run.stderr
     done, first, second = run.stdout.splitlines()
-    assert "could not be read or written (IO error" in first and "see that the disk has room" in first
+    assert "could not be read or written (IO error" in first and "check that the disk has room" in first
     assert "an earlier write" in second and "open it again" in second
     with LevelMemory.open(kept) as memory:
         assert sorted(view.id for view in memory.views() if view.category == "new") == sorted(
@@ -139,7 +139,7 @@ def test_creating_on_a_full_disk_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not (tmp_path / "m").exists()
 
 
-def test_a_read_only_folder_is_read_and_a_write_is_told(
+def test_a_read_only_folder_is_read_and_refuses_writes(
     kept: Path, content: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with LevelMemory.open(kept) as memory:

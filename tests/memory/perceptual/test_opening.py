@@ -1,9 +1,8 @@
-"""Opening a perceptual memory: new, foreign, old, newer, held by somebody, changed while nobody had it."""
+"""Open a perceptual memory: new, foreign, old, newer, in use by another process, changed while closed."""
 
 from __future__ import annotations
 
 import hashlib
-import os
 import shutil
 import subprocess
 import sys
@@ -47,7 +46,12 @@ def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
         LevelMemory.open(tmp_path / "a" / "b")
     assert not (tmp_path / "a").exists()
     LevelMemory.open(tmp_path / "a" / "b", create=True).close()
-    assert sorted(os.listdir(tmp_path / "a" / "b")) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
+    assert sorted(entry.name for entry in (tmp_path / "a" / "b").iterdir()) == [
+        "acknowledged",
+        "owner.lock",
+        "seal.json",
+        "store-2",
+    ]
 
 
 def test_a_foreign_folder_a_file_and_a_dead_link_are_left_alone(tmp_path: Path) -> None:
@@ -56,16 +60,16 @@ def test_a_foreign_folder_a_file_and_a_dead_link_are_left_alone(tmp_path: Path) 
     (folder / "letter.txt").write_text("dear")
     (tmp_path / "link").symlink_to(tmp_path / "gone")
     for path, message in (
-        (folder, r"it holds other things \(letter.txt\)"),
+        (folder, r"it has other files \(letter.txt\)"),
         (folder / "letter.txt", "is a file"),
-        (tmp_path / "link", "leads nowhere"),
+        (tmp_path / "link", "broken link"),
     ):
         with pytest.raises(MemoryFormatError, match=message):
             LevelMemory.open(path, create=True)
-    assert os.listdir(folder) == ["letter.txt"]
+    assert [entry.name for entry in folder.iterdir()] == ["letter.txt"]
 
 
-def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
+def test_a_newer_memory_is_an_error_and_is_not_changed(kept: Path) -> None:
     (kept / "store-2").rename(kept / "store-7")
     before = digest(kept)
     with pytest.raises(MemoryFormatError, match=r"written by a newer version \(format 7, .* knows 2\); upgrade deixis"):
@@ -73,7 +77,7 @@ def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
     assert digest(kept) == before
 
 
-def test_a_version_without_a_way_here_is_told(kept: Path) -> None:
+def test_a_version_without_a_migration_is_an_error(kept: Path) -> None:
     (kept / "store-2").rename(kept / "store-0")
     with pytest.raises(MemoryFormatError, match="unknown format version 0"):
         LevelMemory.open(kept)
@@ -81,7 +85,7 @@ def test_a_version_without_a_way_here_is_told(kept: Path) -> None:
 
 @pytest.fixture
 def version_1(tmp_path: Path) -> Path:
-    """A memory as version 1 wrote and closed it: the views of :func:`content_of_version_1`."""
+    """Closed memory in format version 1 with the views of :func:`content_of_version_1`."""
     folder = tmp_path / "old"
     with zipfile.ZipFile(Path(__file__).with_name("version-1.zip")) as archive:
         archive.extractall(folder)
@@ -110,7 +114,12 @@ def content_of_version_1(content: Content) -> Any:
 
 def test_a_memory_of_version_1_is_brought_up_to_date(version_1: Path, content: Content) -> None:
     assert content_of(version_1, content) == content_of_version_1(content)
-    assert sorted(os.listdir(version_1)) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
+    assert sorted(entry.name for entry in (version_1).iterdir()) == [
+        "acknowledged",
+        "owner.lock",
+        "seal.json",
+        "store-2",
+    ]
     with LevelMemory.open(version_1) as memory:
         assert memory.verify() == ()
         stats = memory.stats()
@@ -122,9 +131,9 @@ def test_a_memory_of_version_1_is_brought_up_to_date(version_1: Path, content: C
 @pytest.mark.parametrize(
     ("kind", "place", "told"),
     [
-        (keys.ARRAYS, 500, "its arrays are not what was written"),
-        (keys.VIEW, -1, "what is said of it is not what was written"),
-        (keys.CATEGORY, 100, "what is known of category 'mug' is not what was written"),
+        (keys.ARRAYS, 500, "its arrays differ from what was written"),
+        (keys.VIEW, -1, "its header differs from what was written"),
+        (keys.CATEGORY, 100, "the record of category 'mug' differs from what was written"),
     ],
 )
 def test_what_was_damaged_in_version_1_stays_damaged(version_1: Path, kind: bytes, place: int, told: str) -> None:
@@ -166,7 +175,7 @@ def test_no_byte_that_flipped_in_version_1_gives_a_wrong_value(
 
 
 def make_older(folder: Path) -> None:
-    """Turns a memory of version 1 into one of a version 0, whose keys all began with ``old:``."""
+    """Convert a memory of version 1 to a version 0, whose keys all began with ``old:``."""
     with plyvel.DB(str(folder / "store-1")) as new, plyvel.DB(str(folder / "store-0"), create_if_missing=True) as old:
         for key, value in new.iterator():
             old.put(b"old:" + key, value)
@@ -185,7 +194,12 @@ def test_an_older_memory_takes_several_steps(
     make_older(version_1)
     monkeypatch.setitem(MIGRATIONS, 0, from_0)
     assert content_of(version_1, content) == content_of_version_1(content)
-    assert sorted(os.listdir(version_1)) == ["acknowledged", "owner.lock", "seal.json", "store-2"]
+    assert sorted(entry.name for entry in (version_1).iterdir()) == [
+        "acknowledged",
+        "owner.lock",
+        "seal.json",
+        "store-2",
+    ]
     with LevelMemory.open(version_1) as memory:
         assert memory.verify() == ()
         assert memory.stats().lost == 0
@@ -246,7 +260,7 @@ time.sleep(60)
 """
 
 
-def test_a_second_process_is_told_who_holds_it_and_a_dead_owner_does_not_block(kept: Path, content: Content) -> None:
+def test_a_living_owner_is_named_and_a_dead_one_is_ignored(kept: Path, content: Content) -> None:
     before = content_of(kept, content)
     holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(kept)], stdout=subprocess.PIPE, text=True)
     try:
@@ -262,7 +276,7 @@ def test_a_second_process_is_told_who_holds_it_and_a_dead_owner_does_not_block(k
     assert content_of(kept, content) == before
 
 
-def test_of_two_that_find_no_memory_the_one_that_is_too_late_leaves_the_others_alone(
+def test_the_second_of_two_creators_keeps_the_first_memory(
     kept: Path, tmp_path: Path, content: Content, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before, place = content_of(kept, content), tmp_path / "new"
@@ -279,7 +293,7 @@ def test_of_two_that_find_no_memory_the_one_that_is_too_late_leaves_the_others_a
 
 
 @pytest.mark.parametrize("there", [False, True])
-def test_an_opening_that_fails_takes_away_what_it_made_and_nothing_else(
+def test_a_failed_opening_removes_only_what_it_made(
     kept: Path, tmp_path: Path, content: Content, monkeypatch: pytest.MonkeyPatch, there: bool
 ) -> None:
     before, place, acquire = content_of(kept, content), tmp_path / "new", OwnerLock.acquire
@@ -302,12 +316,12 @@ def test_an_opening_that_fails_takes_away_what_it_made_and_nothing_else(
 
 
 @pytest.mark.parametrize("name", ["MANIFEST-*", "CURRENT", "*.ldb", "*.log"])
-def test_files_changed_or_gone_while_it_was_closed_are_told_and_nothing_is_touched(kept: Path, name: str) -> None:
+def test_files_changed_while_closed_are_an_error(kept: Path, name: str) -> None:
     next((kept / "store-2").glob(name)).unlink()
     before = digest(kept)
     opens_rest = ", or delete seal.json to open what is left" if name == "*.log" else ""
     with pytest.raises(
-        DamagedMemoryError, match=f"is not as it was when it was closed; restore the folder from a copy{opens_rest}$"
+        DamagedMemoryError, match=f"has changed since it was closed; restore the folder from a copy{opens_rest}$"
     ):
         LevelMemory.open(kept)
     assert digest(kept) == before
@@ -320,7 +334,7 @@ def test_without_a_seal_a_missing_table_is_still_told(kept: Path) -> None:
         LevelMemory.open(kept)
 
 
-def test_without_a_seal_a_missing_current_is_no_new_memory(kept: Path) -> None:
+def test_a_missing_current_without_a_seal_makes_no_new_memory(kept: Path) -> None:
     (kept / "seal.json").unlink()
     (kept / "store-2" / "CURRENT").unlink()
     with pytest.raises(DamagedMemoryError, match="damaged"):
@@ -331,7 +345,7 @@ def test_without_a_seal_a_missing_current_is_no_new_memory(kept: Path) -> None:
 def test_batches_that_were_acknowledged_and_are_gone_are_counted(
     kept: Path, tmp_path: Path, make_view: Callable[..., View]
 ) -> None:
-    """As after a power cut: the end of the log never reached the disk, while the tally did."""
+    """Simulate a power cut: the end of the log never reached the disk, but the tally did."""
     power_cut = tmp_path / "cut"
     with LevelMemory.open(kept) as memory:
         shutil.copytree(kept, power_cut)
@@ -341,9 +355,7 @@ def test_batches_that_were_acknowledged_and_are_gone_are_counted(
     for _ in range(2):
         with LevelMemory.open(power_cut) as memory:
             assert memory.stats().lost == 2
-            assert [str(finding) for finding in memory.verify()] == [
-                "counts: 2 batches that were acknowledged are not there"
-            ]
+            assert [str(finding) for finding in memory.verify()] == ["counts: 2 acknowledged batches are missing"]
             memory.write(Batch([make_view("after")]))
 
 

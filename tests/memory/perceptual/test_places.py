@@ -1,4 +1,4 @@
-"""A view is found by its id, wherever it is, at any moment, and also where what says so is damaged."""
+"""Views are found by id at any place, at any moment, and also where their headers are damaged."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_a_snapshot_finds_views_where_they_were(kept: Path, make_view: Make) -> 
         assert memory.verify() == ()
 
 
-def test_a_memory_that_was_opened_anew_knows_what_a_view_replaces(kept: Path, make_view: Make) -> None:
+def test_a_reopened_memory_knows_which_view_is_replaced(kept: Path, make_view: Make) -> None:
     with LevelMemory.open(kept) as memory:
         memory.write(Batch([make_view("mug-0-0", "fork", 9, 9)]))
         assert [key.id for key in memory.listing("mug")] == ["mug-0-1", "mug-0-2", "mug-1-0", "mug-1-1"]
@@ -46,7 +46,7 @@ def test_a_memory_that_was_opened_anew_knows_what_a_view_replaces(kept: Path, ma
 
 @pytest.fixture
 def spoilt(kept: Path) -> Path:
-    """A memory in which a view that was renamed has an unreadable note, so that nobody knows where its arrays are."""
+    """Memory with a renamed view whose header is unreadable, so that the place of its arrays is unknown."""
     with LevelMemory.open(kept) as memory:
         memory.rename("plate", "dish")
     with plyvel.DB(str(kept / "store-2")) as db:
@@ -56,7 +56,7 @@ def spoilt(kept: Path) -> Path:
     return kept
 
 
-def test_a_view_with_a_damaged_note_is_mended_by_writing_it_again(spoilt: Path, make_view: Make) -> None:
+def test_rewriting_a_view_repairs_its_damaged_header(spoilt: Path, make_view: Make) -> None:
     with LevelMemory.open(spoilt) as memory:
         assert [finding.where for finding in memory.verify()] == ["view 'plate-0-0' of 'dish'"]
         with pytest.raises(DamagedMemoryError, match="teach it again, or forget the category; nothing was changed"):
@@ -73,8 +73,8 @@ def test_a_view_with_a_damaged_note_is_forgotten_with_its_arrays(spoilt: Path) -
         assert memory.stats().views == 7
 
 
-def test_where_the_order_of_views_cannot_be_read_nothing_is_written(kept: Path, make_view: Make) -> None:
-    """Else a view could be written beside an older one with its id. What comes before the damage is still found."""
+def test_nothing_is_written_where_keys_cannot_be_read(kept: Path, make_view: Make) -> None:
+    """Otherwise a view could be written beside an older one with its id. Views before the damage are still found."""
     with LevelMemory.open(kept) as memory:
         views = [make_view(f"z{number:02}", "zoo") for number in range(99)]
         memory.write(Batch([replace(view, metadata={"note": f"marker {view.id}" * 9}) for view in views]))

@@ -1,4 +1,4 @@
-"""What can be kept, and what is refused."""
+"""Valid and invalid records."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ NOW = datetime(2026, 5, 1, tzinfo=UTC)
 GOOD: dict[str, Any] = {"id": "v1", "category": "mug", "time": NOW, "descriptors": {}}
 
 BAD_VIEWS: list[tuple[dict[str, Any], str]] = [
-    ({"id": ""}, "a view's id is a text of one or more characters"),
-    ({"id": 7}, "not 7"),
+    ({"id": ""}, "a view's id must be a text of one or more characters"),
+    ({"id": 7}, "got 7"),
     ({"category": "\ud800"}, "half a character"),
     ({"category": "x" * 1001}, "too long: 1001 bytes"),
     ({"time": datetime(2026, 5, 1)}, "a datetime with a time zone"),
     ({"time": "today"}, "a datetime with a time zone"),
-    ({"time": datetime(1, 1, 1, tzinfo=timezone(timedelta(hours=5)))}, "in no year from 1 to 9999"),
+    ({"time": datetime(1, 1, 1, tzinfo=timezone(timedelta(hours=5)))}, "must be in the years 1 to 9999"),
     ({"descriptors": {"": np.zeros((1, 1), np.float32)}}, "a descriptor's name"),
-    ({"descriptors": {"spin": np.zeros((1, 1))}}, r"descriptor 'spin' of view 'v1'.*not float64 \(1, 1\)"),
+    ({"descriptors": {"spin": np.zeros((1, 1))}}, r"descriptor 'spin' of view 'v1'.*got float64 \(1, 1\)"),
     ({"descriptors": {"spin": np.zeros(3, np.float32)}}, "two dimensions"),
-    ({"descriptors": {"spin": [[1.0]]}}, "not list"),
-    ({"points": np.zeros((4, 2), np.float32)}, r"shape \(4, 2\), not \(n, 3\)"),
+    ({"descriptors": {"spin": [[1.0]]}}, "got list"),
+    ({"points": np.zeros((4, 2), np.float32)}, r"must have shape \(n, 3\), got \(4, 2\)"),
     ({"metadata": {"x": float("nan")}}, "cannot be written as JSON"),
     ({"metadata": {"x": object()}}, "cannot be written as JSON"),
     ({"metadata": {1: "x"}}, "strings as keys"),
@@ -45,9 +45,9 @@ def test_a_view_that_cannot_be_kept_is_refused(wrong: dict[str, Any], message: s
 @pytest.mark.parametrize(
     ("state", "message"),
     [
-        ({"x": np.array(["a"])}, "'x' of category 'mug' is no array of numbers"),
-        ({"x": np.zeros(1, np.complex64)}, "no array of numbers"),
-        ({"x": [1]}, "no array of numbers"),
+        ({"x": np.array(["a"])}, "'x' of category 'mug' must be an array of numbers"),
+        ({"x": np.zeros(1, np.complex64)}, "must be an array of numbers"),
+        ({"x": [1]}, "must be an array of numbers"),
         ({"": np.zeros(1)}, "the name of a state"),
     ],
 )

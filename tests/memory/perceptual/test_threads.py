@@ -1,4 +1,4 @@
-"""Threads of one process share a memory: readers see whole batches while a writer goes on."""
+"""Threads of one process share a memory: readers see complete batches while a writer works."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BATCHES = 60
 def test_readers_see_whole_batches_while_a_writer_goes_on(
     memory: PerceptualMemory, make_view: Callable[..., View]
 ) -> None:
-    """Each batch rewrites the same three views, and moves them to and fro, with one number in all of them."""
+    """Rewrite the same three views in each batch, and move them between categories, with one number in all of them."""
     done = threading.Event()
 
     def batch(number: int) -> Batch:
@@ -62,7 +62,7 @@ def test_readers_see_whole_batches_while_a_writer_goes_on(
     assert memory.verify() == ()
 
 
-def test_two_learners_that_read_and_write_back_do_not_lose_each_others_work(memory: PerceptualMemory) -> None:
+def test_two_learners_do_not_lose_each_others_updates(memory: PerceptualMemory) -> None:
     memory.write(Batch([], [CategoryRecord("mug", {"n": np.array(0)})]))
 
     def learn() -> None:
@@ -78,7 +78,7 @@ def test_two_learners_that_read_and_write_back_do_not_lose_each_others_work(memo
 
 
 @pytest.mark.parametrize("turn", range(5))
-def test_closing_while_others_read_ends_them_with_an_error_and_not_the_process(kept: Path, turn: int) -> None:
+def test_closing_during_reads_raises_errors_in_the_readers(kept: Path, turn: int) -> None:
     memory = LevelMemory.open(kept)
     started = threading.Barrier(4)
 

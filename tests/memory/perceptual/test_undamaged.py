@@ -1,4 +1,4 @@
-"""What is damaged is left out and named."""
+"""Damaged views are left out and named."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Make = Callable[..., View]
 
 
 def spoil(folder: Path, kind: bytes, number: int) -> None:
-    """Changes a value behind LevelDB's checksums."""
+    """Change a value without LevelDB noticing."""
     with plyvel.DB(str(folder / "store-2")) as db:
         key, value = list(db.iterator(prefix=kind))[number]
         db.put(key, value[:-1] + bytes([value[-1] ^ 1]))
@@ -38,9 +38,9 @@ def test_damaged_views_and_records_are_left_out_and_named(kept: Path) -> None:
         assert memory.categories() == ("fork", "mug", "plate")
         assert dict(memory.category("plate").state) == {}
         assert memory.left_out == [
-            "view 'fork-1-0' of 'fork': its arrays are not what was written",
-            "view 'mug-0-1' of 'mug': what is said of it is not what was written",
-            "what is known of category 'plate' is not what was written",
+            "view 'fork-1-0' of 'fork': its arrays differ from what was written",
+            "view 'mug-0-1' of 'mug': its header differs from what was written",
+            "the record of category 'plate' differs from what was written",
         ]
 
 
@@ -51,7 +51,7 @@ def test_a_memory_that_is_whole_reads_the_same(kept: Path, content: Content) -> 
 
 
 def test_a_views_arrays_are_its_own(make_view: Make) -> None:
-    """A view is laid out when it is made: whoever changes the array that it came from changes nothing in it."""
+    """Change the original array of a view: the view has a copy."""
     array = np.ones((2, 3), np.float32, order="F")
     view = View("v", "mug", make_view("x").time, {"n": array})
     array[:] = 0

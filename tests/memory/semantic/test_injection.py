@@ -1,4 +1,4 @@
-"""Nothing let in: names stay names, and nobody opens a connection."""
+"""No injection: names of lessons stay names, and no connection is opened."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ NASTY = st.one_of(
 
 
 def quads(memory: SemanticMemory) -> set[ox.Quad]:
-    """Everything but the order of the lessons."""
+    """Return the content of a memory without the order of the lessons."""
     return {quad for quad in memory.store if quad.graph_name != ORDER}
 
 
@@ -76,7 +76,7 @@ def test_an_iri_that_could_break_out_cannot_be_made() -> None:
 
 
 def test_nothing_opens_a_connection(tmp_path: Path, learn: Learn, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Neither through Python, whose sockets are shut here, nor through Oxigraph: one listens, and hears nothing."""
+    """Close the sockets of Python, and check with a listening socket that Oxigraph opens no connection either."""
 
     def refuse(*_: object, **__: object) -> NoReturn:
         raise AssertionError("a connection was tried")
@@ -129,7 +129,7 @@ def test_everything_works_without_a_network(tmp_path: Path) -> None:
     assert done.stdout == "True\n", done.stderr
 
 
-def test_only_canonical_graphs_are_reached_whatever_a_lesson_is_called(memory: SemanticMemory) -> None:
+def test_queries_reach_canonical_graphs_for_any_lesson_name(memory: SemanticMemory) -> None:
     triple = ox.Triple(ox.NamedNode("urn:a"), ox.NamedNode("urn:p"), ox.Literal("x"))
     for lesson in ("../asserted", "a/learned", "", " ", "lesson/x"):
         if lesson.strip():

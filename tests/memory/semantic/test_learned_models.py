@@ -1,4 +1,4 @@
-"""Learned models in a memory: replaced as a whole, guarded, exported, imported, and no lesson's to take away."""
+"""Learned models in a memory: replaced as a whole, validated, exported, imported, and independent of single lessons."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def keep(memory: SemanticMemory, model: RelationModel) -> None:
     memory.keep_models({ModelSet.WORDS: list(model_triples(model))})
 
 
-def test_newer_models_take_the_place_of_older_ones_and_leave_nothing_of_them(taught: SemanticMemory) -> None:
+def test_newer_models_replace_older_ones_completely(taught: SemanticMemory) -> None:
     before = export_memory(taught)
     keep(taught, MODEL)
     assert words(taught) == (MODEL,)
@@ -105,7 +105,7 @@ def test_models_come_back_from_an_export_the_same(taught: SemanticMemory, tmp_pa
         assert words(other) == (MODEL,)
 
 
-def test_an_import_leaves_the_models_that_are_there_and_brings_those_that_are_not(
+def test_an_import_keeps_models_and_adds_missing_ones(
     taught: SemanticMemory, tmp_path: Path, learn: Callable[..., None]
 ) -> None:
     taught.keep_models({ModelSet.WORDS: list(model_triples(MODEL)), ModelSet.SIZES: SIZE})

@@ -1,4 +1,4 @@
-"""Nothing lost: processes killed at random moments, full disks, read-only folders."""
+"""No acknowledged write is lost: processes killed at random moments, full disks, read-only folders."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def work(folder, seed):
 
 
 def check_whole(memory: SemanticMemory) -> None:
-    """Every canonical triple is there if and only if some lesson's copy holds it, and the union is right."""
+    """Check that the canonical graphs have just the triples of the lessons' copies, and that the union is right."""
     store = memory.store
     for name in (GraphName.ASSERTED, GraphName.LEARNED):
         held = {t for lesson in memory.lessons() for t in memory.contributions(lesson).get(name, ())}
@@ -71,8 +71,8 @@ def check_whole(memory: SemanticMemory) -> None:
 
 
 @pytest.mark.slow
-def test_kills_at_random_moments_lose_no_acknowledged_lesson_and_leave_no_half_one(tmp_path: Path) -> None:
-    """The memory is looked at after every fifth kill; the children between begin where one was killed."""
+def test_kills_lose_no_acknowledged_lesson_and_leave_no_half_one(tmp_path: Path) -> None:
+    """Check the memory after every fifth kill; the children in between start where one was killed."""
     rng, folder = random.Random(3), tmp_path / "m"
     certain: set[str] = set()
     doubtful: set[str] = set()
@@ -93,7 +93,7 @@ def test_kills_at_random_moments_lose_no_acknowledged_lesson_and_leave_no_half_o
 
 
 def hear(lines: list[str], certain: set[str], doubtful: set[str]) -> None:
-    """Brings up to date which lessons must be there, and which may, from what a learner said before it was killed."""
+    """Update the lessons that must be stored, and those that may be, from the output of a learner before its kill."""
     for line in lines:
         verb, lesson = line.split()
         if verb == "learned":
@@ -131,7 +131,7 @@ except MemoryWriteError as error:
 
 @pytest.mark.parametrize("how", ["learn", "load"])
 @pytest.mark.parametrize("limit", [2_000, 100_000, 500_000])
-def test_a_full_disk_is_told_in_one_line_and_loses_nothing(tmp_path: Path, learn: Learn, limit: int, how: str) -> None:
+def test_a_full_disk_is_a_one_line_error_and_loses_nothing(tmp_path: Path, learn: Learn, limit: int, how: str) -> None:
     folder = tmp_path / "m"
     with SemanticMemory.open(folder, create=True) as memory:
         learn(memory, "dinner-1")
@@ -142,7 +142,7 @@ def test_a_full_disk_is_told_in_one_line_and_loses_nothing(tmp_path: Path, learn
     assert not done.stderr, done.stderr
     assert len(done.stdout.splitlines()) == 1
     assert "could not be written" in done.stdout
-    assert "see that the disk has room" in done.stdout
+    assert "check that the disk has room" in done.stdout
     with SemanticMemory.open(folder) as memory:
         assert memory.lessons()[-1:] == ("dinner-1",)
         assert export_memory(memory) == before
@@ -161,7 +161,7 @@ def test_creating_on_a_full_disk_leaves_nothing_behind(tmp_path: Path) -> None:
     assert not (tmp_path / "m").exists()
 
 
-def test_a_read_only_folder_is_read_and_a_write_is_told(
+def test_a_read_only_folder_is_read_and_refuses_writes(
     tmp_path: Path, learn: Learn, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with SemanticMemory.open(tmp_path / "m", create=True) as memory:
@@ -196,7 +196,7 @@ def test_a_place_where_no_folder_can_be_made(tmp_path: Path) -> None:
 
 
 def test_a_rejected_update_rolls_everything_back(memory: SemanticMemory) -> None:
-    """One update is one transaction: what makes learn and forget whole or nothing."""
+    """Check that one update is one transaction, which makes learning and forgetting atomic."""
     size = len(memory.store)
     update = f"INSERT DATA {{ GRAPH {graph_iri(GraphName.ASSERTED)} {{ <urn:a> <urn:p> 1 }} }} ; CREATE GRAPH "
     with pytest.raises((OSError, RuntimeError, ValueError)):

@@ -1,10 +1,9 @@
-"""Opening a memory: new, empty, foreign, damaged, old, newer, held by somebody else."""
+"""Open a memory: new, empty, foreign, damaged, old, newer, in use by another process."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -38,13 +37,13 @@ def digest(folder: Path) -> dict[str, str]:
 
 @pytest.fixture
 def kept(tmp_path: Path, kept_folder: Path) -> Path:
-    """A memory of this test's own that holds a lesson, closed."""
+    """A closed memory of this test's own, with one lesson."""
     return shutil.copytree(kept_folder, tmp_path / "kept")
 
 
 @pytest.fixture(scope="module")
 def kept_old_folder(kept_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same as version 0 kept it."""
+    """A closed memory with one lesson in format version 0."""
     folder = shutil.copytree(kept_folder, tmp_path_factory.mktemp("old") / "memory")
     make_old(folder)
     return folder
@@ -60,7 +59,7 @@ def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
         SemanticMemory.open(tmp_path / "a" / "b")
     assert not (tmp_path / "a").exists()
     SemanticMemory.open(tmp_path / "a" / "b", create=True).close()
-    assert sorted(os.listdir(tmp_path / "a" / "b")) == ["memory.json", "owner.lock", "semantic"]
+    assert sorted(entry.name for entry in (tmp_path / "a" / "b").iterdir()) == ["memory.json", "owner.lock", "semantic"]
     mark = json.loads((tmp_path / "a" / "b" / "memory.json").read_text())
     assert (mark["format"], mark["version"]) == ("deixis-memory", VERSION)
 
@@ -68,7 +67,7 @@ def test_a_new_memory_is_made_only_when_asked(tmp_path: Path) -> None:
 def test_an_empty_folder_becomes_one_only_when_asked(tmp_path: Path) -> None:
     with pytest.raises(MemoryFormatError, match="no memory yet in the empty folder"):
         SemanticMemory.open(tmp_path)
-    assert not os.listdir(tmp_path)
+    assert not list(tmp_path.iterdir())
     SemanticMemory.open(tmp_path, create=True).close()
 
 
@@ -77,12 +76,12 @@ def test_a_foreign_folder_is_left_alone(tmp_path: Path, create: bool) -> None:
     (tmp_path / "letter.txt").write_text("dear")
     (tmp_path / "semantic").mkdir()
     before = digest(tmp_path)
-    with pytest.raises(MemoryFormatError, match=r"is no memory: it holds other things \(letter.txt"):
+    with pytest.raises(MemoryFormatError, match=r"is not a memory: it has other files \(letter.txt"):
         SemanticMemory.open(tmp_path, create=create)
     assert digest(tmp_path) == before
 
 
-def test_a_file_is_no_folder(tmp_path: Path) -> None:
+def test_a_file_is_refused_as_a_memory(tmp_path: Path) -> None:
     (tmp_path / "f").write_text("x")
     for path in (tmp_path / "f", tmp_path / "f" / "below" / "it"):
         with pytest.raises(MemoryFormatError, match="is a file"):
@@ -98,7 +97,7 @@ def _largest_table(folder: Path) -> Path:
 
 
 DAMAGES: dict[str, Damage] = {
-    "mark is no json": lambda folder: (folder / "memory.json").write_text("{"),
+    "mark is not json": lambda folder: (folder / "memory.json").write_text("{"),
     "mark is binary": lambda folder: (folder / "memory.json").write_bytes(b"\xff\x00"),
     "mark is a list": lambda folder: (folder / "memory.json").write_text("[]"),
     "mark of another program": lambda folder: (folder / "memory.json").write_text('{"format": "x", "version": 1}'),
@@ -121,7 +120,7 @@ DAMAGES: dict[str, Damage] = {
 
 @pytest.mark.parametrize("create", [True, False])
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_a_damaged_memory_is_told_and_left_alone(kept: Path, damage: str, create: bool) -> None:
+def test_a_damaged_memory_is_an_error_and_is_not_changed(kept: Path, damage: str, create: bool) -> None:
     DAMAGES[damage](kept)
     before = digest(kept)
     with pytest.raises(MemoryFormatError) as caught:
@@ -140,7 +139,7 @@ def test_a_damaged_memory_without_a_lock_file_gets_none(kept: Path) -> None:
     assert digest(kept) == before
 
 
-def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
+def test_a_newer_memory_is_an_error_and_is_not_changed(kept: Path) -> None:
     (kept / "memory.json").write_text('{"format": "deixis-memory", "version": 99}')
     before = digest(kept)
     with pytest.raises(MemoryFormatError, match=r"written by a newer version \(format 99.*upgrade deixis"):
@@ -149,7 +148,7 @@ def test_a_newer_memory_is_told_and_left_alone(kept: Path) -> None:
 
 
 def make_old(folder: Path) -> None:
-    """Turns a memory into one of version 0, which named its graphs otherwise."""
+    """Convert a memory to version 0, which had other names of graphs."""
     new, old = ox.Store(folder / "semantic"), ox.Store(folder / "older")
     for quad in new:
         assert isinstance(quad.graph_name, ox.NamedNode)
@@ -170,7 +169,7 @@ def _exported(folder: Path) -> str:
 def test_an_old_memory_is_brought_up_to_date(kept_old: Path, kept_export: str) -> None:
     assert _exported(kept_old) == kept_export
     assert files.read_mark(kept_old)["version"] == VERSION
-    assert sorted(os.listdir(kept_old)) == ["memory.json", "owner.lock", "semantic"]
+    assert sorted(entry.name for entry in (kept_old).iterdir()) == ["memory.json", "owner.lock", "semantic"]
 
 
 def test_damage_found_while_migrating_is_called_damage(kept_old_folder: Path, tmp_path: Path) -> None:
@@ -191,7 +190,7 @@ def test_damage_found_while_migrating_is_called_damage(kept_old_folder: Path, tm
 def test_a_crash_while_migrating_loses_nothing(
     kept_old: Path, kept_export: str, steps: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever renaming or removing the crash comes at, the next open goes on from there."""
+    """After a crash at any renaming or removal, the next opening continues from there."""
     left = [steps]
 
     def crashing(real: Callable[..., None]) -> Callable[..., None]:
@@ -259,7 +258,7 @@ def test_one_process_opens_a_memory_once_whatever_the_path(kept: Path, tmp_path:
 
 def test_a_link_that_leads_nowhere(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "gone")
-    with pytest.raises(MemoryFormatError, match="leads nowhere"):
+    with pytest.raises(MemoryFormatError, match="broken link"):
         SemanticMemory.open(tmp_path / "link", create=True)
 
 
@@ -273,7 +272,7 @@ time.sleep(60)
 """
 
 
-def test_a_second_process_is_told_who_holds_it_and_a_dead_owner_does_not_block(kept: Path) -> None:
+def test_a_living_owner_is_named_and_a_dead_one_is_ignored(kept: Path) -> None:
     holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(kept)], stdout=subprocess.PIPE, text=True)
     try:
         assert holder.stdout is not None

@@ -1,4 +1,4 @@
-"""Learning, forgetting, and what is left of it."""
+"""Learn and forget lessons, and check what is left."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_lessons_without_a_number_come_first_by_the_clock(memory: SemanticMemory
     assert memory.lessons() == ("a-1", "z-1", "b-1")
 
 
-def test_forgetting_the_second_lesson_equals_never_having_learned_it(memory: SemanticMemory, learn: Learn) -> None:
+def test_forgetting_a_lesson_equals_never_learning_it(memory: SemanticMemory, learn: Learn) -> None:
     learn(memory, "dinner-1")
     before, inferred = export_memory(memory), list(memory.triples(GraphName.INFERRED))
     graphs = {name: set(memory.triples(name)) for name in GraphName if name is not GraphName.INFERRED}
@@ -56,7 +56,7 @@ def test_forgetting_the_second_lesson_equals_never_having_learned_it(memory: Sem
     assert {name: set(memory.triples(name)) for name in graphs} == graphs
 
 
-def test_forgetting_the_first_lesson_leaves_what_the_second_said_too(
+def test_forgetting_the_first_lesson_keeps_shared_triples(
     memory: SemanticMemory, learn: Learn, make_lesson: MakeLesson
 ) -> None:
     learn(memory, "dinner-1")
@@ -78,7 +78,7 @@ def test_forgetting_everything_leaves_an_empty_memory(memory: SemanticMemory, le
     )
 
 
-def test_what_was_loaded_in_bulk_stays_when_a_lesson_that_says_it_too_goes(memory: SemanticMemory, read: Read) -> None:
+def test_loaded_triples_stay_when_a_lesson_with_them_goes(memory: SemanticMemory, read: Read) -> None:
     loaded = read('<urn:a> <urn:p> "x" . <urn:b> <urn:p> 1 .')
     memory.load({GraphName.ASSERTED: loaded})
     memory.learn("one", {GraphName.ASSERTED: loaded[:1]}, [])
@@ -86,7 +86,7 @@ def test_what_was_loaded_in_bulk_stays_when_a_lesson_that_says_it_too_goes(memor
     assert set(memory.triples(GraphName.ASSERTED)) == set(loaded)
 
 
-def test_what_is_loaded_after_a_lesson_said_it_stays_too(memory: SemanticMemory, read: Read) -> None:
+def test_triples_loaded_after_a_lesson_with_them_stay(memory: SemanticMemory, read: Read) -> None:
     triples = read('<urn:a> <urn:p> "x" .')
     memory.learn("one", {GraphName.ASSERTED: triples}, [])
     memory.load({GraphName.ASSERTED: triples})
@@ -107,21 +107,21 @@ def test_the_inferred_graph_is_replaced_as_a_whole(memory: SemanticMemory, read:
     assert set(memory.triples(GraphName.INFERRED)) == set(read("<urn:a> <urn:q> 2, 3 ."))
 
 
-def test_an_unknown_lesson_is_told_with_the_nearest(taught: SemanticMemory) -> None:
+def test_an_unknown_lesson_suggests_the_nearest(taught: SemanticMemory) -> None:
     with pytest.raises(UnknownLessonError, match=r"no lesson 'diner-1'.*did you mean 'dinner-1'"):
         taught.forget("diner-1", [])
 
 
 def test_a_lesson_is_learned_once(taught: SemanticMemory, learn: Learn) -> None:
     before = export_memory(taught)
-    with pytest.raises(RejectedWriteError, match="'dinner-1' is known already: forget it first"):
+    with pytest.raises(RejectedWriteError, match="there is already a lesson 'dinner-1': forget it first"):
         learn(taught, "dinner-1")
     assert export_memory(taught) == before
 
 
 @pytest.mark.parametrize("said", [{}, {GraphName.LEARNED: []}])
-def test_a_lesson_says_something(memory: SemanticMemory, said: dict[GraphName, list[ox.Triple]]) -> None:
-    with pytest.raises(RejectedWriteError, match="says nothing"):
+def test_a_lesson_without_triples_is_refused(memory: SemanticMemory, said: dict[GraphName, list[ox.Triple]]) -> None:
+    with pytest.raises(RejectedWriteError, match="has no triples"):
         memory.learn("empty", said, [])
 
 

@@ -1,4 +1,4 @@
-"""A query is bounded: its time, its memory, its length and its nesting; and what runs it ends with its owner."""
+"""Limits of queries: time, memory, length and nesting; and the end of their process with its owner."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MIB = 2**20
 
 @pytest.fixture(scope="module")
 def filled(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SemanticMemory]:
-    """A memory of 1,000 triples, enough for a cross product without end."""
+    """Memory of 1,000 triples, enough for a practically endless cross product."""
     p = ox.NamedNode("urn:p")
     numbers = [ox.Literal(i) for i in range(1000)]
     with SemanticMemory.open(tmp_path_factory.mktemp("filled") / "memory", create=True) as memory:
@@ -83,7 +83,7 @@ def test_an_answer_that_is_too_large_is_refused_whole(filled: SemanticMemory) ->
 
 
 def test_rows_without_values_count_for_the_size_of_an_answer(filled: SemanticMemory) -> None:
-    """Each is ``{}`` as text, and a place for each of its variables when it is read."""
+    """Rows that are ``{}`` as text, but have a place for each variable when they are read."""
     unbound = " ".join(f"?v{k}" for k in range(400))
     query = f"SELECT {unbound} {{ ?a <urn:p> ?b }}"
     assert len(filled.query(query + " LIMIT 300", memory_limit=16 * MIB).rows) == 300
@@ -102,7 +102,7 @@ def test_a_wide_cell_does_not_widen_every_line(filled: SemanticMemory) -> None:
 
 
 @pytest.mark.parametrize(("time_limit", "memory_limit"), [(-1.0, 1), (float("nan"), 1), (1.0, 0)])
-def test_what_is_no_limit_is_refused(filled: SemanticMemory, time_limit: float, memory_limit: int) -> None:
+def test_an_invalid_limit_is_refused(filled: SemanticMemory, time_limit: float, memory_limit: int) -> None:
     with pytest.raises(QueryError, match="limit of a query must be at least"):
         filled.query(SMALL, time_limit, memory_limit)
 
@@ -125,7 +125,7 @@ NESTED = {
 def test_nesting_is_limited_before_the_parser_sees_it(filled: SemanticMemory, nested: Callable[[int], str]) -> None:
     filled.query(nested(MAX_DEPTH - 2))
     for levels in (MAX_DEPTH + 4, 4000, 20_000):
-        with pytest.raises(QueryError, match=r"query:\d+:\d+: (nested too deeply|the query is too long)"):
+        with pytest.raises(QueryError, match=r"query:\d+:\d+: (nested too deeply|the query must have at most)"):
             check_query(nested(levels))
 
 
@@ -215,7 +215,7 @@ literals = st.one_of(
 def test_the_answers_are_those_of_the_store_itself(
     tmp_path_factory: pytest.TempPathFactory, told: list[tuple[ox.NamedNode, ox.NamedNode, ox.NamedNode | ox.Literal]]
 ) -> None:
-    """Over every sort of term, written and read again between two processes."""
+    """Terms of every sort are the same after a transfer between two processes."""
     with SemanticMemory.open(tmp_path_factory.mktemp("any") / "memory", create=True) as memory:
         memory.load({GraphName.ASSERTED: [ox.Triple(*terms) for terms in told]})
         graph = ox.NamedNode("https://w3id.org/deixis/graph/asserted")
@@ -259,7 +259,7 @@ def test_nothing_is_left_behind(memory: SemanticMemory) -> None:
 
 def test_prepared_queries_are_refused(filled: SemanticMemory) -> None:
     """rdflib would evaluate them in this process, without any limit."""
-    with pytest.raises(QueryError, match="give its text"):
+    with pytest.raises(QueryError, match="must be a text, got a prepared query"):
         filled.dataset().query(rdflib.plugins.sparql.prepareQuery("ASK { ?s ?p ?o }"))
 
 
@@ -325,7 +325,7 @@ def test_the_process_ends_with_its_owner(tmp_path: Path, number: signal.Signals)
     assert gone(process)
 
 
-def test_a_process_that_was_killed_is_started_anew(filled: SemanticMemory) -> None:
+def test_a_killed_process_is_started_again(filled: SemanticMemory) -> None:
     filled.query(SMALL)
     assert filled._queries is not None and filled._queries._process is not None
     filled._queries._process._process.kill()

@@ -1,4 +1,4 @@
-"""The queries of docs/guides/queries.md run, and find what is there."""
+"""The queries of docs/guides/queries.md run, and have results."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ SCENES = [f"https://w3id.org/deixis/learned/scene/s{number}" for number in (1, 2
 
 @pytest.fixture
 def modelled(taught: SemanticMemory) -> SemanticMemory:
-    """The memory of two lessons, with a learned word and a learned size."""
+    """Memory of two lessons, with a learned word and a learned size."""
     size = size_triples(BASE + "DinnerPlate", SizeModel((log(0.27), 0.1), (log(0.98), 0.1), False, 3.0), SCENES)
     taught.keep_models({ModelSet.WORDS: list(model_triples(MODEL)), ModelSet.SIZES: list(size)})
     return taught

@@ -1,4 +1,4 @@
-"""Who contributed what: the order of lessons."""
+"""The order of lessons in the ledger."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from deixis.ontology.triples import learned_iri
 from deixis.ontology.vocabulary import PROV
 
 
-def test_lessons_are_in_the_order_of_their_times_though_the_store_drops_zeros_of_a_fraction() -> None:
+def test_lessons_are_ordered_by_time_despite_dropped_zeros() -> None:
     store = ox.Store()
     kind = ox.NamedNode("http://www.w3.org/2001/XMLSchema#dateTime")
     for id, second in (("a", "00.120000"), ("b", "00.100000"), ("c", "01")):
