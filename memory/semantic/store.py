@@ -317,7 +317,7 @@ class SemanticMemory(Closing):
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Run a query (SELECT, ASK, CONSTRUCT or DESCRIBE) over the ontology and what was asserted, inferred and learned.
+        """Run a SELECT, ASK, CONSTRUCT or DESCRIBE query over the ontology and what was asserted, inferred and learned.
 
         ``GRAPH ?g`` reaches all six canonical graphs. Another process answers, from a snapshot of the store.
 

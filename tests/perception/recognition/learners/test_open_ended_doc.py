@@ -14,6 +14,7 @@ from deixis.perception.recognition.learners.vector_quantisation import VectorQua
 from deixis.perception.recognition.settings import SHRINKAGE
 
 PAGE = (Path(__file__).parents[4] / "docs" / "explanation" / "open_ended.md").read_text(encoding="utf-8")
+TEXT = " ".join(PAGE.split())
 
 
 def test_the_python_on_the_page_runs() -> None:
@@ -28,6 +29,6 @@ def test_the_page_names_every_learner() -> None:
 
 def test_the_page_states_the_settings_of_the_teacher() -> None:
     usual = Teaching()
-    assert (usual.first, usual.window, usual.patience) == (3, 3, 100) and "by three views" in PAGE
-    assert f"the last {usual.window}n answers" in PAGE and f"above {usual.threshold:g}" in PAGE
-    assert f"after {usual.patience} answers" in PAGE and f"s = {SHRINKAGE:g}" in PAGE
+    assert (usual.first, usual.window, usual.patience) == (3, 3, 100) and "by three views" in TEXT
+    assert f"the last {usual.window}n answers" in TEXT and f"above {usual.threshold:g}" in TEXT
+    assert f"after {usual.patience} answers" in TEXT and f"s = {SHRINKAGE:g}" in TEXT
