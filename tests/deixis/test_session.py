@@ -217,7 +217,7 @@ def test_many_things_left_out_for_one_reason_are_one_line() -> None:
     scene = {"objects": [box(f"p{i}", 3 * i) for i in range(40)]}
     shown = grounding_lines(deixis.ground(deixis.read_script(text="fork left of plate"), scene))
     told = [line for line in shown if line.startswith("Left out:")]
-    assert len(told) < 5 and any("more (--json has them): " in line for line in told)
+    assert len(told) < 5 and any("more (--json lists all): " in line for line in told)
 
 
 def test_a_closed_session_does_not_take_the_memory_again(tmp_path: Path) -> None:

@@ -19,51 +19,54 @@ from typer.core import TyperGroup
 
 from deixis.cli import common
 from deixis.cli.common import BAD_INPUT, UNDECIDED, print_note
+from deixis.cli.completion import keep_completion_fast
 from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
 from deixis.cli.output import visible_output, what_is_kept
 
-COMMANDS = {
-    "parse": "parse",
-    "fmt": "fmt",
-    "infer": "infer",
-    "reason": "reason",
-    "relate": "relate",
-    "retrieve": "retrieve",
-    "solve": "solve",
-    "time": "time_command",
-    "ground": "ground",
-    "demo": "demo",
-    "learn": "learn",
-    "show": "show",
-    "check": "check",
-    "query": "query",
-    "validate": "validate",
-    "imagine": "imagine",
-    "relation": "relation",
-    "learn-relation": "learn_relation",
-    "perceive": "perceive",
-    "teach": "teach",
-    "recognise": "recognise",
-    "ask": "ask",
-    "simulate": "simulate",
-    "memory": "memory_app",
-    "experiment": "experiment",
-    "category": "category_app",
+COMMAND_GROUPS = {
+    "Layouts": {"parse": "parse", "fmt": "fmt", "infer": "infer", "imagine": "imagine"},
+    "Scenes and perception": {
+        "perceive": "perceive",
+        "recognise": "recognise",
+        "teach": "teach",
+        "ask": "ask",
+        "relate": "relate",
+        "simulate": "simulate",
+    },
+    "Grounding and checking": {"ground": "ground", "check": "check", "retrieve": "retrieve"},
+    "Memory and queries": {
+        "learn": "learn",
+        "show": "show",
+        "query": "query",
+        "relation": "relation",
+        "learn-relation": "learn_relation",
+        "category": "category_app",
+        "memory": "memory_app",
+    },
+    "Reasoning": {"reason": "reason", "validate": "validate", "solve": "solve", "time": "time_command"},
+    "Experiments": {"demo": "demo", "experiment": "experiment"},
 }
-"""The commands in the order of ``--help``: what each is called in the module of ``deixis.cli`` that bears its name."""
+"""Commands by group, in the order of ``--help``; each with its function in the module of ``deixis.cli`` for it."""
+
+COMMANDS = {name: function for group in COMMAND_GROUPS.values() for name, function in group.items()}
+
+MAX_WIDTH = 1000
+"""Maximum width of a help text in characters, above that of any terminal, so that the terminal's width is used."""
 
 
 class CommandsOnDemand(TyperGroup):
-    """The commands of COMMANDS; each is imported when it is called, so that it does not wait for the others."""
+    """The commands of COMMANDS, each imported only when it is called, so that small commands start fast."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
-        self.commands = dict.fromkeys(COMMANDS, self)  # the names, of which the nearest is suggested for an unknown one
+        self.commands = dict.fromkeys(COMMANDS, self)  # the names, so that a misspelt one gets a suggestion
 
     def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of the commands, in the order of ``--help``."""
         return list(COMMANDS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Import a command and return it, or None where there is no command of that name."""
         if cmd_name not in COMMANDS:
             return None
         command = getattr(import_module(f"deixis.cli.{cmd_name.replace('-', '_')}"), COMMANDS[cmd_name])
@@ -74,13 +77,23 @@ class CommandsOnDemand(TyperGroup):
             alone.command(cmd_name)(command)
         return typer.main.get_group(alone).commands[cmd_name]
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the commands with their summaries, group by group, in columns of one width."""
+        width = max(map(len, COMMANDS))
+        for title, group in COMMAND_GROUPS.items():
+            found = [(name, self.get_command(ctx, name)) for name in group]
+            rows = [(f"{name:<{width}}", command.get_short_help_str(MAX_WIDTH)) for name, command in found]
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
 
 app = typer.Typer(
     name="deixis",
     cls=CommandsOnDemand,
-    help="Ground a description of a laid table in what is seen: who is who, what follows, what cannot be known.",
+    help="Ground a description of a laid table in a scene: which object each name refers to, what follows, and what "
+    "cannot be known.",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"max_content_width": MAX_WIDTH},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -104,23 +117,23 @@ def _root(
 
 
 def main() -> None:
-    """Runs the command line; errors of Deixis are one message and exit code 2, never a traceback.
+    """Run the command line; print an error as one message with exit code 2 or 3, never as a traceback.
 
-    Whatever fails once it was interrupted ends it quietly, with exit code 130.
+    After Ctrl-C, any failure ends the program quietly, with exit code 130.
     """
     with visible_output(), noting_interrupts() as interrupted:
         try:
-            app()
+            app(prog_name="deixis")
         except Exception as error:
             if interrupted.is_set():
                 sys.exit(INTERRUPTED)
-            _tell(error)
+            _report_error(error)
         except KeyboardInterrupt:
             sys.exit(INTERRUPTED)
 
 
-def _tell(error: Exception) -> None:
-    """Ends the program with what an error says."""
+def _report_error(error: Exception) -> None:
+    """Print the message of an error and end the program."""
     from deixis.errors import DeixisError
 
     if isinstance(error, DeixisError):
@@ -129,7 +142,7 @@ def _tell(error: Exception) -> None:
         what = error.strerror or error
         _fail(f"{error.filename}: {what}" if error.filename else f"standard output: {what}{what_is_kept()}")
     if isinstance(error, MemoryError):
-        _fail("there is not enough memory for this; give it less, or more memory", UNDECIDED)
+        _fail("not enough memory; give a smaller input, or run it with more memory", UNDECIDED)
     if os.environ.get("DEIXIS_DEBUG"):
         raise error
     _fail(f"a defect in Deixis, please report it: {type(error).__name__}: {error} (DEIXIS_DEBUG=1 shows where)")
@@ -141,10 +154,15 @@ def _fail(message: str | Exception, code: int = BAD_INPUT) -> None:
 
 
 def run() -> None:
-    """The process's entry: a closed pipe ends it quietly, no character is too odd for a terminal, nothing is lost."""
+    """Run the program: set up signals and streams, run the command, and write all of its output.
+
+    A closed pipe ends it quietly; characters that the terminal cannot encode are written as escapes.
+    """
     common.started = time.monotonic() - time.process_time()
-    gc.set_threshold(100_000)  # what is imported stays: looking for garbage in it takes a tenth of a short command
-    # threads of OpenBLAS that have nothing to do sleep after 2^20 cycles, not 2^26: waiting, each takes 30 ms a command
+    if "_DEIXIS_COMPLETE" in os.environ:
+        keep_completion_fast()
+    gc.set_threshold(100_000)  # imported objects stay; collecting them takes a tenth of the time of a short command
+    # idle threads of OpenBLAS sleep after 2^20 cycles instead of 2^26: busy waiting takes 30 ms a thread and command
     os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "20")
     if hasattr(signal, "SIGPIPE"):
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
@@ -158,7 +176,7 @@ def run() -> None:
 
 
 def _flush() -> None:
-    """Writes what is still buffered, so that a full disk is an error and not a remark at the very end."""
+    """Write the buffered output, so that a full disk is reported as an error before the interpreter shuts down."""
     if sys.stdout is None:
         return
     try:

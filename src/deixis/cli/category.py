@@ -1,4 +1,4 @@
-"""The commands about the categories that were taught: list, rename, merge, forget."""
+"""The commands ``deixis category list``, ``rename``, ``merge`` and ``forget``: manage the taught categories."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from deixis.cli.common import (
     print_note,
     require_memory,
 )
+from deixis.cli.completion import complete_categories
 from deixis.cli.output import note_change
 
-category_app = typer.Typer(help="List, rename, merge or forget what was taught.", no_args_is_help=True)
+category_app = typer.Typer(help="List, rename, merge or forget taught categories.", no_args_is_help=True)
 
 
 @category_app.command("list")
 def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """What was taught, with the number of views; exit 2 where damaged ones are left out."""
+    """List the taught categories with their number of views; exit 2 where damaged ones are left out."""
     from deixis.session import Session
 
     require_memory(memory)
@@ -42,7 +43,7 @@ def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 @category_app.command("rename")
 def rename(
-    old: Annotated[str, typer.Argument(metavar="OLD")],
+    old: Annotated[str, typer.Argument(metavar="OLD", autocompletion=complete_categories)],
     new: Annotated[str, typer.Argument(metavar="NEW")],
     memory: MemoryDir = None,
 ) -> None:
@@ -54,28 +55,28 @@ def rename(
     with Session(memory) as session:
         session.rename_category(old, name)
     note_change(session.path)
-    print_line(f"'{category_name(old)}' is '{name}' now.")
+    print_line(f"'{category_name(old)}' is now '{name}'.")
 
 
 @category_app.command("merge")
 def merge(
-    source: Annotated[str, typer.Argument(metavar="SOURCE")],
-    into: Annotated[str, typer.Argument(metavar="INTO")],
+    source: Annotated[str, typer.Argument(metavar="SOURCE", autocompletion=complete_categories)],
+    into: Annotated[str, typer.Argument(metavar="INTO", autocompletion=complete_categories)],
     memory: MemoryDir = None,
 ) -> None:
-    """Make the views of one category views of another: two words for one thing."""
+    """Move the views of one category to another, for two words with one meaning."""
     from deixis.session import Session
     from deixis.view_store import category_name
 
     with Session(memory) as session:
         session.merge_categories(source, into)
     note_change(session.path)
-    print_line(f"What was '{category_name(source)}' is '{category_name(into)}' now.")
+    print_line(f"The views of '{category_name(source)}' now belong to '{category_name(into)}'.")
 
 
 @category_app.command("forget")
 def forget_category(
-    name: Annotated[str, typer.Argument(metavar="CATEGORY")],
+    name: Annotated[str, typer.Argument(metavar="CATEGORY", autocompletion=complete_categories)],
     memory: MemoryDir = None,
 ) -> None:
     """Forget a category with all its views."""

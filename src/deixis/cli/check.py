@@ -1,4 +1,4 @@
-"""The command ``deixis check``: what is wrong with a table."""
+"""The command ``deixis check``: compare a table with a layout."""
 
 from __future__ import annotations
 
@@ -25,14 +25,18 @@ from deixis.cli.common import (
     tell_of_compiling,
     working,
 )
+from deixis.cli.completion import complete_layouts
 
 
 def check(
-    layout: Annotated[str, typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a script.")],
+    layout: Annotated[
+        str,
+        typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a script.", autocompletion=complete_layouts),
+    ],
     scene: SceneFile,
     report: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the SHACL report (Turtle).")] = None,
     turtle: Annotated[bool, typer.Option("--turtle", help="Print the SHACL report (Turtle).")] = False,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table with what is wrong.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table with its errors.")] = None,
     time_limit: TimeLimit = 10.0,
     hide_labels: HideLabels = False,
     image: Image = None,
@@ -40,7 +44,7 @@ def check(
     no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Say what is missing, misplaced, miscoloured and extra on a table; exit 0 where all is well, 1 where not."""
+    """Print what is missing, misplaced, miscoloured and extra on a table; exit 1 where anything is."""
     from deixis.report.json_answers import check_to_dict
     from deixis.report.script import check_lines
     from deixis.session import Session

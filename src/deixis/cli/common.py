@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, the options that several of them have, and how they print."""
+"""Exit codes, options and printing that the commands share."""
 
 from __future__ import annotations
 
@@ -12,62 +12,75 @@ from typing import Annotated, Any
 
 import typer
 
-from deixis.cli.output import terminal
+from deixis.cli.output import colour_of, terminal
 from deixis.deadline import Deadline
 from deixis.printable import visible_line
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 
 started: float | None = None
-"""When this process began, by ``time.monotonic``, where it is a command's own; it worked all the time until then."""
+"""Start of the process in seconds of ``time.monotonic``; None where the command runs inside another program."""
 
-PATIENCE = 2.0  # seconds without a progress bar
+PATIENCE = 2.0
+"""Seconds before a progress bar appears."""
 
 Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")]
 SceneFile = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
-ENGINE_HELP = "exact; scalable; similarity: the paper's; and two others from the literature."
-TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then.")]
+ENGINE_HELP = "exact; scalable; similarity: the paper's; blondel and heymans-singh: from the literature."
+TimeLimit = Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer within this time.")]
 MemoryLimit = Annotated[
-    float, typer.Option(min=0.01, metavar="GB", help="Refuse what takes more memory than so many gigabytes.")
+    float, typer.Option(min=0.01, metavar="GB", help="Refuse a problem that needs more memory, in gigabytes.")
 ]
-HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Look at the scene as if nothing in it were named.")]
+HideLabels = Annotated[bool, typer.Option("--hide-labels", help="Ignore the labels in the scene.")]
 Image = Annotated[str | None, typer.Option(metavar="NAME", help="Which image of a COCO file.")]
 MemoryDir = Annotated[
     Path | None,
-    typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else a folder of yours)."),
+    typer.Option("--memory", metavar="DIR", help="The memory (default: $DEIXIS_MEMORY, else in your home folder)."),
 ]
-NoMemory = Annotated[bool, typer.Option("--no-memory", help="As if nothing were remembered.")]
+NoMemory = Annotated[bool, typer.Option("--no-memory", help="Do not use the memory.")]
 Picture = Annotated[Path | None, typer.Option("--plot", metavar="FILE", help="Draw it (.png, .svg, .pdf).")]
 
 PerceivedScene = Annotated[str, typer.Argument(metavar="SCENE", help="A scene that perceive wrote, with clouds.")]
 
 
 def print_json(data: Any) -> None:
+    """Print plain data as indented JSON."""
     print(json.dumps(data, indent=2, ensure_ascii=False))
 
 
 def print_line(line: str) -> None:
-    """Print one line, whatever names are in it."""
-    print(visible_line(line))
+    """Print one line, with line ends and control characters in it as escapes; a marked line in its colour."""
+    colour = colour_of(line)
+    if colour is None:
+        print(visible_line(line))
+    else:
+        terminal(sys.stdout).write(f"\x1b[{colour}m{visible_line(line)}\x1b[0m\n")
 
 
 def print_lines(lines: Iterable[str]) -> None:
+    """Print lines, each as :func:`print_line` does."""
     for line in lines:
         print_line(line)
 
 
 def print_written(*files: Path | None, aside: bool = False) -> None:
-    """Says where files are, those that were wanted; ``aside``: on standard error, where output is the answer alone."""
+    """Print the name of each file that was written, skipping None; on standard error if ``aside``."""
     for file in files:
         if file is not None:
             print(visible_line(f"Written: {file}"), file=sys.stderr if aside else sys.stdout)
 
 
 def require_writable(written: Iterable[Path | None], read: Iterable[str | Path | None]) -> None:
-    """Raises DeixisError, before any work, where a file cannot be written, or is read or written for something else."""
+    """Check, before any work, that files can be written and are neither read nor written twice.
+
+    Raises
+    ------
+    DeixisError
+        Where a file is a folder, is among the files to read, is named twice, or its folder cannot be made.
+    """
     from deixis.errors import DeixisError
 
     sources = [Path(source) for source in read if source is not None]
@@ -76,9 +89,9 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
         if file.is_dir():
             raise DeixisError(f"{file}: this is a folder; name a file")
         if file.exists() and any(source.exists() and file.samefile(source) for source in sources):
-            raise DeixisError(f"{file}: this is what is read; name another file")
+            raise DeixisError(f"{file}: this is an input file; name another file to write")
         if file.resolve() in [other.resolve() for other in files[:place]]:
-            raise DeixisError(f"{file}: two things are to be written here; give each a file of its own")
+            raise DeixisError(f"{file}: two outputs have this name; name a different file for each")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -86,7 +99,7 @@ def require_writable(written: Iterable[Path | None], read: Iterable[str | Path |
 
 
 def require_plot(file: Path | None) -> None:
-    """Raises DeixisError, before any work, where a picture is wanted that cannot be written."""
+    """Check, before any work, that a picture can be written; raise DeixisError otherwise."""
     if file is not None:
         from deixis.plots.figure import require_picture
 
@@ -94,33 +107,36 @@ def require_plot(file: Path | None) -> None:
 
 
 def require_ending(file: Path, endings: tuple[str, ...], what: str) -> None:
-    """Raises DeixisError, before any work, where a file's name does not say what will be in it."""
+    """Check, before any work, that a file's name ends as ``what`` requires; raise DeixisError otherwise."""
     from deixis.errors import DeixisError
 
     if not file.name.lower().endswith(endings):
-        raise DeixisError(f"{file}: {what} is a file that ends in {' or '.join(endings)}")
+        raise DeixisError(f"{file}: the name of {what} must end in {' or '.join(endings)}")
 
 
 def require_scene_name(file: Path | None) -> None:
-    """The same for a scene, so that none is written over a picture or a script."""
+    """Check that the name of a scene ends in ``.json``, so that it does not overwrite a picture or a script."""
     if file is not None:
         require_ending(file, (".json",), "a scene")
 
 
 def require_memory(folder: Path | None) -> None:
-    """Raises MemoryFormatError where a folder is named in which nothing was learned, nor taught."""
+    """Check that a folder that the user named has a memory; raise MemoryFormatError otherwise."""
     from deixis.session import Session
 
     if folder is None:
         return
     with Session(folder) as session:
         if not session.has_views() and not session.remembers():
-            session.memory()  # raises: there is none
+            session.memory()  # raises MemoryFormatError
 
 
 @contextmanager
 def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
-    """A progress bar on standard error, on a terminal only, and only for what takes long."""
+    """Show a progress bar on standard error for work over :data:`PATIENCE` seconds, on a terminal only.
+
+    Yield a function of the steps done and their total, or None without a terminal.
+    """
     if not sys.stderr.isatty():
         yield None
         return
@@ -141,10 +157,7 @@ def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
 
 @contextmanager
 def working(what: str, after: float = 0.0) -> Iterator[None]:
-    """Says on a terminal's standard error what goes on, while nobody knows how long it takes.
-
-    It says so ``after`` so many seconds, for what takes long only the first time.
-    """
+    """Show a spinner with a text on a terminal's standard error, ``after`` seconds, for work of unknown length."""
     if not sys.stderr.isatty():
         yield
         return
@@ -164,12 +177,12 @@ def working(what: str, after: float = 0.0) -> Iterator[None]:
 
 
 def deadline_of(time_limit: float) -> Deadline:
-    """Return when a command has to be done that may take so many seconds from the start of its process."""
+    """Return the deadline of a time limit in seconds, counted from the start of the process."""
     return Deadline.after(time_limit if started is None else time_limit - (time.monotonic() - started))
 
 
 def tell_of_compiling() -> None:
-    """Say so on a terminal, once, where code has to be compiled, as it has after an installation."""
+    """Print a note on a terminal when code has to be compiled, as after an installation."""
     from functools import cache
 
     from deixis.reasoning.kernel import when_compiling
@@ -179,6 +192,6 @@ def tell_of_compiling() -> None:
 
 
 def print_note(note: str | Exception) -> None:
-    """Print to standard error, in one line, what is not part of the answer; of an error what it says."""
+    """Print a note, or the message of an error, on standard error; a note stays on one line."""
     shown = note if isinstance(note, Exception) else visible_line(note)
     print(f"deixis: {shown}", file=sys.stderr)

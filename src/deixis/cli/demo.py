@@ -1,4 +1,4 @@
-"""The command ``deixis demo``: the whole story on shipped data."""
+"""The command ``deixis demo``: a tour of Deixis on the shipped data."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import typer
 
 
 def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the pictures.")] = Path("out"),
 ) -> None:
-    """Tell the whole story on shipped data."""
+    """Show every step on the shipped data, from a script to a recognised table."""
     from deixis.cli.story import tell
 
     tell(out)

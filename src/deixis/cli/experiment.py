@@ -14,21 +14,21 @@ from deixis.cli.common import AsJson, print_json, print_lines, print_written, re
 from deixis.cli.output import terminal
 
 experiment = typer.Typer(
-    help="Run an experiment, of the paper or of our own.", no_args_is_help=True, rich_markup_mode=None
+    help="Run an experiment from the paper, or one of ours.", no_args_is_help=True, rich_markup_mode=None
 )
 
-Seed = Annotated[int, typer.Option(min=0, help="Seed of everything random.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the random numbers.")]
 
 
 @experiment.command()
 def figure6(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Where the pictures go.")] = Path("out"),
-    variants: Annotated[int, typer.Option(min=1, help="Generated place settings.")] = 50,
-    orders: Annotated[int, typer.Option(min=1, help="Random node orders that an accuracy is a mean over.")] = 200,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the pictures.")] = Path("out"),
+    variants: Annotated[int, typer.Option(min=1, help="Number of generated place settings.")] = 50,
+    orders: Annotated[int, typer.Option(min=1, help="Number of random node orders to average over.")] = 200,
     seed: Seed = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Print the paper's Figure 6 again: is graph similarity a good guide to correct matches?"""
+    """Repeat the paper's Figure 6: the accuracy of the matches against the graph similarity."""
     from deixis.experiments.figure6 import run
 
     result = run(out, variants=variants, orders=orders, seed=seed)
@@ -40,15 +40,15 @@ def figure6(
 
 @experiment.command()
 def scoreboard(
-    cases: Annotated[int, typer.Option(min=1, metavar="N", help="Tables of each setting; of large ones fewer.")] = 10,
+    cases: Annotated[int, typer.Option(min=1, metavar="N", help="Tables per setting; fewer for large ones.")] = 10,
     seed: Seed = 1,
-    time_limit: Annotated[float, typer.Option(min=0.01, metavar="SECONDS", help="Of an engine for a case.")] = 5.0,
-    quick: Annotated[bool, typer.Option("--quick", help="A small part of it, in a minute or two.")] = False,
-    size: Annotated[list[int] | None, typer.Option(min=4, max=1000, help="Only tables of so many objects.")] = None,
+    time_limit: Annotated[float, typer.Option(min=0.01, metavar="SECONDS", help="Per engine and case.")] = 5.0,
+    quick: Annotated[bool, typer.Option("--quick", help="Run a small part, in a minute or two.")] = False,
+    size: Annotated[list[int] | None, typer.Option(min=4, max=1000, help="Only tables of this many objects.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Compare every engine over generated tables, and over photographs where $DEIXIS_DATA leads to them."""
+    """Compare the engines on generated tables, and on the photographs in $DEIXIS_DATA if it is set."""
     from deixis.experiments.photographs import photographs_folder
     from deixis.experiments.scoreboard.report import lines, to_dict
     from deixis.experiments.scoreboard.run import ScoreboardPlan, run, steps
@@ -72,14 +72,16 @@ def scoreboard(
 
 @experiment.command("open-ended")
 def open_ended(
-    orders: Annotated[int, typer.Option(min=1, help="Random orders of teaching.")] = 10,
+    orders: Annotated[int, typer.Option(min=1, help="Number of random teaching orders.")] = 10,
     seed: Seed = 1,
-    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, three orders at most.")] = False,
-    cache: Annotated[Path | None, typer.Option(metavar="DIR", help="Where described views are kept.")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, at most three orders.")] = False,
+    cache: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder that keeps the computed descriptors.")
+    ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Teach every learner kind after kind, in random orders, until it learns no more."""
+    """Teach each learner one kind after another, in random orders, until it learns no more."""
     from deixis.experiments.open_ended.report import lines, to_dict
     from deixis.experiments.open_ended.run import OpenEndedPlan, run
     from deixis.experiments.open_ended.things import meshes_folder
@@ -100,7 +102,7 @@ def open_ended(
 
 @contextmanager
 def progress(total: int) -> Iterator[Callable[[str], None]]:
-    """A progress bar on standard error; to be told, ``total`` times, what has just been done."""
+    """Show a progress bar of ``total`` steps on standard error; yield a function to call with the name of each step."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

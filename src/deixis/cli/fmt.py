@@ -1,4 +1,4 @@
-"""The command ``deixis fmt``: a script in its canonical form."""
+"""The command ``deixis fmt``: format a script."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from deixis.cli.common import NO, AsJson, Script, print_json
 
 def fmt(
     script: Script,
-    write: Annotated[bool, typer.Option("--write", "-w", help="Write the file instead of printing it.")] = False,
-    check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 where the form differs.")] = False,
+    write: Annotated[bool, typer.Option("--write", "-w", help="Change the file instead of printing.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Print nothing; exit 1 if the file would change.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Print a script in its canonical form, comments kept."""
+    """Print a script in its canonical form, with its comments."""
     from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
     from deixis.grammar.parser import read_script
@@ -38,7 +38,7 @@ def fmt(
 
 
 def _replace(path: Path, text: str) -> None:
-    """Writes a file in one step, so that a crash leaves the old one; through a link, and with the file's mode."""
+    """Replace a file in one step, so that a crash leaves the old one; follow a link, and keep the file's mode."""
     target = path.resolve()
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:

@@ -1,4 +1,4 @@
-"""The command ``deixis ground``: who is who, by asking where that helps, and from an unknown side."""
+"""The command ``deixis ground``: find which perceived thing each object of a script is."""
 
 from __future__ import annotations
 
@@ -41,21 +41,21 @@ def ground(
     scene: SceneFile,
     engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     select: Annotated[
-        Select, typer.Option(help="Under similarity: choose among sub-graphs by facts, or as in the paper.")
+        Select, typer.Option(help="With similarity: choose the sub-graph by the facts, or as in the paper.")
     ] = Select.FACTS,
     literal: Annotated[bool, typer.Option("--literal", help="Take words literally, not by degrees.")] = False,
-    no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Leave out how large things usually are.")] = False,
-    ask: Annotated[bool, typer.Option("--ask", help="Ask what tells groundings apart.")] = False,
+    no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Ignore the usual sizes of things.")] = False,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask questions that settle open names.")] = False,
     oracle: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Ask this file: JSON, from names to ids; null for what is absent."),
+        typer.Option(metavar="FILE", help="Take the answers from a JSON file of names and ids; null: absent."),
     ] = None,
-    max_questions: Annotated[int | None, typer.Option(metavar="N", min=1, help="Ask at most so many.")] = None,
+    max_questions: Annotated[int | None, typer.Option(metavar="N", min=1, help="Ask at most N questions.")] = None,
     viewpoint: Annotated[
-        ViewpointName, typer.Option(help="stated; or recover the side: quarter turns, or unknown: any angle.")
+        ViewpointName, typer.Option(help="As stated, or recovered: by quarter turns, or (unknown) by any angle.")
     ] = ViewpointName.STATED,
     memory: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Take words and sizes as this memory has learned them.")
+        Path | None, typer.Option(metavar="DIR", help="Use the words and sizes that this memory has learned.")
     ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the scene with the names found.")] = None,
     time_limit: TimeLimit = 10.0,
@@ -65,7 +65,7 @@ def ground(
     as_json: AsJson = False,
 ) -> None:
     """Work out which perceived thing each object of a script is."""
-    from deixis.report.ground import grounding_lines
+    from deixis.report.ground import grounding_lines, kinds_lines
     from deixis.report.json_answers import grounding_to_dict
     from deixis.workflows.ground import GroundingRequest, answer
     from deixis.workflows.read import load_scene, read_script
@@ -73,7 +73,7 @@ def ground(
     tell_of_compiling()
     require_plot(plot)
     deadline = deadline_of(time_limit)
-    out = sys.stderr if as_json else sys.stdout  # of the dialogue
+    out = sys.stderr if as_json else sys.stdout  # for the questions
     described, seen = read_script(script, deadline=deadline), load_scene(scene, hide_labels, image)
     request = GroundingRequest(
         script=described,
@@ -101,19 +101,20 @@ def ground(
         print_json(grounding_to_dict(found))
     else:
         print_lines(grounding_lines(found))
+        print_lines(kinds_lines(described))
         print_written(plot)
     raise typer.Exit(_verdict(found))
 
 
 def _meaning(memory: Path | None) -> Meaning:
-    """What a memory has learned, where one is named, else what is shipped."""
+    """Return the words and sizes that a memory has learned, or the shipped ones without a memory."""
     from deixis.reasoning.grounding.evidence.meaning import SHIPPED
     from deixis.session import Session
 
     if memory is None:
         return SHIPPED
     with Session(memory) as session:
-        session.memory()  # refused where there is none
+        session.memory()  # raises MemoryFormatError without a memory
         return session.meaning()
 
 
@@ -126,7 +127,7 @@ def _dialogue(oracle: Path | None, out: TextIO) -> Ask:
 
 
 def _verdict(found: Grounding) -> int:
-    """No match at all is a no; what the time limit cut short, so that it is not proved either, is undecided."""
+    """Return the exit code: NO without any match, UNDECIDED where the time limit cut the search short."""
     if not found.matches:
         return NO
     return 0 if found.finished else UNDECIDED

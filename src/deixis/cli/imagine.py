@@ -1,4 +1,4 @@
-"""The command that imagines a script: example tables as files, as a picture and in words, or why there is none."""
+"""The command ``deixis imagine``: lay example tables that satisfy a script, or show which facts allow no table."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def imagine(
         Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the table as a scene (.scene.json).")
     ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table (.png, .svg, .pdf).")] = None,
-    count: Annotated[int, typer.Option(min=1, max=1000, help="So many different tables; files are numbered.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Another seed draws other sizes and places.")] = 0,
-    any_size: Annotated[bool, typer.Option("--any-size", help="Let things have any size, usual or not.")] = False,
-    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer by then, each table.")] = 30.0,
+    count: Annotated[int, typer.Option(min=1, max=1000, help="Number of different tables; files are numbered.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random sizes and places.")] = 0,
+    any_size: Annotated[bool, typer.Option("--any-size", help="Allow unusual sizes.")] = False,
+    time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Time for each table.")] = 30.0,
     as_json: AsJson = False,
 ) -> None:
-    """Imagine an example table that satisfies a script, or say which facts allow none (exit 1)."""
+    """Lay an example table that satisfies a script, or print which facts allow no table (exit 1)."""
     from deixis.grammar.parser import read_script
     from deixis.report.imagine import imagination_lines, imagination_to_dict
     from deixis.workflows.imagine import imagine as run
@@ -61,7 +61,7 @@ def _verdict(found: Imagination) -> int:
 
 
 def _numbered(path: Path | None, count: int) -> list[Path]:
-    """The files of all tables: one as it is named, several with a number before what the name ends with.
+    """Return the files of all tables: one table keeps the name, several get a number before the ending.
 
     >>> [str(path) for path in _numbered(Path("out/t.scene.json"), 2)]
     ['out/t-1.scene.json', 'out/t-2.scene.json']
@@ -76,7 +76,7 @@ def _numbered(path: Path | None, count: int) -> list[Path]:
 
 
 def _require_writable(script: str, scenes: list[Path], pictures: list[Path]) -> None:
-    """Raises DeixisError, before any work, where a file cannot be what it is to be."""
+    """Check, before any work, that the scenes and pictures can be written; raise DeixisError otherwise."""
     from deixis.errors import DeixisError
     from deixis.plots.figure import require_picture
 

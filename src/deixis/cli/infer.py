@@ -1,4 +1,4 @@
-"""The command ``deixis infer``: what follows from a script, why, and why something does not."""
+"""The command ``deixis infer``: what follows from a script, why it follows, and why a fact does not follow."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def infer(
     why_not: Annotated[
         str | None, typer.Option("--why-not", metavar="FACT", help="Print why a fact does not follow.")
     ] = None,
-    ntriples: Annotated[bool, typer.Option("--ntriples", help="Print all that holds as N-Triples.")] = False,
-    verdict: Annotated[bool, typer.Option("--verdict", help="Print whether the facts can hold, and no more.")] = False,
+    ntriples: Annotated[bool, typer.Option("--ntriples", help="Print all facts that hold as N-Triples.")] = False,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print only whether the facts can all hold.")] = False,
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
@@ -36,10 +36,10 @@ def infer(
     if explain is not None and why_not is not None:
         raise DeixisError("infer: --explain and --why-not exclude each other")
     if ntriples and (as_json or explain is not None or why_not is not None):
-        raise DeixisError("infer: --ntriples goes with none of --json, --explain and --why-not")
+        raise DeixisError("infer: --ntriples excludes --json, --explain and --why-not")
     if verdict:
         if ntriples or explain is not None or why_not is not None:
-            raise DeixisError("infer: --verdict goes with none of --explain, --why-not and --ntriples")
+            raise DeixisError("infer: --verdict excludes --explain, --why-not and --ntriples")
         raise typer.Exit(_verdict(script, time_limit, as_json))
     text, option = (explain, "--explain") if explain is not None else (why_not, "--why-not")
     fact = None if text is None else plain_fact(text, option)
@@ -90,7 +90,7 @@ def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
 
 
 def _why_not(inference: Inference, fact: Fact, as_json: bool) -> None:
-    """Exit code 0 where it does not follow, and 1 where it does after all."""
+    """Print why a fact does not follow; exit with NO where it does follow."""
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.report.json_answers import why_not_to_dict
     from deixis.report.script import why_not_lines

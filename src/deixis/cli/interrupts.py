@@ -1,4 +1,4 @@
-"""Whether the user has interrupted the program, also where a library makes another error of that."""
+"""Record that the user pressed Ctrl-C, even where a library turns it into another error."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from threading import Event
 from types import FrameType
 
 INTERRUPTED = 130
-"""The exit code of a program that was interrupted."""
+"""Exit code of an interrupted program."""
 
 
 @contextmanager
 def noting_interrupts() -> Iterator[Event]:
-    """An event that is set once Ctrl-C was pressed, for as long as this lasts; KeyboardInterrupt is raised as ever.
+    """Yield an event that Ctrl-C sets; KeyboardInterrupt is raised as usual.
 
-    A native library that is just being loaded turns KeyboardInterrupt into an ImportError of its own, which need not
-    say where it comes from. Where somebody else sees to the signal, or outside the main thread, nothing is noted.
+    A native library that is being loaded turns KeyboardInterrupt into an ImportError of its own, which need not show
+    its cause. Where the program has another handler for the signal, or outside of the main thread, the event is
+    never set.
     """
     interrupted = Event()
     ours = threading.current_thread() is threading.main_thread()

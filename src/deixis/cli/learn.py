@@ -1,4 +1,4 @@
-"""The command ``deixis learn``: keep layouts and what their objects look like."""
+"""The command ``deixis learn``: keep layouts and views of their objects in the memory."""
 
 from __future__ import annotations
 
@@ -30,8 +30,7 @@ def learn(
         list[Path],
         typer.Argument(
             metavar="SCRIPT SCENE ...",
-            help="Scripts (.layout), each with its scene after it; or folders, in which NAME.layout goes with "
-            "NAME.scene.json.",
+            help="Scripts (.layout), each followed by its scene; or folders with NAME.layout and NAME.scene.json.",
         ),
     ],
     engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
@@ -41,7 +40,7 @@ def learn(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Ground scripts in their scenes, and keep the layouts and their objects as concepts: all of them, or none."""
+    """Ground scripts in their scenes and keep the layouts and their objects as concepts: either all of them or none."""
     from deixis.reasoning.errors import NothingFoundError
     from deixis.report.json_answers import learned_to_dict
     from deixis.report.script import learned_lines

@@ -32,33 +32,35 @@ if TYPE_CHECKING:
 def learn_relation(
     files: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[SCRIPT SCENE]...", help="Scripts, each with the labelled scene it describes."),
+        typer.Argument(
+            metavar="[SCRIPT SCENE]...", help="Scripts, each followed by the labelled scene that it describes."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option("-o", "--out", metavar="FILE", help="Write the models to a file (.ttl), not to the memory."),
     ] = None,
     models: Models = None,
-    strength: Annotated[float, typer.Option(help="How strongly what is shipped holds; above 0.")] = 3.0,
-    reset: Annotated[bool, typer.Option("--reset", help="Take the learned models away; the lessons stay.")] = False,
+    strength: Annotated[float, typer.Option(help="Weight of the shipped models, above 0.")] = 3.0,
+    reset: Annotated[bool, typer.Option("--reset", help="Remove the learned models; keep the lessons.")] = False,
     memory: MemoryDir = None,
     no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Learn what relation words mean: from everything remembered, and from scripts with labelled scenes."""
+    """Learn what relation words mean, from the memory and from scripts with labelled scenes."""
     from deixis.report.relation import learned_words_lines, learned_words_to_dict
     from deixis.session import Session
 
     _require_fitting(files, out, models, reset, no_memory)
     if out is not None:
-        require_ending(out, (".ttl",), "what words mean, as Turtle,")
+        require_ending(out, (".ttl",), "a file of models")
         require_writable([out], [*(files or []), models])
     with Session(memory) as session:
         if reset:
             session.forget_relations()
             where = session.path
             note_change(where)
-            print_json({"reset": str(where)}) if as_json else print_line(f"The shipped models are in force in {where}.")
+            print_json({"reset": str(where)}) if as_json else print_line(f"{where} uses the shipped models again.")
             return
         examples = _examples(files or [])
         if out is None:
@@ -71,26 +73,26 @@ def learn_relation(
         print_json(learned_words_to_dict(learned, str(where)))
     else:
         print_lines(learned_words_lines(learned))
-        print_lines([f"In force in {where}."] if out is None else [])
+        print_lines([f"{where} now uses these models."] if out is None else [])
         print_written(out)
 
 
 def _require_fitting(
     files: list[str] | None, out: Path | None, models: Path | None, reset: bool, no_memory: bool
 ) -> None:
-    """Raises DeixisError for options that do not go together."""
+    """Check that the options go together; raise DeixisError otherwise."""
     from deixis.errors import DeixisError
 
     if reset and (files or out or models or no_memory):
-        raise DeixisError("--reset only takes learned models away; learn in a command of its own")
+        raise DeixisError("--reset excludes scripts and all other options except --memory; learn in a second command")
     if files and len(files) % 2:
         raise DeixisError(f"scripts and scenes come in pairs; '{files[-1]}' has no scene")
     if out is None and no_memory:
-        raise DeixisError("--no-memory leaves nowhere to keep the models; name a file with -o FILE")
+        raise DeixisError("--no-memory leaves no place to keep the models; name a file with -o FILE")
     if out is None and models is not None:
-        raise DeixisError("what a memory learns starts from the shipped models; --models goes with -o FILE")
+        raise DeixisError("--models needs -o FILE; a memory always starts from the shipped models")
     if no_memory and not files:
-        raise DeixisError("without the memory there is nothing to learn from; name scripts and labelled scenes")
+        raise DeixisError("with --no-memory there is nothing to learn from; name scripts and labelled scenes")
 
 
 def _examples(files: list[str]) -> list[tuple[Script, Scene]]:
@@ -102,7 +104,10 @@ def _examples(files: list[str]) -> list[tuple[Script, Scene]]:
 def _fitted(
     session: Session, examples: list[tuple[Script, Scene]], strength: float, models: Path | None, no_memory: bool
 ) -> LearnedWords:
-    """What the examples and the memory teach, with nothing kept; raises DeixisError where there is nothing to learn."""
+    """Return the models learned from the examples and the memory, without storing them.
+
+    Raises DeixisError where no example teaches anything.
+    """
     from deixis.errors import DeixisError
     from deixis.learning.recollection import Recollection
     from deixis.learning.words import example_pairs, fit, teaching
@@ -125,4 +130,4 @@ def _write(learned: LearnedWords, out: Path) -> None:
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(models_to_turtle(learned.models.models.values()), encoding="utf-8")
     except OSError as error:
-        raise DeixisError(f"{out}: the models cannot be written: {error.strerror}") from error
+        raise DeixisError(f"{out}: cannot write the models: {error.strerror}") from error

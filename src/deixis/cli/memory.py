@@ -1,4 +1,4 @@
-"""The command ``deixis memory``: export, import, stats, verify, forget."""
+"""The commands ``deixis memory export``, ``import``, ``stats``, ``verify`` and ``forget``."""
 
 from __future__ import annotations
 
@@ -23,15 +23,21 @@ from deixis.cli.common import (
     require_ending,
     require_memory,
 )
+from deixis.cli.completion import complete_lessons
 from deixis.cli.output import note_change
+from deixis.report.marks import violation
 
 if TYPE_CHECKING:
     from deixis.memory.verify import Verified
 
-memory_app = typer.Typer(help="Export, import, count, or forget what was learned.", no_args_is_help=True)
+memory_app = typer.Typer(
+    help="Export, import, count, verify or forget the content of the memory.", no_args_is_help=True
+)
 
 
 class DumpFormat(StrEnum):
+    """Formats of ``deixis memory export``."""
+
     TRIG = "trig"
     TURTLE = "turtle"
     VIEWS = "views"
@@ -39,14 +45,16 @@ class DumpFormat(StrEnum):
 
 @memory_app.command("export")
 def export(
-    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write a file, else print.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write a file instead of printing.")
+    ] = None,
     format: Annotated[
         DumpFormat,
-        typer.Option("--format", help="trig: all concepts; turtle: one graph, for Protégé; views: what was taught."),
+        typer.Option("--format", help="trig: all concepts; turtle: one graph, for Protégé; views: the taught views."),
     ] = DumpFormat.TRIG,
     memory: MemoryDir = None,
 ) -> None:
-    """Write everything remembered, sorted: the same bytes for the same content."""
+    """Write the content of the memory, sorted, so that equal content gives equal bytes."""
     from deixis.errors import DeixisError
     from deixis.memory.on_demand import default_memory
 
@@ -55,7 +63,7 @@ def export(
         from deixis.memory.perceptual.in_folder import export_all
 
         if out is None:
-            raise DeixisError("views are no text: name a file with -o")
+            raise DeixisError("views are not text; name a file with -o")
         require_ending(out, (".zip",), "an archive of views")
         with progress_bar("exporting") as progress:
             export_all(where, out, progress)
@@ -67,13 +75,13 @@ def export(
 
 
 _ENDINGS = {DumpFormat.TRIG: (".trig",), DumpFormat.TURTLE: (".ttl",)}
-"""What a file is called that import is to read as what it is."""
+"""Endings of the exported files, by which ``import`` knows the format."""
 
 _VIEWS_TOO = "'--format views -o FILE' writes them"
 
 
 def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None:
-    """Writes or prints what was learned, and says on standard error that views are left behind."""
+    """Write or print the concepts; print a note on standard error that the views are not included."""
     from deixis.errors import DeixisError
     from deixis.memory.semantic.exchange import export_memory
     from deixis.session import Session
@@ -89,40 +97,40 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
         out.write_text(text, encoding="utf-8")
         print_written(out)
     if views:
-        print_note(f"the memory has views as well, which are not in this export: {_VIEWS_TOO}")
+        print_note(f"the memory also has views, which are not in this export; {_VIEWS_TOO}")
 
 
 @memory_app.command("import")
 def import_(
-    dump: Annotated[Path, typer.Argument(metavar="FILE", help="What export wrote, or triples in another format.")],
+    dump: Annotated[Path, typer.Argument(metavar="FILE", help="An exported file, or triples in another format.")],
     memory: MemoryDir = None,
 ) -> None:
-    """Take in what was exported; what is there stays."""
+    """Add exported content to the memory, and keep what is already there."""
     from deixis.errors import DeixisError
     from deixis.memory.on_demand import default_memory
     from deixis.memory.perceptual.in_folder import import_all, is_archive
     from deixis.session import Session
 
     if not dump.exists():
-        raise DeixisError(f"{dump}: there is no such file")
+        raise DeixisError(f"{dump}: no such file")
     if is_archive(dump):
         where = memory or default_memory()
         with progress_bar("importing") as progress:
             done = import_all(dump, where, progress)
         note_change(where)
-        print_line(f"{dump} is in the memory {where}.")
+        print_line(f"Imported {dump} into the memory {where}.")
         if done.relearn:
-            print_line(f"Categories to be learned anew from their views: {', '.join(done.relearn)}.")
+            print_line(f"These categories must be learned again from their views: {', '.join(done.relearn)}.")
         return
     with Session(memory) as session:
         session.import_(dump)
         note_change(session.path)
-        print_line(f"{dump} is in the memory {session.path}.")
+        print_line(f"Imported {dump} into the memory {session.path}.")
 
 
 @memory_app.command("stats")
 def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """Count what is remembered."""
+    """Print how much the memory holds, and the ids of its lessons."""
     from dataclasses import asdict
 
     from deixis.memory.perceptual.in_folder import stats_of
@@ -144,8 +152,7 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 @memory_app.command("verify")
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """Read all that was learned and taught, and say what is not as it was written, or does not follow from the lessons;
-    exit 1 where something is not."""
+    """Check the memory for damage, and for concepts that do not follow from its lessons; exit 1 on any finding."""
     from deixis.learning.update import stale
     from deixis.memory.on_demand import default_memory
     from deixis.memory.verify import verify as run
@@ -166,18 +173,25 @@ def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 
 def _verified_lines(found: Verified) -> Iterator[str]:
     there = {"concepts": found.semantic, "views": found.perceptual}
-    yield from map(str, found.findings)
+    yield from (violation(str(finding)) for finding in found.findings)
     if not found.findings:
-        yield f"All {' and '.join(what for what, known in there.items() if known)} are as they were written."
+        yield f"All {' and '.join(what for what, known in there.items() if known)} are undamaged."
     yield from (f"There are no {what} in this memory." for what, known in there.items() if not known)
 
 
 @memory_app.command("forget")
 def forget(
-    lesson: Annotated[str, typer.Argument(metavar="LESSON", help="The id that learn printed; see memory stats.")],
+    lesson: Annotated[
+        str,
+        typer.Argument(
+            metavar="LESSON",
+            help="The lesson's id, as printed by 'learn' and 'memory stats'.",
+            autocompletion=complete_lessons,
+        ),
+    ],
     memory: MemoryDir = None,
 ) -> None:
-    """Take back one lesson, with everything that follows from it alone; views of things stay (category forget)."""
+    """Forget a lesson and everything that follows from it alone; 'category forget' forgets views."""
     from deixis.session import Session
 
     with Session(memory) as session:

@@ -1,4 +1,4 @@
-"""The command ``deixis parse``: the facts of a script with their lines."""
+"""The command ``deixis parse``: print the facts of a script with their lines."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ from deixis.cli.common import AsJson, Script, print_json, print_lines
 
 
 class GraphFormat(StrEnum):
+    """Formats of ``deixis parse``."""
+
     TEXT = "text"
     JSON = "json"
     TURTLE = "turtle"
@@ -20,7 +22,7 @@ class GraphFormat(StrEnum):
 
 def parse(
     script: Script,
-    format: Annotated[GraphFormat, typer.Option("--format", help="How to print the facts.")] = GraphFormat.TEXT,
+    format: Annotated[GraphFormat, typer.Option("--format", help="Format of the output.")] = GraphFormat.TEXT,
     as_json: AsJson = False,
 ) -> None:
     """Print the facts of a script with their lines."""

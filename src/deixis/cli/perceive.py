@@ -1,9 +1,9 @@
-"""The command ``deixis perceive``: the table of a cloud and the objects on it."""
+"""The command ``deixis perceive``: find the table in a point cloud and the objects on it."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -21,31 +21,28 @@ from deixis.cli.common import (
     working,
 )
 
-if TYPE_CHECKING:
-    pass
-
 
 def perceive(
     cloud: Annotated[str, typer.Argument(metavar="CLOUD", help="PCD, PLY, XYZ, NPZ, or a depth image.")],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene, and clouds beside it.")
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene, and the clouds beside it.")
     ] = None,
     labels: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the thing of every point (.npy, int32, -1: none).")
+        Path | None, typer.Option(metavar="FILE", help="Write the object number of each point (.npy, int32, -1: none).")
     ] = None,
     intrinsics: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The camera's intrinsics (.json) of a depth image.")
+        Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json) of a depth image.")
     ] = None,
-    viewpoint: Annotated[str, typer.Option(help="What the camera's side is called.")] = "chair",
-    table: Annotated[int, typer.Option(metavar="N", min=1, help="Which table, should there be several.")] = 1,
+    viewpoint: Annotated[str, typer.Option(help="Name of the side where the camera is.")] = "chair",
+    table: Annotated[int, typer.Option(metavar="N", min=1, help="Number of the table, if there are several.")] = 1,
     up: Annotated[
         tuple[float, float, float] | None,
-        typer.Option(metavar="X Y Z", help="Roughly upwards (within 45 degrees) in the cloud's frame."),
+        typer.Option(metavar="X Y Z", help="The upward direction in the cloud's frame, within 45 degrees."),
     ] = None,
     plot: Picture = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find the table in a point cloud, and the things on it. Without a table no scene is written."""
+    """Find the table in a point cloud and the objects on it; without a table, no scene is written."""
     from deixis.errors import DeixisError
     from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.formats.scene_json import scene_to_dict
@@ -55,7 +52,7 @@ def perceive(
 
     require_plot(plot)
     if labels is not None and labels.suffix != ".npy":
-        raise DeixisError(f"{labels}: the labels are a numpy array; name a file that ends in .npy")
+        raise DeixisError(f"{labels}: the name of a file of labels must end in .npy")
     require_scene_name(out)
     require_writable([out, labels, plot], [cloud, intrinsics])
     with working("looking for the table"):
@@ -93,4 +90,4 @@ def _write_labels(file: Path, labels: Any) -> None:
     try:
         np.save(file, labels)
     except OSError as error:
-        raise DeixisError(f"{file}: the labels cannot be written: {error.strerror}") from error
+        raise DeixisError(f"{file}: cannot write the labels: {error.strerror}") from error

@@ -1,4 +1,4 @@
-"""The command ``deixis query``: SPARQL over everything remembered."""
+"""The command ``deixis query``: run SPARQL over the memory."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME
 
 
 class TableFormat(StrEnum):
+    """Formats of ``deixis query``."""
+
     TABLE = "table"
     JSON = "json"
     CSV = "csv"
@@ -32,20 +34,20 @@ def query(
     file: Annotated[
         Path | None, typer.Option("-f", "--file", metavar="FILE", help="Read the query from a file.")
     ] = None,
-    format: Annotated[TableFormat, typer.Option("--format", help="How to print the answer.")] = TableFormat.TABLE,
+    format: Annotated[TableFormat, typer.Option("--format", help="Format of the output.")] = TableFormat.TABLE,
     time_limit: TimeLimit = QUERY_TIME_LIMIT,
     memory_limit: Annotated[
-        int, typer.Option(min=1, metavar="MIB", help="How much memory, in MiB, answering may take.")
+        int, typer.Option(min=1, metavar="MIB", help="Stop a query that needs more memory, in MiB.")
     ] = QUERY_MEMORY_LIMIT // 2**20,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Ask SPARQL of everything remembered; exit 3, and no part of the answer, where a limit is reached."""
+    """Run a SPARQL query over the memory; exit 3 without any rows where a limit is reached."""
     from deixis.errors import DeixisError
     from deixis.session import Session
 
     if (sparql is None) == (file is None):
-        raise DeixisError("give a query, or a file with -f, and one of them only")
+        raise DeixisError("query: give either a query or a file with -f")
     with Session(memory) as session:
         result = session.query(_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
         if as_json or format is TableFormat.JSON:

@@ -1,4 +1,4 @@
-"""The command that reasons over ontologies, or over everything remembered."""
+"""The command ``deixis reason``: infer what ontologies or the memory entail."""
 
 from __future__ import annotations
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 
 class EngineChoice(StrEnum):
+    """Reasoners over ontologies."""
+
     AUTO = "auto"
     RL = "rl"
     HERMIT = "hermit"
@@ -37,29 +39,30 @@ class EngineChoice(StrEnum):
 
 def reason(
     files: Annotated[
-        list[Path] | None, typer.Argument(metavar="[FILE]...", help="Ontologies (.ttl, .nt, .rdf, .owl); else memory.")
+        list[Path] | None,
+        typer.Argument(metavar="[FILE]...", help="Ontologies (.ttl, .nt, .rdf, .owl); default: the memory."),
     ] = None,
     engine: Annotated[
         EngineChoice, typer.Option(help="rl: rules, for many facts; hermit, pellet: all of OWL 2 DL.")
     ] = EngineChoice.AUTO,
-    triples: Annotated[bool, typer.Option("--triples", help="Print each triple that was inferred.")] = False,
+    triples: Annotated[bool, typer.Option("--triples", help="Print each inferred triple.")] = False,
     explain: Annotated[
         str | None, typer.Option(metavar="STATEMENT", help="Print why 'SUBJECT PREDICATE OBJECT' follows.")
     ] = None,
-    every: Annotated[bool, typer.Option("--all", help="Print all justifications, not one.")] = False,
-    verdict: Annotated[bool, typer.Option("--verdict", help="Print whether it is possible, not why.")] = False,
-    turtle: Annotated[bool, typer.Option("--turtle", help="Print justifications as Turtle, and nothing else.")] = False,
+    every: Annotated[bool, typer.Option("--all", help="Print all justifications, not only one.")] = False,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print only the verdict, not the reasons.")] = False,
+    turtle: Annotated[bool, typer.Option("--turtle", help="Print only the justifications, as Turtle.")] = False,
     time_limit: TimeLimit = 60.0,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Infer what an ontology entails; exit 1 where it, or a class of it, is impossible, and say why."""
+    """Infer what an ontology entails; exit 1, with the reasons, where it or one of its classes is unsatisfiable."""
     from deixis.errors import DeixisError
     from deixis.reasoning.errors import LimitError, NotEntailedError
     from deixis.workflows.reason import read_ontology, read_remembered
 
     if verdict and (explain is not None or every or turtle or triples):
-        raise DeixisError("reason: --verdict goes with none of --explain, --all, --turtle and --triples")
+        raise DeixisError("reason: --verdict excludes --explain, --all, --turtle and --triples")
     if files:
         stated, prefixes = read_ontology(files)
     else:
@@ -83,7 +86,7 @@ def reason(
 
 
 LAST_SHARE = 0.1
-"""Of the time limit, for saying why, where the verdict took all of it."""
+"""Share of the time limit that finding the reasons gets where the verdict has used all of it."""
 
 
 def _entail(
@@ -96,7 +99,7 @@ def _entail(
     time_limit: float,
     as_json: bool,
 ) -> int:
-    """Prints the verdict as soon as it is known, then why, as far as there is time, then what follows."""
+    """Print the verdict as soon as it is known, then the reasons found in time, then what follows."""
     from deixis.reasoning.description_logic.entailment import entail, explained
     from deixis.reasoning.description_logic.terms import write_ntriples
     from deixis.reasoning.description_logic.verbalisation import Words, labels_of
@@ -120,7 +123,7 @@ def _entail(
 
 
 def _explain(stated: list[Triple], asked: Triple, every: bool, turtle: bool, time_limit: float, as_json: bool) -> None:
-    """Prints one justification, or all, each as it is found; raises LimitError where there may be more."""
+    """Print one justification, or each of all as it is found; raise LimitError where more may exist."""
     from deixis.reasoning.description_logic.justification import justify, justify_all
     from deixis.reasoning.description_logic.terms import write_ntriples
     from deixis.reasoning.description_logic.verbalisation import Words, labels_of
@@ -149,7 +152,7 @@ def _explain(stated: list[Triple], asked: Triple, every: bool, turtle: bool, tim
 
 
 def _steps(found: Justification) -> tuple[InferenceStep, ...]:
-    """The steps by which the rules lead from a justification's axioms to what it justifies, if they do."""
+    """Return the rule steps from a justification's axioms to its conclusion; none where the rules do not reach it."""
     from deixis.reasoning.description_logic.materialisation import Materialisation
     from deixis.reasoning.description_logic.terms import read_ntriples
 
@@ -158,7 +161,7 @@ def _steps(found: Justification) -> tuple[InferenceStep, ...]:
 
 
 def _statement(text: str, prefixes: dict[str, str]) -> Triple:
-    """One statement in Turtle, without its full stop."""
+    """Parse one statement in Turtle, without its full stop."""
     import pyoxigraph as ox
 
     from deixis.errors import DeixisError
@@ -175,7 +178,7 @@ def _statement(text: str, prefixes: dict[str, str]) -> Triple:
 
 
 def _print_turtle(*justifications: Justification) -> None:
-    """All of them as one document."""
+    """Print justifications as one Turtle document."""
     import pyoxigraph as ox
 
     from deixis.memory.semantic.rdf.files import turtle

@@ -1,4 +1,4 @@
-"""The command ``deixis recognise``: name what looks like what was taught."""
+"""The command ``deixis recognise``: name the things of a scene by the taught categories."""
 
 from __future__ import annotations
 
@@ -31,11 +31,12 @@ if TYPE_CHECKING:
 def recognise(
     scene: PerceivedScene,
     out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the scene with names.")] = None,
+    why: Annotated[bool, typer.Option("--why", help="Print the reasons and the distances.")] = False,
     plot: Picture = None,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Name the things of a scene that look like what was taught; exit 1 where none is known."""
+    """Name the things of a scene that look like taught categories; exit 1 where none is recognised."""
     from deixis.report.seen import recognised_lines, recognised_to_dict
     from deixis.session import Session
     from deixis.workflows.read import load_scene
@@ -45,7 +46,7 @@ def recognise(
     require_memory(memory)
     seen = load_scene(scene)
     require_writable([out, plot], _cloud_files(seen))
-    with Session(memory) as session, progress_bar("reading what was taught") as progress:
+    with Session(memory) as session, progress_bar("reading the taught views") as progress:
         found = session.recognise(seen, progress, print_note)
     if out is not None:
         from deixis.workflows.perceive import write_scene
@@ -58,7 +59,7 @@ def recognise(
     if as_json:
         print_json(recognised_to_dict(found))
     else:
-        print_lines(recognised_lines(found))
+        print_lines(recognised_lines(found, why))
         print_written(out, plot)
     if not any(answer.label for answer in found.answers.values()):
         raise typer.Exit(NO)

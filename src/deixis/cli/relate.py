@@ -1,4 +1,4 @@
-"""The command that relates what a scene shows, in any of the calculi."""
+"""The command ``deixis relate``: print the qualitative relations between the things of a scene."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, Image, SceneFile, print_lines
+from deixis.cli.completion import complete_related
 
 
 def relate(
@@ -18,26 +19,27 @@ def relate(
             "--calculus",
             "-c",
             metavar="NAME",
+            autocompletion=complete_related,
             help="point, allen, ra, ba, cd, cardir, rcc8, ten, distance, direction-distance.",
         ),
     ] = "ra",
     of: Annotated[
-        list[str] | None, typer.Option(metavar="ID", help="Only this subject; given twice, this subject and object.")
+        list[str] | None, typer.Option(metavar="ID", help="Only this subject; given twice: a subject and an object.")
     ] = None,
     axis: Annotated[
-        str | None, typer.Option(metavar="AXIS", help="What point and allen look along: x, y or z; x if not said.")
+        str | None, typer.Option(metavar="AXIS", help="Axis of point and allen: x (the default), y or z.")
     ] = None,
     tolerance: Annotated[
-        float, typer.Option(min=0.0, metavar="LENGTH", help="Coordinates that differ by no more are equal.")
+        float, typer.Option(min=0.0, metavar="LENGTH", help="Coordinates that differ by at most this are equal.")
     ] = 0.0,
     reference: Annotated[
-        float | None, typer.Option(metavar="LENGTH", help="What distance is measured by: near is up to 1, medium to 3.")
+        float | None, typer.Option(metavar="LENGTH", help="Unit of distance: near is up to 1, medium up to 3.")
     ] = None,
-    matrix: Annotated[bool, typer.Option("--matrix", help="Print a matrix: subjects in rows.")] = False,
+    matrix: Annotated[bool, typer.Option("--matrix", help="Print a matrix with subjects in rows.")] = False,
     image: Image = None,
     as_json: AsJson = False,
 ) -> None:
-    """Print how every two things of a scene are related; lengths are in metres (pixels for annotations)."""
+    """Print the relation of every pair of things in a scene; lengths are in metres (pixels for annotations)."""
     from deixis.reasoning.errors import SettingError
     from deixis.reasoning.qualitative.relate import ALONG_AN_AXIS, RELATED, Related
     from deixis.reasoning.qualitative.relate import relate as codes_of
@@ -46,11 +48,11 @@ def relate(
 
     chosen = of or []
     if len(chosen) > 2 or (matrix and chosen):
-        raise SettingError("--of takes a subject, and once more an object, and does not go with --matrix")
+        raise SettingError("--of may be given once (subject) or twice (subject, object), and excludes --matrix")
     if len(chosen) == 2 and chosen[0] == chosen[1]:
-        raise SettingError(f"--of names a subject and another object, not '{chosen[0]}' twice")
+        raise SettingError(f"--of must name two different things, got '{chosen[0]}' twice")
     if axis is not None and calculus not in ALONG_AN_AXIS and calculus in RELATED:
-        raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} does not look along one")
+        raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} has no axis")
     seen = load_scene(scene, image=image)
     codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     related = Related(calculus, seen.ids, codes)

@@ -1,4 +1,4 @@
-"""The command ``deixis relation``: what a relation word means."""
+"""The command ``deixis relation``: print the meaning of a relation word."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 
 Models = Annotated[
-    Path | None, typer.Option("--models", metavar="FILE", help="Graded models (.ttl) in place of the shipped ones.")
+    Path | None, typer.Option("--models", metavar="FILE", help="Graded models (.ttl) instead of the shipped ones.")
 ]
 
 
 def relation(
     word: Annotated[str, typer.Argument(metavar="WORD", help="A relation word: left, 'on top of', exactly_left.")],
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw its field (.png, .svg, .pdf).")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw its degrees (.png, .svg, .pdf).")] = None,
     models: Models = None,
     memory: MemoryDir = None,
     no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Print what a relation word means: in both readings, and by degrees, as it was learned or is shipped."""
+    """Print the meaning of a relation word: both literal readings, and the graded model, learned or shipped."""
     from deixis.errors import UnknownTermError
     from deixis.ontology.relation import nearest, plain_phrase
     from deixis.ontology.tbox import default_ontology
@@ -44,8 +44,8 @@ def relation(
     found = relations.by_word.get(plain_phrase(word))
     if found is None:
         hint = nearest(plain_phrase(word), relations.by_word)
-        advice = f"did you mean '{hint}'?" if hint else f"there are {', '.join(relations)}"
-        raise UnknownTermError(f"no relation is called '{word}'; {advice}")
+        advice = f"did you mean '{hint}'?" if hint else f"use one of {', '.join(relations)}"
+        raise UnknownTermError(f"no relation word '{word}'; {advice}")
     known = _in_force(memory, no_memory) if models is None else read_models(models)
     require_plot(plot)
     if as_json:
@@ -61,7 +61,7 @@ def relation(
 
 
 def _in_force(memory: Path | None, no_memory: bool) -> RelationModels:
-    """The models of the memory, where it has some; a memory that is named must be there."""
+    """Return the models of the memory, or the shipped ones where it has none; raise where a named memory is missing."""
     from deixis.reasoning.grounding.evidence.meaning import shipped_models
     from deixis.session import Session
 
@@ -74,7 +74,7 @@ def _in_force(memory: Path | None, no_memory: bool) -> RelationModels:
 
 
 def read_models(path: Path | None) -> RelationModels:
-    """The shipped models, with those of a Turtle file in their place; raises OntologyError where it has none."""
+    """Return the shipped models, replaced by those of a Turtle file; raise OntologyError where the file has none."""
     from deixis.errors import OntologyError
     from deixis.ontology.models.relation_triples import models_from_turtle
     from deixis.reasoning.grounding.evidence.meaning import shipped_models
@@ -88,5 +88,5 @@ def read_models(path: Path | None) -> RelationModels:
     except ValueError as error:
         raise OntologyError(f"{path}: {error}") from error
     if not found:
-        raise OntologyError(f"{path}: there is no relation model in it; write one with 'deixis learn-relation'")
+        raise OntologyError(f"{path}: no relation model in this file; 'deixis learn-relation -o FILE' writes one")
     return shipped_models().replaced(*found)

@@ -1,4 +1,4 @@
-"""The command that tells which layout a scene is most like, and which scenes a script is most like."""
+"""The command ``deixis retrieve``: find the layouts most similar to a scene, or the scenes most similar to a script."""
 
 from __future__ import annotations
 
@@ -32,22 +32,24 @@ Query = Annotated[
 ]
 Among = Annotated[
     Path | None,
-    typer.Option(metavar="DIR", help="A folder of scripts (for a scene) or of scenes, beside what is remembered."),
+    typer.Option(metavar="DIR", help="A folder of scripts (for a scene) or of scenes, besides the memory."),
 ]
 
 
 def retrieve(
     query: Query,
     among: Among = None,
-    top: Annotated[int, typer.Option(min=1, metavar="K", help="So many at the most.")] = 5,
-    least: Annotated[float, typer.Option(min=0.0, max=1.0, metavar="SIMILARITY", help="None less similar.")] = 0.5,
+    top: Annotated[int, typer.Option(min=1, metavar="K", help="Print at most K results.")] = 5,
+    least: Annotated[
+        float, typer.Option(min=0.0, max=1.0, metavar="SIMILARITY", help="Minimum similarity of a result.")
+    ] = 0.5,
     memory: MemoryDir = None,
     no_memory: NoMemory = False,
     hide_labels: HideLabels = False,
     time_limit: TimeLimit = 60.0,
     as_json: AsJson = False,
 ) -> None:
-    """Rank all known layouts that a scene is like, or all scenes that a script is like (exit 1 where none is)."""
+    """Rank the known layouts by similarity to a scene, or scenes by similarity to a script; exit 1 without a result."""
     from deixis.report.retrieve import retrieval_lines, retrieval_to_dict
     from deixis.workflows.retrieve import retrieve as run
 
@@ -75,7 +77,7 @@ def retrieve(
 
 @contextmanager
 def _remembering(memory: Path | None, no_memory: bool) -> Iterator[Session | None]:
-    """The memory; None without one, but a memory that is named must be there."""
+    """Yield a session, or None without a memory; raise MemoryFormatError where a named memory is missing."""
     from deixis.session import Session
 
     if no_memory:

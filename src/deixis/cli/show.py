@@ -1,4 +1,4 @@
-"""The command ``deixis show``: a learned layout as a script again."""
+"""The command ``deixis show``: print a learned layout as a script."""
 
 from __future__ import annotations
 
@@ -12,14 +12,20 @@ from deixis.cli.common import (
     MemoryDir,
     print_json,
 )
+from deixis.cli.completion import complete_layouts
 
 
 def show(
-    layout: Annotated[str, typer.Argument(metavar="LAYOUT", help="A learned layout's name, or a lesson's id.")],
+    layout: Annotated[
+        str,
+        typer.Argument(
+            metavar="LAYOUT", help="A learned layout's name, or a lesson's id.", autocompletion=complete_layouts
+        ),
+    ],
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Print a learned layout as a script again."""
+    """Print a learned layout as a script."""
     from deixis.ontology.export import fact_to_dict
     from deixis.session import Session
 

@@ -1,4 +1,4 @@
-"""The command that simulates a table: a point cloud as a depth camera sees it, and the truth beside it."""
+"""The command ``deixis simulate``: simulate a depth camera that looks at a table; write the cloud and the truth."""
 
 from __future__ import annotations
 
@@ -29,35 +29,33 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 
 
 def simulate(
-    layout: Annotated[str | None, typer.Argument(metavar="LAYOUT", help="A layout script; else --random.")] = None,
+    layout: Annotated[str | None, typer.Argument(metavar="LAYOUT", help="A layout script, or use --random.")] = None,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the cloud (.pcd, .ply), labelled.")
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the labelled cloud (.pcd, .ply).")
     ] = None,
-    truth: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write what is true as a scene (.scene.json).")
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Another seed draws other things, places and noise.")] = 0,
-    random: Annotated[int | None, typer.Option(metavar="N", help="1 to 300 things at random, no layout.")] = None,
+    truth: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the true scene (.scene.json).")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random things, places and noise.")] = 0,
+    random: Annotated[int | None, typer.Option(metavar="N", help="1 to 300 random things instead of a layout.")] = None,
     mesh: Annotated[
         list[str] | None, typer.Option(metavar="NAME=FILE", help="A mesh (.ply, .obj, .stl; z up) for an object.")
     ] = None,
-    mesh_unit: Annotated[str, typer.Option(help="What meshes are measured in: m, cm or mm.")] = "m",
-    cloth: Annotated[bool, typer.Option("--cloth", help="A white cloth on the table.")] = False,
-    camera_height: Annotated[float, typer.Option(metavar="METRES", help="The camera's above the table.")] = 0.7,
+    mesh_unit: Annotated[str, typer.Option(help="Unit of the meshes: m, cm or mm.")] = "m",
+    cloth: Annotated[bool, typer.Option("--cloth", help="Put a white cloth on the table.")] = False,
+    camera_height: Annotated[float, typer.Option(metavar="METRES", help="Height of the camera above the table.")] = 0.7,
     camera_back: Annotated[float, typer.Option(metavar="METRES", help="From the table's edge to the camera.")] = 0.0,
-    azimuth: Annotated[float, typer.Option(metavar="DEGREES", help="Of the camera around the table.")] = 0.0,
+    azimuth: Annotated[float, typer.Option(metavar="DEGREES", help="Angle of the camera around the table.")] = 0.0,
     intrinsics: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The camera's intrinsics (.json); else a Kinect's.")
+        Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json); default: a Kinect.")
     ] = None,
-    noise: Annotated[float, typer.Option(help="Times the noise of a Kinect; 0: none.")] = 1.0,
-    missing: Annotated[float, typer.Option(help="The share of points that is missing anywhere.")] = 0.005,
-    quantised: Annotated[bool, typer.Option("--quantised", help="Depths in the steps of a Kinect.")] = False,
+    noise: Annotated[float, typer.Option(help="Multiple of the noise of a Kinect; 0: no noise.")] = 1.0,
+    missing: Annotated[float, typer.Option(help="Share of points that are missing at random.")] = 0.005,
+    quantised: Annotated[bool, typer.Option("--quantised", help="Round depths to the steps of a Kinect.")] = False,
     table_frame: Annotated[
         bool, typer.Option("--table-frame", help="Write the cloud in the table's frame, not the camera's.")
     ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Lay a table as a layout says, or at random, and look at it with a simulated depth camera."""
+    """Lay a table from a layout, or at random, and simulate a depth camera that looks at it."""
     from deixis.errors import DeixisError
     from deixis.perception.clouds.depth import read_intrinsics
     from deixis.perception.simulator.camera import KINECT
@@ -69,7 +67,7 @@ def simulate(
     require_scene_name(truth)
     require_writable([out, truth], [layout, intrinsics, *(entry.partition("=")[2] for entry in mesh or [])])
     if out is not None and out.suffix.lower() not in (".pcd", ".ply"):
-        raise DeixisError(f"{out}: a cloud's name ends in .pcd or .ply")
+        raise DeixisError(f"{out}: the name of a cloud must end in .pcd or .ply")
     meshes = _meshes(mesh or [], mesh_unit)
     sensor = DepthSensor(noise=noise, missing=missing, quantised=quantised)
     lens = KINECT if intrinsics is None else read_intrinsics(intrinsics)
@@ -101,26 +99,26 @@ def _laid(layout: str | None, random: int | None, seed: int, meshes: dict[str, M
     from deixis.workflows.lay_table import lay_random, lay_script
 
     if (layout is None) == (random is None):
-        raise DeixisError("simulate: give a layout, or --random N, and one of them only")
+        raise DeixisError("simulate: give either a layout or --random N")
     if layout is not None:
         return lay_script(read_script(layout), seed, meshes, cloth=cloth)
     return lay_random(random or 0, seed, meshes, cloth=cloth)
 
 
 def _meshes(given: list[str], unit: str) -> dict[str, Mesh]:
-    """The meshes by the names that they were given, in metres."""
+    """Read meshes given as NAME=FILE; return them by name, in metres."""
     from dataclasses import replace
 
     from deixis.errors import DeixisError
     from deixis.perception.clouds.mesh_file import read_mesh
 
     if unit not in UNITS:
-        raise DeixisError(f"simulate: the unit '{unit}' is not known; use one of {', '.join(UNITS)}")
+        raise DeixisError(f"simulate: --mesh-unit must be one of {', '.join(UNITS)}, got '{unit}'")
     meshes: dict[str, Mesh] = {}
     for entry in given:
         name, sign, file = entry.partition("=")
         if not (name and sign and file):
-            raise DeixisError(f"simulate: --mesh takes NAME=FILE, not '{entry}'")
+            raise DeixisError(f"simulate: --mesh must be NAME=FILE, got '{entry}'")
         if name in meshes:
             raise DeixisError(f"simulate: two meshes are given for '{name}'")
         read = read_mesh(file)
@@ -133,10 +131,10 @@ def _lines(found: Simulation) -> Iterator[str]:
     for seen, thing, points in things:
         middle = [(low + high) / 2 for low, high in zip(seen.minimum, seen.maximum, strict=True)]
         place = f"at {100 * middle[0]:.1f}, {100 * middle[1]:.1f}"
-        shape = f"{thing.shape}{', for want of a shape of its kind' if thing.generic else ''}"
+        shape = f"{thing.shape}{', as there is no shape for its kind' if thing.generic else ''}"
         yield f"{seen.id:<4} {thing.name:<22} {place:<16} {points:>7} points  {shape}"
     if found.laid.top_name is not None:
-        yield f"{found.laid.top_name} is the table itself, and none of the things."
+        yield f"{found.laid.top_name} is the table itself, not one of the things on it."
     if found.laid.beside:
         yield f"In the air beside the table: {', '.join(found.laid.beside)}."
     x, y, z = found.camera.eye.tolist()
@@ -147,7 +145,7 @@ def _lines(found: Simulation) -> Iterator[str]:
 
 
 def simulation_to_dict(found: Simulation, view: CameraSetup, seed: int) -> dict[str, Any]:
-    """The simulation as JSON, but for the points: the camera with its pose, and every thing with its label."""
+    """Return a simulation without its points as plain data: the camera with its pose, and each thing with its label."""
     from deixis.ontology.export import fact_to_dict
     from deixis.perception.formats.scene_json import scene_to_dict
 

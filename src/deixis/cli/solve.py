@@ -1,4 +1,4 @@
-"""The command that solves constraint networks."""
+"""The command ``deixis solve``: decide whether constraint networks are consistent."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from deixis.cli.common import (
     progress_bar,
     tell_of_compiling,
 )
+from deixis.cli.completion import complete_calculi
 
 if TYPE_CHECKING:
     from deixis.workflows.solve import SolvedNetwork
@@ -29,19 +30,24 @@ if TYPE_CHECKING:
 def solve(
     network: Annotated[str, typer.Argument(metavar="NETWORK", help="Constraint networks in GQR's format (.csp).")],
     calculus: Annotated[
-        str, typer.Option(metavar="NAME[+NAME…]", help="point, allen, ra, ba, rcc8, cd, …; or FILE.spec.")
+        str,
+        typer.Option(
+            metavar="NAME[+NAME…]",
+            help="point, allen, ra, ba, rcc8, cd, …; or FILE.spec.",
+            autocompletion=complete_calculi,
+        ),
     ],
     closure: Annotated[bool, typer.Option("--closure", help="Print the closed network.")] = False,
-    scenario: Annotated[bool, typer.Option("--scenario", help="Print one way all of it can hold.")] = False,
+    scenario: Annotated[bool, typer.Option("--scenario", help="Print one solution.")] = False,
     explain: Annotated[
         tuple[int, int] | None, typer.Option(metavar="I J", help="Print why I and J are related as they are.")
     ] = None,
-    verdict: Annotated[bool, typer.Option("--verdict", help="Print the verdict, and not what it rests on.")] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the network there.")] = None,
+    verdict: Annotated[bool, typer.Option("--verdict", help="Print only the verdict, not the reasons.")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the network.")] = None,
     time_limit: TimeLimit = 60.0,
     as_json: AsJson = False,
 ) -> None:
-    """Say whether constraint networks are consistent: exit 0, 1 where one is not, 3 where one stays undecided."""
+    """Decide whether constraint networks are consistent; exit 1 where one is not, 3 where one stays undecided."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
     from deixis.report.solve import reason_lines
@@ -52,14 +58,14 @@ def solve(
     if out is not None and not (closure or scenario):
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
     if verdict and (closure or scenario or explain is not None):
-        raise DeixisError("--verdict goes with none of --closure, --scenario and --explain")
+        raise DeixisError("--verdict excludes --closure, --scenario and --explain")
     wish = Wish(closure, scenario, explain, not verdict, time_limit)
     calculi, notes = calculi_named(calculus)
     for note in notes:
         print_note(note)
     texts = read_networks(network, calculi)
     tell_of_compiling()
-    aside = as_json or (out is None and (closure or scenario))  # what is printed then is read again, or by a program
+    aside = as_json or (out is None and (closure or scenario))  # then a program reads the output
     solved = []
     with progress_bar("closing") as progress:
         for text in texts:
@@ -82,7 +88,7 @@ def _quiet(solved: SolvedNetwork) -> None:
 
 
 def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: bool, aside: bool) -> None:
-    """Print what was not printed with the verdicts: JSON, or networks with what was found as comments beside them."""
+    """Print what did not come with the verdicts: JSON, or networks with the findings as comments."""
     from deixis.grammar.formats.networks import network_lines
     from deixis.report.solve import solved_lines, solved_to_dict
 

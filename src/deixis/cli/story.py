@@ -1,4 +1,4 @@
-"""The story that ``deixis demo`` tells in the terminal, on shipped data."""
+"""The tour that ``deixis demo`` prints, on shipped data."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ QUERY = """SELECT ?object ?kind ?lesson WHERE {
 } ORDER BY ?object"""
 
 MORE_TABLES = (8, 9)
-"""Seeds of the tables from which what things look like is learned, beside the first."""
+"""Seeds of the further tables from which views of things are learned."""
 
 
 def tell(out: Path) -> None:
-    """Tells the story and leaves its pictures in ``out``."""
+    """Print the tour and write its pictures into the folder ``out``."""
     from rich.console import Console
 
     require_picture(out / "script1.png")
@@ -50,13 +50,13 @@ def tell(out: Path) -> None:
     console = Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True)
     script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
 
-    _chapter(console, 1, "Somebody says how a table is laid")
+    _chapter(console, 1, "A person describes a laid table")
     _listing(console, script_lines(script1))
 
-    _chapter(console, 2, "The robot looks at a table and can name nothing on it")
+    _chapter(console, 2, "The robot sees a table, but knows no names")
     _say(console, f"It sees {len(scene.objects)} boxes, from the {scene.viewpoint}: {', '.join(scene.ids)}.")
 
-    _chapter(console, 3, "Who is who, going by the words alone?")
+    _chapter(console, 3, "Which object does each name refer to, by the words alone?")
     found = ground(script1, scene, meaning=Meaning(weights=UnaryWeights(sizes=0.0)))
     _listing(console, grounding_lines(found))
     _say(console, *_ambiguity(found, ground(script1, scene)))
@@ -69,11 +69,11 @@ def tell(out: Path) -> None:
     settled = ground(full, scene)
     _listing(console, grounding_lines(settled))
 
-    _chapter(console, 5, "What the script implies without saying so")
+    _chapter(console, 5, "A fact that the script implies but does not state")
     fact = infer(full).implications.derive(full.ontology.relations["left"], "salad_fork", "soup_spoon")
     _listing(console, list(fact.lines()) if fact is not None else [])
 
-    _chapter(console, 6, "A script that cannot be laid")
+    _chapter(console, 6, "A script that contradicts itself")
     _listing(console, inference_lines(infer(example("contradiction.layout"))))
 
     with tempfile.TemporaryDirectory() as folder, Session(Path(folder) / "memory") as session:
@@ -81,16 +81,16 @@ def tell(out: Path) -> None:
 
 
 def _remembered(console: Console, session: Session, full: Script, scene: Scene, out: Path) -> None:
-    """The part of the story that needs a memory."""
-    _chapter(console, 7, "What was understood is learned")
+    """Print the part of the tour that needs a memory."""
+    _chapter(console, 7, "The robot learns the layout")
     learned = session.learn(full, scene)
     _listing(console, learned_lines(learned, "a memory of its own, for this demo"))
 
-    _chapter(console, 8, "And can be asked for, in SPARQL: what cutlery do I know, and from which lesson?")
+    _chapter(console, 8, "A SPARQL query: which cutlery is known, and from which lesson?")
     _listing(console, QUERY.splitlines())
     _listing(console, session.query(QUERY).to_table())
 
-    _chapter(console, 9, "Another table, whose things have names by now. What is wrong with it?")
+    _chapter(console, 9, "Another table, with labelled things. What is wrong with it?")
     second = read_scene(example("second_table.scene.json"))
     checked = session.check("formal_dinner", second)
     _listing(console, check_lines(checked))
@@ -100,7 +100,7 @@ def _remembered(console: Console, session: Session, full: Script, scene: Scene, 
 
 
 def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
-    """The part of the story that begins with a point cloud."""
+    """Print the part of the tour that starts from a point cloud."""
     from deixis.plots.seen import plot_perceived, plot_recognised
     from deixis.workflows.lay_table import lay_script
     from deixis.workflows.perceive import perceive, write_scene
@@ -111,7 +111,7 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
         write_scene(scene, out / f"{name}.scene.json")
         return scene
 
-    _chapter(console, 10, "The same with a depth camera, simulated: points, and no boxes")
+    _chapter(console, 10, "The same table seen by a simulated depth camera: points instead of boxes")
     table = look(7, "table")
     points = 0 if table.detection is None else len(table.detection.cloud)
     _say(console, f"{points} points; {len(table.objects)} things found on the table.")
@@ -122,9 +122,9 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
     for seed in MORE_TABLES:
         session.learn(full, look(seed, f"table-{seed}"))
     views = sum(session.categories().values())
-    _say(console, f"After {len(MORE_TABLES)} more tables it has kept {views} views, each under its name.")
+    _say(console, f"After {len(MORE_TABLES)} more tables, the memory holds {views} views with names.")
 
-    _chapter(console, 11, "Another table of points, and nobody says a word. What looks familiar?")
+    _chapter(console, 11, "Another cloud without a description. What does the robot recognise?")
     found = session.recognise(look(20, "another"))
     _listing(console, [f"{id:<5} {answer_words(answer)}" for id, answer in found.answers.items()])
     plot_recognised(found, out / "another.png")
@@ -132,18 +132,17 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
 
 
 def full_text(name: str) -> list[str]:
-    """A shipped script as it stands."""
+    """Return the lines of a shipped script."""
     return example(name).read_text(encoding="utf-8").splitlines()
 
 
 def _ambiguity(found: Grounding, with_sizes: Grounding) -> list[str]:
     open_names, left = ([m.object for m in f.matches.values() if not m.decided] for f in (found, with_sizes))
-    settled = "settles them all" if not left else f"leaves {len(left)}"
+    settled = "settle all of them" if not left else f"leave {len(left)} open"
     return [
-        f"By the words alone all {len(found.satisfied)} facts hold, and still {len(open_names)} of "
-        f"{len(found.matches)} names are open:",
-        "three pairs could trade names unnoticed, and fish knife and soup spoon be any two in a row on the right.",
-        f"Deixis says so, instead of passing off a lucky order as knowledge. How large such things are {settled}.",
+        f"All {len(found.satisfied)} facts hold, but {len(open_names)} of {len(found.matches)} names stay open:",
+        "three pairs could swap their names, and fish knife and soup spoon could be any two in a row on the right.",
+        f"Deixis reports this instead of a guess. The usual sizes of such things {settled}.",
     ]
 
 

@@ -1,4 +1,4 @@
-"""The command ``deixis teach``: show what a word looks like, or correct it."""
+"""The command ``deixis teach``: teach the robot what a word refers to, or correct it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,22 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import AsJson, MemoryDir, PerceivedScene, print_json, print_lines
+from deixis.cli.completion import complete_categories
 from deixis.cli.output import note_change
 
 
 def teach(
     scene: PerceivedScene,
     object: Annotated[str, typer.Argument(metavar="OBJECT", help="The id of a thing in the scene.")],
-    label: Annotated[str, typer.Argument(metavar="LABEL", help="What it is.")],
-    teacher: Annotated[str, typer.Option(metavar="NAME", help="Who says so.")] = "user",
+    label: Annotated[
+        str,
+        typer.Argument(metavar="LABEL", help="The name of its category.", autocompletion=complete_categories),
+    ],
+    teacher: Annotated[str, typer.Option(metavar="NAME", help="Name of the teacher.")] = "user",
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show what a word looks like: one view more of a category; said again of the same view, a correction."""
+    """Teach one more view of a category; teaching the same view again corrects its category."""
     from deixis.report.seen import meant_lines, taught_line
     from deixis.session import Session
     from deixis.view_store import category_name

@@ -1,4 +1,4 @@
-"""The command about time: when fluents held, what order is certain, and why."""
+"""The command ``deixis time``: when fluents held, which order is certain, and why."""
 
 from __future__ import annotations
 
@@ -20,17 +20,19 @@ ANY = "*"
 
 def time_command(
     fluents: Annotated[str, typer.Argument(metavar="FLUENTS", help="A file of fluents (.fluents.json).")],
-    at: Annotated[float | None, typer.Option(metavar="T", help="What held at this time, and what may have.")] = None,
+    at: Annotated[
+        float | None, typer.Option(metavar="T", help="Print what held, or may have held, at this time.")
+    ] = None,
     window: Annotated[
         tuple[float, float] | None,
-        typer.Option(metavar="FROM TO", help="What held at some time from FROM on and before TO, and what may have."),
+        typer.Option(metavar="FROM TO", help="Print what held, or may have held, at some time in [FROM, TO)."),
     ] = None,
     relate: Annotated[
-        tuple[str, str] | None, typer.Option(metavar="A B", help="Which of Allen's relations A may bear to B.")
+        tuple[str, str] | None, typer.Option(metavar="A B", help="Print the possible Allen relations of A to B.")
     ] = None,
     explain: Annotated[
         tuple[str, str] | None,
-        typer.Option(metavar="A B", help="Why that is certain; of points, such as f1.start or origin, their bounds."),
+        typer.Option(metavar="A B", help="Print why the relation of A to B, or the bounds of two points, are certain."),
     ] = None,
     pattern: Annotated[
         tuple[str, str, str],
@@ -39,7 +41,7 @@ def time_command(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Print when things held, as far as it is known, and what follows; exit 1 where it contradicts itself."""
+    """Print the known bounds of when things held, and what follows; exit 1 where the statements contradict."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.fluents import read_fluents
     from deixis.reasoning.temporal.errors import TemporalConflictError
@@ -49,7 +51,7 @@ def time_command(
     if len(asked) + (explain is not None) > 1:
         raise DeixisError("time: --at, --window, --relate and --explain exclude one another")
     if pattern != (ANY, ANY, ANY) and (relate is not None or explain is not None):
-        raise DeixisError("time: --pattern goes with --at, with --window or with none; --relate and --explain name two")
+        raise DeixisError("time: --pattern excludes --relate and --explain")
     content = read_fluents(fluents)
     try:
         timeline = Timeline()
@@ -94,7 +96,7 @@ def _print_explanation(timeline: Timeline, a: str, b: str, time_limit: float, as
 
 
 def _explanations(timeline: Timeline, a: str, b: str, time_limit: float) -> list[Proof[str]]:
-    """Of two points the lower and the upper bound, else of two fluents the relation."""
+    """Return the proofs of the lower and upper bound between two points, or of the relation between two fluents."""
     if {a, b} <= set(timeline.network.points):
         found = [timeline.explain_bound(b, a, time_limit), timeline.explain_bound(a, b, time_limit)]
     else:
@@ -135,5 +137,5 @@ def _print_chronology(file: str, origin: str, chronology: Chronology, pattern: P
 
 
 def _print(answer: dict[str, Any] | list[str]) -> None:
-    """Data as JSON, lines as they are."""
+    """Print plain data as JSON, and lines as they are."""
     print_lines(answer) if isinstance(answer, list) else print_json(answer)

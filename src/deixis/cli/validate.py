@@ -1,4 +1,4 @@
-"""The command ``deixis validate``: RDF by SHACL shapes."""
+"""The command ``deixis validate``: check RDF against SHACL shapes."""
 
 from __future__ import annotations
 
@@ -10,22 +10,24 @@ from typing import Annotated
 import typer
 
 from deixis.cli.common import NO, UNDECIDED, AsJson, MemoryDir, TimeLimit, print_json, print_line
+from deixis.report.marks import violation
 
 
 def validate(
     files: Annotated[
-        list[Path] | None, typer.Argument(metavar="[FILE]...", help="Data (.ttl, .nt, .rdf, .owl); else memory.")
+        list[Path] | None,
+        typer.Argument(metavar="[FILE]...", help="Data (.ttl, .nt, .rdf, .owl); default: the memory."),
     ] = None,
     shapes: Annotated[
         list[Path] | None,
-        typer.Option("--shapes", metavar="FILE", help="Shapes, instead of those of Deixis."),
+        typer.Option("--shapes", metavar="FILE", help="SHACL shapes, instead of those of Deixis."),
     ] = None,
     turtle: Annotated[bool, typer.Option("--turtle", help="Print the standard report as Turtle.")] = False,
     time_limit: TimeLimit = 60.0,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Check data against SHACL shapes; exit 1 where it does not conform, and say where."""
+    """Check data against SHACL shapes; exit 1 where it does not conform, and print the violations."""
     from deixis.errors import DeixisError
     from deixis.reasoning.errors import LimitError
     from deixis.workflows.validate import validate_files, validate_memory
@@ -51,7 +53,7 @@ def validate(
         sys.stdout.write(report.turtle)
     else:
         for result in report.results:
-            print_line(f"{result.severity}: {result}")
+            print_line(violation(f"{result.severity}: {result}"))
         number = len(report.results)
-        print("conforms" if report.conforms else f"{number} result{'s' if number > 1 else ''}: it does not conform")
+        print("conforms" if report.conforms else f"{number} result{'s' if number > 1 else ''}: does not conform")
     raise typer.Exit(0 if report.conforms else NO)

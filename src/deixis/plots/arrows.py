@@ -1,4 +1,4 @@
-"""Arrows between things in a picture from above: from where the one is seen to where the other is."""
+"""Arrows between things in a picture from above, between places where the two things are visible."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GRID = 12
-"""Places of a thing, on each axis, where an arrow may begin or end."""
+"""Number of places on each axis of a thing where an arrow may begin or end."""
 
 END_DEPTH, MIN_LENGTH = 0.015, 0.05
-"""How far inside its things an arrow should end, and how long it should be: shares of the picture's extent."""
+"""Preferred depth of an end inside its thing, and minimum length of an arrow: shares of the picture's extent."""
 
 BEND = 0.12
-"""How far an arrow's control point lies aside, as a share of its length."""
+"""Distance of an arrow's control point from its straight line, as a share of its length."""
 
 STEPS = 40
-"""Points along an arrow that a name should keep clear of."""
+"""Number of points along an arrow that names avoid."""
 
 Point = tuple[float, float]
 Arrow = tuple[Point, Point]
 
 
 def drawing_order(things: Iterable[PerceivedObject]) -> list[PerceivedObject]:
-    """Things in the order in which they are drawn: the larger first, so that each lies over what is larger."""
+    """Return things in drawing order: larger things first, so that smaller ones lie over them."""
     return sorted(things, key=lambda thing: -float(np.prod(_plan(thing)[1] - _plan(thing)[0])))
 
 
 class Ends:
-    """Where arrows between the things of a picture begin and end."""
+    """Places where arrows between the things of a picture begin and end."""
 
     def __init__(self, things: Sequence[PerceivedObject]) -> None:
         ordered = drawing_order(things)
@@ -46,7 +46,7 @@ class Ends:
         self._extent = float(np.ptp(self._boxes, axis=(0, 1)).max()) if ordered else 1.0
 
     def arrow(self, subject: str, other: str) -> Arrow:
-        """From the one to the other, by their ids: short, with either end where no other thing lies over its own."""
+        """Return a short arrow from a subject to another thing, by ids, with both ends where the things are visible."""
         (starts, start_room), (ends, end_room) = self._where_seen(subject), self._where_seen(other)
         length = np.linalg.norm(starts[:, None] - ends, axis=2)
         deep, least = END_DEPTH * self._extent, MIN_LENGTH * self._extent
@@ -57,7 +57,10 @@ class Ends:
         return _point(starts[start]), _point(ends[end])
 
     def _where_seen(self, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Places of a thing (n, 2) over which no other lies, and how far each is from an edge; all where none is."""
+        """Return the visible places of a thing, shape (n, 2), and their distances from an edge, shape (n,).
+
+        Where the whole thing is covered, return all its places.
+        """
         if name not in self._seen:
             level = self._level[name]
             low, high = self._boxes[level]
@@ -74,7 +77,7 @@ class Ends:
 
 
 def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, order: int) -> None:
-    """Draw arrows, a dot where each begins; bent a little, so that one there and one back are seen as two."""
+    """Draw arrows with a dot at the start, slightly bent, so that arrows in both directions are seen as two."""
     from matplotlib.patches import FancyArrowPatch
 
     alpha = 0.75 if colour == QUIET else 1.0
@@ -99,7 +102,7 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
 
 
 def points_along(arrows: Sequence[Arrow]) -> list[Point]:
-    """Points along arrows as :func:`draw_arrows` bends them, where both axes have one scale."""
+    """Return points along arrows as :func:`draw_arrows` bends them, for axes of equal scale."""
     share = np.linspace(0.0, 1.0, STEPS)[:, None]
     points: list[Point] = []
     for begin, finish in arrows:

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MARGIN = 0.1
-"""How much is shown around the things, as a share of their extent."""
+"""Margin around the things, as a share of their extent."""
 
 BACKGROUND_STRENGTH = 0.35
-"""How much of the colours of what is no thing is seen, the rest being white."""
+"""Share of the image's own shade in points that belong to no thing; the rest is white."""
 
 UNMEASURED = 0.98
 
@@ -36,18 +36,19 @@ class CameraPicture:
 
     @property
     def shape(self) -> float:
-        """How many times as wide as high it is."""
+        """Ratio of width to height."""
         return float(self.picture.shape[1] / self.picture.shape[0])
 
 
 def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> CameraPicture:
-    """Return the view of an organised cloud, as far as there are things in it; ``labels`` (n,) say whose a point is.
+    """Return the camera's view of an organised cloud, cropped to its things.
 
-    Grey is what was measured and belongs to no thing, nearly white what was not measured.
+    ``labels`` (n,) are the numbers of the things that the points belong to. Other measured points are grey, and
+    unmeasured ones nearly white.
     """
     assert cloud.organised is not None
     numbers = labels.reshape(cloud.organised)
-    # Each point's colour: its thing's, in the light and shade of the image where the cloud has colours.
+    # Give each point the colour of its thing, shaded by the brightness of the image where the cloud has colours.
     grey = np.full(len(cloud), 0.75) if cloud.colours is None else cloud.colours.mean(axis=1) / 255.0
     picture = np.repeat((1.0 - BACKGROUND_STRENGTH * (1.0 - grey))[:, None], 3, axis=1)
     picture[~cloud.finite] = UNMEASURED
@@ -55,7 +56,7 @@ def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> Cam
     shade = 1.0 if cloud.colours is None else (0.55 + 0.45 * grey[on_things])[:, None]
     picture[on_things] = colours_of(labels[on_things]) * shade
     picture = picture.reshape(*cloud.organised, 3)
-    # Crop to the things; keep the whole image where there is none.
+    # Crop to the things; keep the whole image without things.
     where = np.argwhere(numbers >= 0)
     if not len(where):
         rows, columns = slice(None), slice(None)
@@ -71,7 +72,7 @@ def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> Cam
     for number, thing in enumerate(scene.objects):
         mask = numbers == number
         if mask.any():
-            # Darken the outermost pixels; pixels that are missing inside have no edge.
+            # Darken the outermost pixels; holes inside get no edge.
             filled = binary_fill_holes(mask)
             edge: NDArray[np.bool_] = filled & ~binary_erosion(filled, iterations=2)
             picture[edge] *= 0.5
@@ -83,7 +84,7 @@ def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> Cam
 
 
 def draw_camera(axes: Axes, camera: CameraPicture) -> None:
-    """Draw it in coordinates of its pixels, y up; the names are still to be written."""
+    """Draw the image in pixel coordinates, y up, without the names."""
     height, width = camera.picture.shape[:2]
     axes.imshow(camera.picture, extent=(0, width, 0, height))
     axes.set_title("As the camera sees it", color=INK, fontsize=12, loc="left")
@@ -91,7 +92,7 @@ def draw_camera(axes: Axes, camera: CameraPicture) -> None:
 
 
 def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Return a colour for each number, neighbours far apart on the circle of hues, shape (n, 3)."""
+    """Return a colour for each number, shape (n, 3); successive numbers have very different hues."""
     from matplotlib.colors import hsv_to_rgb
 
     hue = (np.asarray(numbers) * 0.61803398875) % 1.0

@@ -1,4 +1,4 @@
-"""A checked table as a picture: what is misplaced, miscoloured, missing, extra and undetermined."""
+"""Pictures of checked tables: misplaced, miscoloured, missing, extra and undetermined things."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 
 def plot_check(checked: Check, path: str | Path) -> None:
-    """Draw the table from above: what is misplaced or extra in red, what is undetermined dotted, and the verdict.
+    """Draw the table from above: misplaced and extra things in red, undetermined ones dotted, and the verdict.
 
-    What is of another colour is hatched.
+    Things of a wrong colour are hatched.
     """
     save(check_figure(checked), path)
 
 
 def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
-    """Draw what is wrong with a table, into axes or into a new figure, which is returned."""
+    """Draw a checked table into axes or into a new figure, and return the figure."""
     table = checked.table
     found = [
         _listed("missing", [entry.role for entry in table.of(RoleVerdict.MISSING)]),
@@ -40,7 +40,7 @@ def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
 
 
 def marks_of(checked: Check) -> Marks:
-    """Return what the picture marks; a thing that is both misplaced and of another colour has both marks."""
+    """Return the marks of the picture; a thing that is both misplaced and miscoloured has both marks."""
     table = checked.table
     wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}
     return Marks(
@@ -52,7 +52,7 @@ def marks_of(checked: Check) -> Marks:
 
 
 def _listed(what: str, names: Sequence[str]) -> str:
-    """Up to two names, or how many there are."""
+    """Return up to two names, or their number."""
     if not names:
         return ""
     return f"{what} " + (", ".join(names).replace("_", " ") if len(names) < 3 else str(len(names)))

@@ -1,4 +1,4 @@
-"""What pictures share: the figure, its colours, its axes, and how it is written to a file."""
+"""Figures, colours, axes and files that all pictures share."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ Like WRONG and the colours of groups it is of Okabe and Ito's palette, which peo
 blindness can tell apart (https://jfly.uni-koeln.de/color/)."""
 
 MARGIN = 0.12
-"""Inches between what is drawn and the edge of the picture."""
+"""Margin of the picture, in inches."""
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure, making the folder it goes to; raises DeixisError where that fails."""
+    """Write a figure to a file, making its folder; raise DeixisError where that fails."""
     import warnings
 
     target = require_picture(path)
@@ -35,11 +35,11 @@ def save(figure: Figure, path: str | Path) -> None:
             warnings.filterwarnings("ignore", message="Glyph", category=UserWarning)
             figure.savefig(target, dpi=180, facecolor=PAPER)
     except OSError as error:
-        raise DeixisError(f"{target}: the picture cannot be written: {error.strerror}") from error
+        raise DeixisError(f"{target}: cannot write the picture: {error.strerror}") from error
 
 
 def require_picture(path: str | Path) -> Path:
-    """Return the path of a picture that can be written, its folder made; raises DeixisError where it cannot be."""
+    """Return the path of a picture and make its folder; raise DeixisError where the picture cannot be written."""
     require("matplotlib", f"{path}: drawing a picture")
     target = Path(path)
     if target.suffix.lower() not in (".png", ".svg", ".pdf"):
@@ -74,11 +74,11 @@ def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Any]
 
 
 def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
-    """Labels, colours and title of a table seen from above, once its aspect and margins are set."""
+    """Set the labels, colours and title of a table seen from above; its aspect and margins are set before."""
     axes.autoscale_view()
     across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
     if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):
-        across, along = "to the right", "up"  # nobody said that the image is a plan
+        across, along = "to the right", "up"  # the image need not be a plan
     unit = "pixels" if scene.unit == "px" else "metres"
     axes.set_xlabel(f"{unit}, {across}", color=INK, fontsize=8.5)
     axes.set_ylabel(f"{unit}, {along}", color=INK, fontsize=8.5)

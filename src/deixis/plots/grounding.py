@@ -1,4 +1,4 @@
-"""Pictures: a grounded scene from above."""
+"""Pictures of grounded scenes from above."""
 
 from __future__ import annotations
 
@@ -28,27 +28,27 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import Match
 
 GROUP_COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#f0e442")
-"""Colours of groups of objects that cannot be told apart, of Okabe and Ito's palette."""
+"""Colours of groups of interchangeable objects, from Okabe and Ito's palette."""
 
 PLAIN_FILL, UNNAMED_FILL = "#ffffff", "#eceae4"
 
 HATCH = "////"
-"""What is of another colour than it should be is hatched so."""
+"""Hatching of things of a wrong colour."""
 
 WIDTH, MIN_HEIGHT, MAX_HEIGHT = 9.0, 3.0, 12.0
-"""Inches: how wide a picture is, and how high the table in it."""
+"""Width of a picture and height of the table in it, in inches."""
 
 LEGEND_LINE = 0.17
-"""Inches: how high a line of the legend is."""
+"""Height of a line of the legend, in inches."""
 
 LINE, HALF_LINE, TITLE_LINE = 115, 50, 75
 """Characters that fit into a line of the legend, into half of one, and into one of the title."""
 
 LEAST_ALPHA = 0.2
-"""Opacity of the edge of a thing whose name is as good as certainly wrong."""
+"""Opacity of the edge of a thing whose name is almost certainly wrong."""
 
 MAX_CLEAR_ARROWS = 30
-"""Arrows of violated facts of which names keep clear, at most."""
+"""Maximum number of arrows of violated facts that names avoid."""
 
 NO_BREAK = "\u00a0"
 
@@ -73,8 +73,8 @@ NO_MARKS = Marks()
 def plot_grounding(found: Grounding, path: str | Path, title: str | None = None) -> None:
     """Draw the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
 
-    Satisfied facts are quiet arrows, violated ones red; objects that the description cannot tell apart share a
-    colour; what has no name is grey. Raises DeixisError where the file cannot be written or its ending is no picture.
+    Satisfied facts are grey arrows, violated ones red; interchangeable objects share a colour; things without a name
+    are grey. Raises DeixisError where the file cannot be written or its ending is not that of a picture.
     """
     save(answer_figure(found, title=title), path)
 
@@ -139,14 +139,13 @@ def grounding_figure(
 
 
 MAX_ALTERNATIVES = 2
-"""Number of alternatives that the label of an undecided match names, at most."""
+"""Maximum number of alternatives in the label of an undecided match."""
 
 
 def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str, str]) -> str:
-    """Return a name, with its probability if that is below 0.99, and what else an undecided match may be.
+    """Return a name, with its probability if that is below 0.99, and the alternatives of an undecided match.
 
-    The objects of a group that cannot be told apart have one colour, and the legend lists them; in a large group the
-    probability is left out.
+    Interchangeable objects have one colour, and the legend lists them; in a large group the probability is left out.
     """
     if match.decided:
         return match.object
@@ -281,7 +280,7 @@ def _edge(thing: str, name: str | None, colours: Mapping[str, str], marks: Marks
 
 
 def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> list[Any]:
-    """Return the entries of the legend: facts, marks, and the first groups that cannot be told apart."""
+    """Return the entries of the legend: facts, marks, and the first groups of interchangeable objects."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -302,8 +301,8 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
     for number, group in enumerate(groups[:MAX_LISTED]):
         colour = GROUP_COLOURS[number % len(GROUP_COLOURS)]
         members = at_most_many([name.replace("_", NO_BREAK) for name in group])
-        told = textwrap.fill(f"cannot be told apart: {', '.join(members)}", LINE).replace(NO_BREAK, " ")
-        keys.append(Patch(facecolor=colour, alpha=0.45, label=told))
+        label = textwrap.fill(f"cannot be told apart: {', '.join(members)}", LINE).replace(NO_BREAK, " ")
+        keys.append(Patch(facecolor=colour, alpha=0.45, label=label))
     if len(groups) > MAX_LISTED:
         keys.append(Patch(alpha=0.0, label=f"and {len(groups) - MAX_LISTED} more groups that cannot be told apart"))
     return keys

@@ -1,4 +1,4 @@
-"""Pictures: an imagined table from above, each thing with the outline of its kind."""
+"""Pictures of imagined tables from above, each thing with the outline of its kind."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ Shape = tuple[tuple[float, float], ...]
 def plot_table(table: ImaginedTable, kinds: Kinds, path: str | Path, title: str | None = None) -> None:
     """Draw an imagined table from above, as PNG, SVG or PDF by the file's ending.
 
-    Raises DeixisError where the file cannot be written or its ending is no picture.
+    Raises DeixisError where the file cannot be written or its ending is not that of a picture.
     """
     save(table_figure(table, kinds, title), path)
 
 
 def imagination_figure(found: Imagination, axes: Axes | None = None) -> Figure:
-    """Draw the first example table; raises DeixisError where there is none."""
+    """Draw the first example table; raise DeixisError without a table."""
     if not found.tables:
         raise DeixisError(f"{found.script.file}: there is no example table to draw; to_text() says why")
     title = found.script.title or found.script.name

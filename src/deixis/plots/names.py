@@ -1,4 +1,4 @@
-"""Names in a picture from above: each at its thing, none over another.
+"""Names in a picture from above, each at its thing and without overlaps.
 
 Two libraries that place labels were tried on the pictures of `ground`, `check`, `imagine` and `perceive`. They give
 worse pictures: they know anchor points, not areas, and write no name upright on a narrow thing. textalloc 1.2.4 puts
@@ -28,34 +28,34 @@ if TYPE_CHECKING:
 
 FONT = 8.0
 LONGEST = 48
-"""Characters of a name that are written: with an id and a probability, too."""
+"""Maximum number of characters of a name, with its id and probability."""
 
 RINGS = 40
-"""How many line heights away from its thing a name may stand."""
+"""Maximum distance of a name from its thing, in line heights."""
 
 AROUND = [
     *((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, 1), (1, -1), (-1, -1)),
     *((x, y) for y in (1, -1) for x in (0.3, -0.3, 0.6, -0.6)),
 ]
-"""Directions from a thing in which its name may stand, in shares of the two's sizes."""
+"""Directions from a thing to its name, in shares of the sizes of both."""
 
 COVERED = 600.0
-"""What it costs, in pixels as it were, to cover other things with a whole name."""
+"""Cost, in pixels, of covering other things with a whole name."""
 
 MANY = 150
-"""Things; where there are more, a name stands at its thing or nowhere."""
+"""Number of things above which a name is written at its thing or not at all."""
 
 NEAR = 120.0
-"""The most that a place may cost, in pixels as it were, where there are so many."""
+"""Maximum cost of a place, in pixels, with more than :data:`MANY` things."""
 
 HIDING = 3.0
-"""How many times worse it is to cover an area around a point than one of a thing."""
+"""Cost of covering an area around a point, relative to an area of a thing."""
 
 IN_THE_WAY = 40.0
 """Cost, in pixels, for each other thing whose own name would have to stand where this one does."""
 
 POINT = 8.0
-"""The side of the square, in pixels, that is kept clear around a point."""
+"""Side of the square around a point that names avoid, in pixels."""
 
 LEADER = 10.0
 """Pixels between a name and its thing from which a line joins them."""
@@ -71,6 +71,7 @@ class Box(NamedTuple):
 
     @property
     def area(self) -> float:
+        """Area in square pixels."""
         return (self.right - self.left) * (self.high - self.low)
 
     def shared(self, boxes: NDArray[np.float64]) -> NDArray[np.float64]:

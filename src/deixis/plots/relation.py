@@ -1,4 +1,4 @@
-"""A picture of what a relation word means: how well it holds of a thing that stands here or there."""
+"""Picture of the meaning of a relation word: its degree by the subject's place around a reference object."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ if TYPE_CHECKING:
 
 REFERENCE = ((-0.5, -0.5), (0.5, 0.5))
 SUBJECT = 0.4
-"""The width and depth of the thing that is moved about, in widths of the reference object."""
+"""Width and depth of the subject, in widths of the reference object."""
 
 REACH, NEAR_REACH = 3.0, 1.25
-"""How far the field goes from the reference object's centre, in its widths; and for what lies on it or under it."""
+"""Extent of the field from the reference object's centre, in its widths; and of the field of ``on`` and ``under``."""
 
 LINES = (0.1, 0.25, 0.5, 0.75)
-"""The degrees at which contours are drawn."""
+"""Degrees of the contours."""
 
 
 def plot_relation(relation: Relation, models: RelationModels, path: str | Path) -> None:
     """Write the field around a reference object as PNG, SVG or PDF by the file's ending.
 
-    Raises DeixisError where the file cannot be written or its ending is no picture.
+    Raises DeixisError where the file cannot be written or its ending is not that of a picture.
     """
     save(relation_figure(relation, models), path)
 
 
 def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places on each axis (steps,), and degrees of a thing centred there, shape (steps, steps), rows by y."""
+    """Return the places on each axis, shape (steps,), and the degrees for a subject there, shape (steps, steps)."""
     reach = _reach(relation)
     places = np.linspace(-reach, reach, steps)
     half = np.array([SUBJECT, SUBJECT]) / 2
@@ -52,7 +52,7 @@ def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArr
 
 
 def relation_figure(relation: Relation, models: RelationModels, steps: int = 181) -> Figure:
-    """Degrees as a heat map with contours; the reference object drawn, and the thing that is moved, in the corner."""
+    """Draw the degrees as a heat map with contours, with the reference object, and the subject in the corner."""
     figure, axes = new_figure(7.4, 6.3)
     places, degrees = field(relation, models, steps)
     shown = axes.contourf(places, places, degrees, levels=np.linspace(0, 1, 41), cmap="Blues")
@@ -76,7 +76,7 @@ def _reach(relation: Relation) -> float:
 
 
 def _origin(model: RelationModel) -> str:
-    """Return whether a meaning was learned, and from how much."""
+    """Return whether a meaning is shipped, or from how many facts it was learned."""
     origin = model.provenance
     if origin.made is None:
         return "as shipped"
@@ -85,7 +85,7 @@ def _origin(model: RelationModel) -> str:
 
 
 def _boxes(axes: Axes, reach: float) -> None:
-    """The reference object, and in the corner the subject, in the scale of the field."""
+    """Draw the reference object, and the subject in the corner, in the scale of the field."""
     from matplotlib import patheffects
     from matplotlib.patches import Rectangle
 

@@ -1,4 +1,4 @@
-"""Pictures of what was perceived and recognised: things from above, each in its colour, with box and name."""
+"""Pictures of perceived and recognised things from above, each in its colour, with its box and name."""
 
 from __future__ import annotations
 
@@ -24,37 +24,37 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Detected, PerceivedObject, Scene
 
 MAX_POINTS = 60_000
-"""Points that are drawn of the things, and of the table."""
+"""Maximum number of points to draw of the things, and of the table."""
 
 OUTLIER_SHARE = 0.005
-"""The share of the table's points, on each side, that may be some other level surface of its height."""
+"""Share of the table's points to ignore on each side; they may belong to another surface of its height."""
 
 DOT_WIDTH = 0.003
-"""Metres: the width of a point as it is drawn, about that between a depth camera's points on a table."""
+"""Width of a drawn point in metres, about the distance between a depth camera's points on a table."""
 
 TABLE = "#dedbd1"
 MAX_DOT_WIDTH = 0.02
-"""Metres: how wide a point of the table is drawn at the most, where these are far apart."""
+"""Maximum width of a drawn point of the table in metres, where the points are far apart."""
 
 MIN_DOT_POINTS = 1.0
-"""The same in typographic points, whatever the scale."""
+"""Minimum width of a drawn point in typographic points, at any scale."""
 
 HEIGHT, MAX_WIDTH = 5.4, 12.5
-"""Inches: a panel's height, and how wide the panels may be together."""
+"""Height of a panel and maximum width of all panels, in inches."""
 
 MAX_NAME_LENGTH = 32
-"""Characters of a name that are drawn."""
+"""Maximum number of characters of a name."""
 
 LEGEND = "Number: the probability of the name ('?': too small to say it); of 'unknown', that no name known is right."
 
 Window = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""The least and the greatest x and y that are drawn, in metres."""
+"""Least and greatest x and y of the picture, in metres."""
 
 
 def plot_perceived(scene: Scene, path: str | Path) -> None:
-    """Draw the points from above, grey where they belong to no thing; beside it the image, where the cloud is one.
+    """Draw the points from above, grey where they belong to no thing; beside them the image of an organised cloud.
 
-    Raises SceneError for a scene that was not found in a cloud, or is read from a file.
+    Raises SceneError for a scene without its cloud, such as one read from a file.
     """
     save(perceived_figure(scene), path)
 
@@ -129,9 +129,9 @@ def recognised_figure(found: Recognised, axes: Axes | None = None) -> Figure:
 
 
 def _answered(thing: PerceivedObject, found: Recognised) -> str:
-    """Return the id of a thing, its name, and the probability of that where it was recognised.
+    """Return the id of a thing, its name, and the probability of the name where it was recognised.
 
-    In place of a name that is not sure enough stands the likeliest, where it is likelier than that none is right.
+    Without a sure name, return the most likely one with '?' where it is more likely than ``unknown``.
     """
     answer: Recognition | None = found.answers.get(thing.id)
     name = (thing.label if answer is None else answer.label) or "unknown"
@@ -145,9 +145,9 @@ def _answered(thing: PerceivedObject, found: Recognised) -> str:
 
 
 def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:
-    """Return what is drawn of points (n, 3) in the table's frame: the things, and some of the table around them.
+    """Return the window of the picture for points (n, 3) in the table's frame: the things and a margin of the table.
 
-    The whole table where nothing is on it, and all points where no table was found.
+    It is the whole table where nothing is on it, and all points where no table was found.
     """
     if scene.objects:
         return _around_boxes(scene)
@@ -165,14 +165,14 @@ def _around_boxes(scene: Scene) -> Window:
 
 
 def _widened(low: NDArray[np.float64], high: NDArray[np.float64]) -> Window:
-    """With a margin, and neither side less than half the other."""
+    """Return a window with a margin, and no side shorter than half of the other."""
     middle, half = (low + high) / 2, (high - low) / 2
     half = np.maximum(half + 2 * MARGIN * half.max(), max(half.max() / 2, DOT_WIDTH))
     return middle - half, middle + half
 
 
 def _panels(window: Window, camera: CameraPicture | None) -> tuple[Figure, list[Axes], float]:
-    """Return a figure with a panel for each view, of one height; and how many inches a metre has in the first."""
+    """Return a figure with panels of equal height, one for each view, and the inches per metre of the first."""
     width, depth = (window[1] - window[0]).tolist()
     shapes = [width / depth] if camera is None else [width / depth, camera.shape]
     height = min(HEIGHT, MAX_WIDTH / sum(shapes))
@@ -187,7 +187,7 @@ def _panels(window: Window, camera: CameraPicture | None) -> tuple[Figure, list[
 
 
 def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], window: Window, scale: float) -> None:
-    """Points in the window, the table's so wide that they close up; what is higher lies over what is lower."""
+    """Draw the points in the window, higher ones over lower ones; points of the table are wide enough to close up."""
     inside = np.isfinite(points).all(axis=1) & ((points[:, :2] > window[0]) & (points[:, :2] < window[1])).all(axis=1)
     style: dict[str, Any] = {"linewidths": 0, "rasterized": True}
     for of_things in (False, True):
@@ -202,7 +202,7 @@ def _points(axes: Axes, points: NDArray[np.float32], labels: NDArray[np.int32], 
 
 
 def _dress(axes: Axes, scene: Scene, window: Window, title: str) -> None:
-    """Boxes, each edged in a darker tone of its thing's colour, and the frame around them."""
+    """Draw the boxes, each in a darker tone of its thing's colour, and the frame around them."""
     from matplotlib.patches import Rectangle
 
     edges = 0.6 * colours_of(np.arange(len(scene.objects)))
@@ -216,5 +216,5 @@ def _dress(axes: Axes, scene: Scene, window: Window, title: str) -> None:
 
 
 def _say(axes: Axes, what: str) -> None:
-    """A line in the middle of a panel that shows no thing."""
+    """Write a line in the middle of a panel without things."""
     axes.text(0.5, 0.5, what, transform=axes.transAxes, ha="center", va="center", fontsize=11, color=INK, wrap=True)

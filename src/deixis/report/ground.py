@@ -1,26 +1,31 @@
-"""Who is who, as lines of text for the terminal."""
+"""Groundings as lines of text for the terminal."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+from deixis.answers import count
+from deixis.report.marks import doubt, violation
+
 if TYPE_CHECKING:
+    from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
 
 MAX_LISTED = 12
-"""Names, and facts that matter, that are listed one by one."""
+"""Maximum number of names, and of pivotal facts, to list one by one."""
 
 MIN_PROBABILITY_LEAD = 0.02
-"""By how much likelier another thing is where it is told: more than what sampling makes of equal ones."""
+"""Lead in probability from which another thing is reported as likelier; above the error of sampling."""
 
 
 def grounding_lines(found: Grounding) -> list[str]:
-    """Who is who, what cannot be told apart, which facts fail, what was left out, and what qualifies the answer."""
-    from deixis.reasoning.grounding.answer import Outcome, Standing
+    """Return the matches, the interchangeable names, the violated facts, what was left out, and the qualifications."""
+    from deixis.reasoning.grounding.answer import Outcome
 
-    lines = [_match_line(match) for match in found.matches.values()] or ["No object was found."]
+    lines = [line for match in found.matches.values() for line in match_lines(match)] or ["No object was found."]
+    lines += sureness_lines(found)
     elsewhere = [
         match.object
         for match in found.matches.values()
@@ -28,8 +33,8 @@ def grounding_lines(found: Grounding) -> list[str]:
         and any((other.probability or 0.0) > match.probability + MIN_PROBABILITY_LEAD for other in match.alternatives)
     ]
     if elsewhere:
-        told = "This is the likeliest map as a whole; taken alone, likelier to be another thing: "
-        lines += ["", f"{told}{', '.join(at_most_many(elsewhere))}."]
+        head = "These are the most likely matches together; taken alone, another thing is more likely for: "
+        lines += ["", f"{head}{', '.join(at_most_many(elsewhere))}."]
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
@@ -37,46 +42,108 @@ def grounding_lines(found: Grounding) -> list[str]:
     counts = {outcome: len(found.of(outcome)) for outcome in (Outcome.VIOLATED, Outcome.WAIVED, Outcome.OPEN)}
     words = {
         Outcome.VIOLATED: "violated",
-        Outcome.WAIVED: "optional and not so",
+        Outcome.WAIVED: "optional and not satisfied",
         Outcome.OPEN: "about something left out",
     }
     rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
-    lines += [f"    violated: {violation_text(entry)}" for entry in found.violated]
+    lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
     if found.fits is not None:
-        lines.append(f"The description is of this scene with probability {_probability(found.fits).strip()}.")
+        lines.append(f"The description fits this scene with probability {_probability(found.fits).strip()}.")
     left_out = (*found.unmatched_objects, *found.unmatched_perceived)
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]
         if len(names) > MAX_LISTED:
-            names = [", ".join(at_most_many(names)) + " (--json has them)"]
+            names = [", ".join(at_most_many(names)) + " (--json lists all)"]
         lines += [f"Left out: {name}: {reason}." for name in names]
     pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
     lines += pivotal[:MAX_LISTED]
     if len(pivotal) > MAX_LISTED:
-        lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that matter (--json has them)")
-    how = "proved the best in" if found.proved_best else "not proved the best,"
-    if not found.proved_best and math.isfinite(found.gap):
-        how = f"not proved the best: another could be likelier by {found.gap:.3g} nats at most;"
-    sampled = found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error)
-    error = f"; probabilities are sampled, within about {found.probability_error:.1g}" if sampled else ""
-    standing = f"{how} {found.seconds:.2f} s{error}"
-    lines.append(f"Graph similarity {found.graph_similarity:.3f}; engine {found.engine}, {standing}.")
-    return lines + [f"Note: {note}." for note in found.notes]
+        lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that the answer depends on (--json lists all)")
+    return [*lines, _standing_line(found), *(f"Note: {note}." for note in found.notes)]
 
 
-def at_most_many(told: list[str]) -> list[str]:
-    """Return the first ones, and how many more there are."""
-    return [*told[:MAX_LISTED], f"{len(told) - MAX_LISTED} more"] if len(told) > MAX_LISTED else told
+def sureness_lines(found: Grounding) -> list[str]:
+    """Return how sure the answer is, in plain words: how many names are settled, and which is the least certain."""
+    from deixis.reasoning.grounding.options import DECIDED
+
+    if not found.matches:
+        return []
+    total = len(found.matches)
+    names = "the only name" if total == 1 else f"all {total} names"
+    settled = [match for match in found.matches.values() if match.decided]
+    known = [match for match in found.matches.values() if match.probability is not None]
+    if not known:
+        line = f"{len(settled)} of {count(total, 'name')} settled; this engine gives no probabilities."
+        return ["", doubt(line, len(settled) < total)]
+    if len(settled) == total:
+        return ["", f"Sure of {names}: each match has a probability of at least {DECIDED:g}."]
+    least = min(known, key=lambda match: match.probability or 0.0)
+    least_certain = f"the least certain is {least.object} ({_probability(least.probability or 0.0).strip()})"
+    if total == 1:
+        line = f"Not sure: {least.object} has a probability of {_probability(least.probability or 0.0).strip()}."
+        return ["", doubt(line)]
+    sure = f"Sure of {len(settled) or 'none'} of {total} names (probability {DECIDED:g} or more)"
+    return ["", doubt(f"{sure}; {least_certain}.")]
+
+
+def kinds_lines(script: Script) -> list[str]:
+    """Return the kinds that grounding took from the names of objects, and the names without a known kind."""
+    by_kind: dict[str, list[str]] = {}
+    unknown = []
+    for name in script.objects:
+        if name not in script.kinds:
+            kind = script.ontology.of_name(name)[0]
+            if kind is None:
+                unknown.append(name)
+            else:
+                by_kind.setdefault(kind.label, []).append(name)
+    shown = [
+        label
+        if [name.replace("_", " ").lower() for name in names] == [label.lower()]
+        else f"{label} ({', '.join(names)})"
+        for label, names in by_kind.items()
+    ]
+    lines = [f"Kinds taken from the names: {', '.join(at_most_many(shown))}."] if shown else []
+    return lines + ([f"No known kind: {', '.join(at_most_many(unknown))}."] if unknown else [])
+
+
+def _standing_line(found: Grounding) -> str:
+    """Return whether the answer is proved the best, by which engine, how long it took, and the error of sampling."""
+    from deixis.reasoning.grounding.answer import Standing
+    from deixis.reasoning.grounding.options import EngineName
+
+    if found.proved_best:
+        standing = "Proved the best answer"
+    elif math.isfinite(found.gap):
+        standing = f"Not proved the best answer: another could be {_times(found.gap)} as likely"
+    else:
+        standing = "Not proved the best answer"
+    line = f"{standing}; engine {found.engine}, {found.seconds:.2f} s"
+    if found.probabilities is Standing.SAMPLED and math.isfinite(found.probability_error):
+        line += f"; probabilities are sampled, with an error of about {found.probability_error:.1g}"
+    if found.engine == EngineName.SIMILARITY:
+        line += f"; graph similarity {found.graph_similarity:.3f}"
+    return doubt(f"{line}.", not found.proved_best)
+
+
+def _times(nats: float) -> str:
+    """Return a lead in nats as a factor in words."""
+    return f"up to {math.exp(nats):.3g} times" if nats < math.log(1000) else "more than 1000 times"
+
+
+def at_most_many(names: list[str]) -> list[str]:
+    """Return the first :data:`MAX_LISTED` names, and how many more there are."""
+    return [*names[:MAX_LISTED], f"{len(names) - MAX_LISTED} more"] if len(names) > MAX_LISTED else names
 
 
 def match_lines(match: Match) -> list[str]:
-    """Return the line of one match."""
-    return [_match_line(match)]
+    """Return the line of one match, marked as doubt where the match is not decided."""
+    return [doubt(_match_line(match), not match.decided)]
 
 
 def _match_line(match: Match) -> str:
-    """Return an object, its thing, how probable that is, and what else it may be."""
+    """Return an object, its thing, the probability of the match, and the alternatives."""
     line = f"{match.object:<24} {match.perceived:<10}"
     if match.probability is not None:
         line += f" {_probability(match.probability)}"
@@ -97,7 +164,7 @@ def _thing(other: Alternative) -> str:
 
 
 def _probability(value: float) -> str:
-    """Two digits, never 1 for what is not certain, and what is not called decided looks so."""
+    """Return a probability with two digits; 1 only where it is certain, and below DECIDED where undecided."""
     from deixis.reasoning.grounding.options import DECIDED
 
     if value < DECIDED:
@@ -106,7 +173,7 @@ def _probability(value: float) -> str:
 
 
 def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
-    """What would be otherwise without a fact, empty where interchangeable objects would only swap their things."""
+    """Return how the answer would change without a fact; empty where only interchangeable objects would swap."""
     changes = dict(pivotal.changes)
     for group in found.interchangeable:
         held = {found.matches[name].perceived for name in group if name in found.matches}
@@ -122,7 +189,7 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
 
 
 def violation_text(entry: FactOutcome) -> str:
-    """Return a violated fact with its line and what was perceived instead."""
+    """Return a violated fact with its line and the relation that was perceived instead."""
     place = f" ({entry.fact.source})" if entry.fact.source else ""
     if entry.perceived is None or entry.seen is None:
         return f"{entry.fact}{place}"

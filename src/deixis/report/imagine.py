@@ -1,4 +1,4 @@
-"""What was imagined, as lines of text and as JSON."""
+"""Imagined tables as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ from deixis.ontology.export import fact_to_dict
 from deixis.ontology.facts import Fact
 from deixis.ontology.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
+from deixis.report.marks import doubt, violation
 from deixis.workflows.imagine import Imagination, ImaginedTable, NoTable, Sized
 
 
 def imagination_lines(found: Imagination) -> list[str]:
-    """Return the tables with what they do not show; or the facts that allow none, with file and line."""
+    """Return the tables and the facts that they give up, or the facts that allow no table, with file and line."""
     if found.none is not None:
         return list(_none_lines(found.none))
     if not found.tables:
-        return ["Undecided: the time was up before a table was found, or proved impossible. Give --time-limit more."]
+        line = "Undecided: time limit reached before a table was found or proved impossible; raise --time-limit."
+        return [doubt(line)]
     lines: list[str] = []
     for number, table in enumerate(found.tables, start=1):
         if len(found.tables) > 1:
@@ -39,11 +41,11 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         yield from (f"    {fact.source or 'stated'}: {fact}" for fact in waived.because)
         yield from (f"    {sized}" for sized in waived.sizes)
     for a, b in table.overlapping:
-        yield f"Overlap: {a} and {b}; they could not be laid apart."
+        yield f"Overlap: {a} and {b} could not be laid apart."
     for fact in table.named_otherwise:
-        yield f"Note: {fact}{_at(fact)} holds, but the exact name of two things that overlap in part says otherwise."
+        yield f"Note: {fact}{_at(fact)} holds, but the exact word for two things that overlap in part is another one."
     if not table.finished:
-        yield "Note: the time was up before everything was put in its best place; all firm facts hold."
+        yield "Note: time limit reached before everything was in its best place; all firm facts hold."
 
 
 def _cm(metres: float) -> str:
@@ -56,21 +58,22 @@ def _at(fact: Fact) -> str:
 
 def _none_lines(none: NoTable) -> Iterator[str]:
     if none.sizes:
-        yield "There is no such table with things of their usual sizes: these do not go together."
+        yield violation("There is no such table with things of usual size: these cannot all hold.")
     else:
-        yield f"There is no such table, whatever sizes things have{': ' + none.reason if none.reason else ''}."
-    yield from (f"    {fact.source or 'stated'}: {fact}" for fact in none.facts)
-    yield from (f"    {sized}" for sized in none.sizes)
+        reason = f": {none.reason}" if none.reason else ""
+        yield violation(f"There is no such table with things of any size{reason}.")
+    yield from (violation(f"    {fact.source or 'stated'}: {fact}") for fact in none.facts)
+    yield from (violation(f"    {sized}") for sized in none.sizes)
     if not none.minimal:
-        yield "The time was up before it was known whether all of these are needed."
+        yield "Time limit reached before it was known whether all of these are needed."
     elif none.sizes:
-        yield "Without any one of these there is one. With --any-size things may have any size."
+        yield "Leaving out any one of these makes a table possible; --any-size allows unusual sizes."
     else:
         yield "Leave out or change any one of these."
 
 
 def imagination_to_dict(found: Imagination) -> dict[str, Any]:
-    """Return the same as JSON: ``tables``, each with its scene, or ``conflict``."""
+    """Return imagined tables as plain data: ``tables``, each with its scene, or ``conflict``."""
     return {
         "decided": found.decided,
         "tables": [_table_to_dict(table) for table in found.tables],

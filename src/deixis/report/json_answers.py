@@ -1,4 +1,4 @@
-"""Answers as plain data for JSON: the shapes that the commands promise."""
+"""Answers as plain data, in the form that the commands print as JSON."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def script_to_dict(script: Script) -> dict[str, Any]:
 
 
 def inference_to_dict(inference: Inference) -> dict[str, Any]:
-    """Stated and inferred facts, or the minimal conflict alone."""
+    """Return the stated and inferred facts, or only the minimal conflict."""
     if inference.conflict is not None:
         facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
         conflict = {"reason": inference.conflict.reason, "minimal": inference.conflict.minimal, "facts": facts}
@@ -50,7 +50,7 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
 
 
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
-    """Return a derivation, down to stated facts."""
+    """Return a derivation as a tree, down to the stated facts."""
     from deixis.ontology.facts import Fact
 
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
@@ -59,7 +59,7 @@ def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
 
 
 def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
-    """Return why a fact does not follow: what excludes it, or a picture without it."""
+    """Return why a fact does not follow: what excludes it, or a table without it on which all facts hold."""
     answer: dict[str, Any] = {"fact": str(found.fact), "follows": found.follows is not None}
     if found.follows is not None:
         answer["derivation"] = derivation_to_dict(found.follows)
@@ -89,7 +89,7 @@ def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
 
 
 def match_to_dict(match: Match) -> dict[str, Any]:
-    """Return an object, its thing, and what else it may be."""
+    """Return an object, its thing, and the alternatives."""
     return {
         "object": match.object,
         "perceived": match.perceived,
@@ -102,7 +102,7 @@ def match_to_dict(match: Match) -> dict[str, Any]:
 
 
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
-    """Return who is who, and everything that qualifies it."""
+    """Return the matches of a grounding and everything that qualifies them."""
     from deixis.reasoning.grounding.answer import Outcome, Standing
 
     pivotal = [
@@ -149,7 +149,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
 
 
 def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
-    """From which viewpoints a script may speak, and what was asked and answered, each where it was wanted."""
+    """Return the possible viewpoints of the script and the questions with their answers, where requested."""
     answer: dict[str, Any] = {}
     if found.viewpoints is not None:
         answer["viewpoints"] = [
@@ -174,7 +174,7 @@ def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
 
 
 def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
-    """Return a fact, its line, and what was perceived of its pair."""
+    """Return a fact, its line, and the perceived relation of its pair."""
     perceived = None
     if entry.perceived is not None and entry.seen is not None:
         perceived = {
@@ -188,7 +188,7 @@ def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
 
 
 def learned_to_dict(learned: Learned) -> dict[str, Any]:
-    """Return a lesson: what it taught, what it left open, and the grounding that it rests on."""
+    """Return a lesson: what it taught, what it left open, and its grounding."""
     layout = learned.lesson.layout
     return {
         "lesson": layout.lesson,

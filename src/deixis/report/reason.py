@@ -1,4 +1,4 @@
-"""What reasoning over an ontology found, in words and as JSON."""
+"""Entailments and justifications of ontologies as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from deixis.reasoning.description_logic.justification import Justification
 from deixis.reasoning.description_logic.materialisation import InferenceStep
 from deixis.reasoning.description_logic.terms import Triple, iri_of
 from deixis.reasoning.description_logic.verbalisation import Words
+from deixis.report.marks import violation
 
 
 def verdict(found: Entailment, words: Words) -> str:
-    """Return the outcome in one sentence; it claims no more than the engine decides."""
+    """Return the outcome in one sentence that claims no more than the engine decides."""
     if not found.consistent:
-        return f"inconsistent ({found.engine}): nothing can satisfy the ontology"
+        return violation(f"inconsistent ({found.engine}): the ontology has no model")
     held = "consistent" if found.complete else "no contradiction found"
     if found.unsatisfiable:
         names = ", ".join(words.name(f"<{iri}>") for iri in found.unsatisfiable)
-        held += f" while nothing belongs to {names}"
-    return f"{held} ({found.engine}); {len(found.inferred):,} triples inferred"
+        held += f", but no individual can belong to {names}"
+    return violation(f"{held} ({found.engine}); {len(found.inferred):,} triples inferred", bool(found.unsatisfiable))
 
 
 def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
@@ -37,23 +38,23 @@ def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
 
 
 def impossibility_lines(found: Entailment, words: Words) -> Iterator[str]:
-    """Yield why the ontology, or a class of it, is impossible, as far as that was found out."""
+    """Yield the reasons found why the ontology, or a class of it, is unsatisfiable."""
     for justification in found.inconsistency:
         yield f"These cannot all hold{_doubt(justification)}:"
         yield from _axiom_lines(justification, words)
     for justification in found.impossible:
         yield from justification_lines(justification, words)
     if found.unexplained is not None:
-        why = "There may be more reasons" if found.inconsistency or found.impossible else "Why was not found out"
+        why = "There may be more reasons" if found.inconsistency or found.impossible else "The reason was not found"
         yield f"{why}: {found.unexplained} (--time-limit)."
 
 
 def _doubt(justification: Justification) -> str:
-    return "" if justification.minimal else " (some may be superfluous: the time was up before all were tried)"
+    return "" if justification.minimal else " (some may not be needed: time limit reached before all were tried)"
 
 
 def justification_lines(justification: Justification, words: Words) -> Iterator[str]:
-    """Yield a statement, or that there is a contradiction, and the axioms behind it."""
+    """Yield a statement, or 'Contradiction', and the axioms behind it."""
     what = "Contradiction" if justification.entailed is None else words.triple(justification.entailed)
     yield f"{what}, because{_doubt(justification)}"
     yield from _axiom_lines(justification, words)
@@ -91,7 +92,7 @@ def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
 def justification_to_dict(
     justification: Justification, words: Words, steps: tuple[InferenceStep, ...] = ()
 ) -> dict[str, Any]:
-    """A justification as plain data: what follows (null: a contradiction), the axioms, and the steps by rules."""
+    """Return a justification as plain data: its conclusion (null: a contradiction), its axioms, and the rule steps."""
     return {
         "entailed": None if justification.entailed is None else _plain(justification.entailed),
         "minimal": justification.minimal,

@@ -1,4 +1,4 @@
-"""The relations of a scene as lines, as a matrix, and as JSON, each line by line: a large scene has millions."""
+"""The relations of a scene as lines, as a matrix and as JSON, line by line, as a large scene has millions."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def pair_lines(related: Related, subject: str | None = None, object: str | None 
 
 
 def _widest(related: Related, row: int, columns: range) -> int:
-    """Return the length of the longest sign that a subject bears to the objects, but for itself."""
+    """Return the length of the longest sign between a subject and the other objects."""
     there = np.array([column for column in columns if column != row], dtype=np.int64)
     return max((len(related.signs[code]) for code in np.unique(related.codes[row, there]).tolist()), default=0)
 
 
 def matrix_lines(related: Related) -> Iterator[str]:
-    """Subjects in rows, objects in columns; a dot where both are the same."""
+    """Yield a matrix with subjects in rows and objects in columns, and dots on the diagonal."""
     if not related.ids:
         yield "There are no objects."
         return

@@ -1,4 +1,4 @@
-"""What a relation word means, as lines and as plain data."""
+"""Relation words and their models as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def relation_lines(relation: Relation, relations: Relations, models: RelationMod
     wide = relations[relation.word]
     lines = [f"{wide.name}: {wide.phrase}", f"inverse     {wide.inverse}", f"words       {', '.join(wide.words)}"]
     for one in (wide, relations.exact(wide)):
-        height = f"; settled on z by {_signs(one.z_atoms)}" if one.z_atoms else ""
+        height = f"; z {_signs(one.z_atoms)}" if one.z_atoms else ""
         lines.append(f"{one.reading.value:<11} x {_signs(one.x_atoms)}; y {_signs(one.y_atoms)}{height}")
     model = models.of(wide)
     origin = model.provenance
@@ -37,7 +37,7 @@ def relation_lines(relation: Relation, relations: Relations, models: RelationMod
 
 
 def relation_to_dict(relation: Relation, relations: Relations, models: RelationModels) -> dict[str, Any]:
-    """Return the same as plain data; ``log_degrees`` are natural logarithms."""
+    """Return a relation word as plain data; ``log_degrees`` are natural logarithms of degrees."""
     wide = relations[relation.word]
     readings = {}
     for one in (wide, relations.exact(wide)):
@@ -76,7 +76,7 @@ def model_to_dict(model: RelationModel) -> dict[str, Any]:
 
 
 def learned_words_lines(learned: LearnedWords) -> list[str]:
-    """Return what was learned of which words, from what, and what taught nothing and why."""
+    """Return which words were learned, from how many facts, and which examples were left out and why."""
     lines = [f"{model.name:<11} learned from {_facts(model)}" for model in learned.changed]
     for word, ids in (("lessons", learned.lessons), ("kept as", learned.kept)):
         lines += [f"{word:<11} {', '.join(ids)}"] if ids else []
@@ -85,7 +85,7 @@ def learned_words_lines(learned: LearnedWords) -> list[str]:
 
 
 def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
-    """Return the same as plain data, with the models' parameters."""
+    """Return learned words as plain data, with the parameters of their models."""
     return {
         "learned": [model_to_dict(model) for model in learned.changed],
         "lessons": list(learned.lessons),
@@ -104,6 +104,6 @@ def _signs(mask: int) -> str:
 
 
 def _facts(model: RelationModel) -> str:
-    """Return how many facts taught a model, by how sure they were, so that the number need not be whole."""
+    """Return the number of facts that taught a model, weighted by their certainty, so not always a whole number."""
     number = round(model.provenance.examples, 1)
     return f"{number:g} fact" if number == 1 else f"{number:g} facts"

@@ -1,4 +1,4 @@
-"""What was retrieved, as lines and as plain data."""
+"""Retrieved layouts and scenes as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ def retrieval_lines(retrieval: Retrieval) -> list[str]:
     found = retrieval.found
     if not found:
         return [
-            f"Nothing among {retrieval.among} has a similarity of {retrieval.least:g} or more to {retrieval.query}."
+            f"None of the {retrieval.among} candidates has a similarity of at least {retrieval.least:g} to "
+            f"{retrieval.query}."
         ]
     wide = max(len(one.name) for one in found)
     lines = [f"{'':{wide}}  similarity  objects  relations"]
     for one in found:
         relations = "     none" if one.relations is None else f"{one.relations:9.3f}"
-        doubt = "" if one.proved else "   at least: not proved in time"
+        doubt = "" if one.proved else "   lower bound: not proved in time"
         lines.append(f"{one.name:<{wide}}  {one.similarity:10.3f}  {one.objects:7.3f}  {relations}{doubt}")
     return lines
 

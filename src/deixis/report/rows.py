@@ -1,4 +1,4 @@
-"""The tables in answers, as rows for data frames and notebooks."""
+"""Answers as rows of tables, for data frames and notebooks."""
 
 from __future__ import annotations
 

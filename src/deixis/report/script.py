@@ -1,4 +1,4 @@
-"""What is said, what follows, what was learned and what is wrong, as lines of text for the terminal."""
+"""Scripts, inferences, lessons and checks as lines of text for the terminal."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.kinds import with_article
 from deixis.report.ground import violation_text
+from deixis.report.marks import doubt, violation
 
 MAX_LISTED = 12
-"""Lines of a script that are listed one by one."""
+"""Maximum number of source lines to list behind an inferred fact, and of objects to list of a counterexample."""
 
 MAX_INFERRED_LISTED = 20_000
-"""Inferred facts that are listed."""
+"""Maximum number of inferred facts to list."""
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def script_lines(script: Script) -> list[str]:
-    """Return the header, then every fact with its line."""
+    """Return the header of a script, its facts with their lines, and its kinds and colours."""
     title = f' "{script.title}"' if script.title else ""
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
@@ -40,7 +41,7 @@ def script_lines(script: Script) -> list[str]:
 
 
 def qualified(fact: Fact) -> str:
-    """Return a fact with what qualifies it."""
+    """Return a fact with its mark 'optional' and its weight."""
     marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
     return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
 
@@ -57,17 +58,18 @@ def _count(things: Sized, noun: str) -> str:
 
 
 def inference_lines(inference: Inference) -> Iterator[str]:
-    """Yield what is stated and what follows, each with its lines; of a contradiction only the minimal conflict."""
+    """Yield the stated and the inferred facts with their lines, or only the minimal conflict."""
     if inference.conflict is not None:
-        yield f"The script contradicts itself: {inference.conflict.reason}."
-        yield from (f"    {fact.source}: {fact}" for fact in inference.conflict.facts)
+        yield violation(f"The script contradicts itself: {inference.conflict.reason}.")
+        yield from (violation(f"    {fact.source}: {fact}") for fact in inference.conflict.facts)
         if inference.conflict.minimal:
             yield "Leave out or change any one of these."
         else:
-            yield "Leave out or change some of these; the time was up before it was clear which are needed."
+            yield "Leave out or change some of these; time limit reached before it was known which are needed."
         return
     if not inference.decided:
-        yield "Undecided within the time limit: whether the facts, among which some leave a choice, can all hold."
+        reason = "time limit reached before it was known whether the facts, some with a choice, can all hold"
+        yield doubt(f"Undecided: {reason}.")
         return
     yield f"Stated ({len(inference.stated)}):"
     for fact in inference.stated:
@@ -86,21 +88,21 @@ def inference_lines(inference: Inference) -> Iterator[str]:
     if count > MAX_INFERRED_LISTED:
         yield f"    and {count - MAX_INFERRED_LISTED} more: --ntriples prints all that holds, --json everything"
     if not inference.complete:
-        yield "The time limit struck: more may follow from the facts that leave a choice."
+        yield doubt("Time limit reached: more may follow from the facts that leave a choice.")
 
 
 def why_not_lines(found: WhyNot) -> list[str]:
-    """Return why a fact does not follow; at the most ``MAX_LISTED`` objects of a picture."""
+    """Return why a fact does not follow, with at most :data:`MAX_LISTED` objects of a counterexample."""
     if found.follows is not None:
         return [f"{found.fact} does follow:", *(f"    {line}" for line in found.follows.lines())]
     if found.against is not None:
         return [f"{found.fact} cannot hold, since this does:", *(f"    {line}" for line in found.against.lines())]
     if found.conflict is not None:
-        lines = [f"{found.fact} cannot hold beside these, for {found.conflict.reason}:"]
+        lines = [f"{found.fact} cannot hold together with these ({found.conflict.reason}):"]
         stated = [fact for fact in found.conflict.facts if fact.source is not None]
         return lines + [f"    {fact.source}: {fact}" for fact in stated]
     assert found.picture is not None
-    lines = [f"{found.fact} does not follow: every firm fact holds in this picture, and it does not."]
+    lines = [f"{found.fact} does not follow: it is false in this picture, where every firm fact holds."]
     boxes = dict(zip(found.picture.objects, found.picture.boxes.astype(int).tolist(), strict=True))
     ends = dict.fromkeys((found.fact.subject, found.fact.object))
     shown = [*ends, *(name for name in boxes if name not in ends)][:MAX_LISTED]
@@ -108,10 +110,10 @@ def why_not_lines(found: WhyNot) -> list[str]:
         low, high = boxes[name]
         lines.append(f"    {name:<24} " + "   ".join(f"{axis} {low[k]} to {high[k]}" for k, axis in enumerate("xyz")))
     if len(boxes) > len(shown):
-        lines.append(f"    and {len(boxes) - len(shown)} more (--json has them)")
-    lines += ["It would take:", *(f"    {order}" for order in found.missing)]
+        lines.append(f"    and {len(boxes) - len(shown)} more (--json lists all)")
+    lines += ["It would require:", *(f"    {order}" for order in found.missing)]
     known = [f"    {fact}" for fact in found.known]
-    return [*lines, "What follows of the two:", *(known or ["    nothing"])]
+    return [*lines, "What follows about the two:", *(known or ["    nothing"])]
 
 
 def learned_lines(learned: Learned, memory: str) -> list[str]:
@@ -130,42 +132,43 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         lines.append("The same view as before, kept once: " + ", ".join(again))
     lines += [f"{word}." for word in learned.standing]
     if learned.doubtful:
-        lines.append("Recorded as not settled, and teaching nothing: " + ", ".join(learned.doubtful))
+        lines.append("Recorded as not settled, so no view was learned: " + ", ".join(learned.doubtful))
     lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]
     return lines
 
 
 def check_lines(checked: Check) -> list[str]:
-    """Return the verdict on a table, what is wrong with it by line, and what cannot be told."""
+    """Return the verdict on a table, its errors line by line, and what is undetermined."""
     from deixis.reasoning.comparison.checking import RoleVerdict
 
     table = checked.table
     right = "Nothing is known to be wrong" if table.of(RoleVerdict.UNDETERMINED) else "Nothing is wrong"
     name = checked.layout.name
-    lines = [f"{right}, as '{name}' has it." if table.well else f"This table is not laid as '{name}' says."]
+    lines = [f"{right} by '{name}'." if table.well else violation(f"This table is not laid as '{name}' says.")]
     for entry in table.of(RoleVerdict.MISSING):
         facts = [
             fact for fact in checked.layout.facts if entry.role in (fact.subject, fact.object) and not fact.optional
         ]
         said = "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
-        lines.append(f"missing     {entry.role}{said}")
+        lines.append(violation(f"missing     {entry.role}{said}"))
     for entry in table.of(RoleVerdict.MISPLACED):
-        exchanged = f", in the place of {entry.in_place_of}" if entry.in_place_of else ""
-        lines.append(f"misplaced   {entry.role} ({entry.perceived}){exchanged}")
-        lines += [f"            {violation_text(broken)}" for broken in entry.broken]
+        exchanged = f", where {entry.in_place_of} belongs" if entry.in_place_of else ""
+        lines.append(violation(f"misplaced   {entry.role} ({entry.perceived}){exchanged}"))
+        lines += [violation(f"            {violation_text(broken)}") for broken in entry.broken]
     blamed = {entry.role for entry in table.of(RoleVerdict.MISPLACED)}
     for broken in table.broken:
         if not blamed & {broken.fact.subject, broken.fact.object}:
-            lines.append(f"broken      {violation_text(broken)}")
+            lines.append(violation(f"broken      {violation_text(broken)}"))
     for entry, other in table.miscoloured:
-        lines.append(f"miscoloured {entry.role} ({entry.perceived}): {other.seen.label}, not {other.described.label}")
-    lines += [f"extra       {extra.perceived}: {extra.reason}" for extra in table.extra]
-    lines += [f"unexpected  {violation_text(entry)}" for entry in table.unexpected]
+        seen = f"{other.seen.label}, not {other.described.label}"
+        lines.append(violation(f"miscoloured {entry.role} ({entry.perceived}): {seen}"))
+    lines += [violation(f"extra       {extra.perceived}: {extra.reason}") for extra in table.extra]
+    lines += [violation(f"unexpected  {violation_text(entry)}") for entry in table.unexpected]
     lines += [
-        f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}"
+        doubt(f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}")
         for entry in table.of(RoleVerdict.UNDETERMINED)
     ]
-    lines += [f"absent      {entry.role}, which need not be there" for entry in table.of(RoleVerdict.ABSENT)]
+    lines += [f"absent      {entry.role}, which is optional" for entry in table.of(RoleVerdict.ABSENT)]
     lines.append(f"correct     {len(table.of(RoleVerdict.CORRECT))} of {len(table.roles)}")
     return lines + [f"Note: {note}." for note in table.grounding.notes]
 

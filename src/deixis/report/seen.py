@@ -1,18 +1,20 @@
-"""What was perceived, taught and recognised, as lines of text and as plain data for JSON."""
+"""Perceived, taught and recognised things as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
 
+from deixis.report.marks import doubt
+
 if TYPE_CHECKING:
     from deixis.learning.views import Recognised, Taught
-    from deixis.perception.recognition.recogniser import Recognition
+    from deixis.perception.recognition.recogniser import Candidate, Recognition
     from deixis.perception.scene import Scene
 
 
 def scene_lines(scene: Scene) -> list[str]:
-    """Return a line per object: its id, the sides of its box and where its centre is."""
+    """Return a line for each object: its id, the sides of its box and the place of its centre."""
     unit, scale, digits = ("px", 1, 0) if scene.unit == "px" else ("cm", 100, 1)
     lines = []
     for thing in scene.objects:
@@ -25,7 +27,7 @@ def scene_lines(scene: Scene) -> list[str]:
 
 _SHOWN = {
     "table": "The cloud shows a table.",
-    "tables": "The cloud shows several tables, of which one was looked at.",
+    "tables": "The cloud shows several tables; only one was examined (--table).",
     "object": "The cloud shows one object, without a table.",
     "room": "The cloud shows a room.",
     "nothing": "The cloud shows neither a table nor an object.",
@@ -33,43 +35,59 @@ _SHOWN = {
 
 
 def shows_line(shows: str) -> str:
-    """Return what a cloud shows, as a sentence."""
+    """Return the kind of scene that a cloud shows, as a sentence."""
     return _SHOWN[shows]
 
 
 def taught_line(taught: Taught, name: str) -> str:
-    """Return what a view that was taught is of, and how many views there are now."""
-    corrected = f", and no longer of '{taught.before}'" if taught.before else ""
+    """Return the category of a taught view, and how many views the category now has."""
+    corrected = f", no longer of '{taught.before}'" if taught.before else ""
     return f"{name} is a view of '{taught.category}'{corrected}; {taught.views} in all."
 
 
 def meant_lines(said: str, known: str) -> list[str]:
-    """Return a line that says so where a word is taken for a category that is spelled otherwise."""
-    return [] if said == known else [f"'{said}' is taken for '{known}', from which only its case differs."]
+    """Return a line that names the category of a word where their spelling differs by case."""
+    return [] if said == known else [f"'{said}' is read as '{known}', which differs only by case."]
 
 
 MAX_NAMES = 3
-"""Number of candidates that a line lists, at most."""
+"""Maximum number of candidates in a line."""
 
 MIN_LISTED = 0.05
 """Probability from which a candidate is listed."""
 
 
-def answer_line(name: str, answer: Recognition) -> str:
-    """Return the line of one object: its label, its probability, and the reasons."""
-    return f"{name:<5} {answer_words(answer)}   {'; '.join(answer.reasons)}"
+def recognised_lines(found: Recognised, why: bool = False) -> list[str]:
+    """Return a line for each object that has a cloud: its id, its label and probability, and other candidates.
+
+    With ``why``, each line is followed by the reasons for the label, and by the distances of the candidates. An object
+    that was compared with no view has its reason in its line.
+    """
+    width = max((len(name) for name in found.answers), default=0)
+    lines: list[str] = []
+    for name, answer in found.answers.items():
+        line = f"{name:<{max(width, 5)}} {answer_words(answer)}"
+        line = line if answer.candidates else f"{line}   {'; '.join(answer.reasons)}"
+        lines.append(doubt(line, answer.label is None))
+        if why and answer.candidates:
+            lines += [f"      {reason}" for reason in answer.reasons]
+            lines += [_distances_line(candidate) for candidate in answer.candidates[:MAX_NAMES]]
+    return lines or ["No object in this scene has a cloud; recognise a scene that 'deixis perceive -o' wrote."]
 
 
-def recognised_lines(found: Recognised) -> list[str]:
-    """Return a line for each object that has a cloud."""
-    lines = [answer_line(name, answer) for name, answer in found.answers.items()]
-    return lines or ["Nothing in this scene has a cloud: only what perceive -o wrote can be recognised."]
+def _distances_line(candidate: Candidate) -> str:
+    """Return the probability of a candidate, and the distances of equations 2 and 4 behind it."""
+    views = f"{candidate.views} view" + ("" if candidate.views == 1 else "s")
+    if candidate.nearest is None:
+        return f"      {candidate.category:<20} {candidate.probability:.2f}   no comparable view among {views}"
+    distances = f"ND {candidate.normalised:.3g}, D_C {candidate.distance:.3g}"
+    return f"      {candidate.category:<20} {candidate.probability:.2f}   {distances}, {views}"
 
 
 def answer_words(answer: Recognition) -> str:
     """Return a label and its probability.
 
-    Without a label the likeliest candidates stand in its place, after ``unknown``, which means none of them.
+    Without a label, return ``unknown`` with the probability of an unknown thing, then the most likely candidates.
     """
     listed = [one for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
     perhaps = "".join(f", {one.category} {one.probability:.2f}" for one in listed) if answer.label is None else ""
@@ -77,10 +95,10 @@ def answer_words(answer: Recognition) -> str:
 
 
 def recognised_to_dict(found: Recognised) -> dict[str, Any]:
-    """Return each thing's name, its probability, and the distances behind it.
+    """Return the label of each thing, its probability, and the distances behind it.
 
-    The probabilities of the candidates and ``unknown``, that of none of them, sum to 1. A label is given from
-    ``min_probability`` on.
+    The probabilities of the candidates and of ``unknown``, the case of no known category, sum to 1. A thing has a
+    label where its probability is at least ``min_probability``.
     """
     from deixis.perception.recognition.settings import MIN_LABEL_PROBABILITY
 
@@ -100,7 +118,7 @@ def recognised_to_dict(found: Recognised) -> dict[str, Any]:
     }
 
 
-def _candidate(candidate: Any) -> dict[str, Any]:
+def _candidate(candidate: Candidate) -> dict[str, Any]:
     finite = math.isfinite(candidate.distance)
     return {
         "category": candidate.category,

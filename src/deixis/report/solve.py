@@ -1,9 +1,11 @@
-"""What solving a network found, as lines of text and as JSON."""
+"""Solved constraint networks as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
+
+from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
@@ -11,29 +13,30 @@ if TYPE_CHECKING:
     from deixis.workflows.solve import SolvedNetwork
 
 MAX_CONFLICT_LISTED = 50
-"""Constraints of a conflict that are shown one by one."""
+"""Maximum number of constraints of a conflict to list."""
 
 
 def solved_lines(solved: SolvedNetwork) -> Iterator[str]:
-    """Yield the verdict first, then what it rests on, or what was asked for."""
+    """Yield the verdict, then its reasons or the requested explanation."""
     yield verdict_line(solved)
     yield from reason_lines(solved)
 
 
 def verdict_line(solved: SolvedNetwork) -> str:
-    """Return the verdict on a network, and how large it is."""
+    """Return the verdict on a network, with its size and the time in seconds."""
     networks = solved.text.networks
     stated = sum(len(network.constraints) for network in networks)
     names = "+".join(network.calculus.name for network in networks)
     comment = f" ({solved.text.comment})" if solved.text.comment else ""
-    return (
+    line = (
         f"line {solved.text.line}{comment}: {solved.verdict}; {_count(networks[0].size, 'thing')}, "
         f"{_count(stated, 'constraint')} in {names}, {_count(solved.narrowed, 'pair')} narrowed, {solved.seconds:.2f} s"
     )
+    return violation(line) if solved.verdict == "inconsistent" else doubt(line, solved.verdict == "undecided")
 
 
 def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
-    """Yield what a verdict rests on, or what was asked for; ``conflict`` says that a conflict was looked for."""
+    """Yield the reasons for a verdict, or the requested explanation; ``conflict``: a conflict was searched for."""
     if solved.reason:
         yield f"    {solved.reason}"
     if solved.boxes and solved.shown:
@@ -42,7 +45,7 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
     for each in solved.contributions:
         yield f"    {each.name}: {_count(each.pairs, 'pair')} narrowed, {_count(each.atoms, 'atom')} taken"
     if solved.conflict:
-        kind = "" if solved.minimal else " (not proved minimal: time ran out before it was clear that all are needed)"
+        kind = "" if solved.minimal else " (not proved minimal: time limit reached before all were tried)"
         yield f"These cannot all hold{kind}:"
         for network, c in solved.conflict[:MAX_CONFLICT_LISTED]:
             yield f"    {c.source}: {c.first} {c.second} ( {' '.join(network.calculus.members(c.relation))} )"
@@ -50,13 +53,13 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
             yield f"    … and {len(solved.conflict) - MAX_CONFLICT_LISTED} more"
         yield "Leave out or change any one of these." if solved.minimal else "Leave out or change some of these."
     elif solved.verdict == "inconsistent" and conflict:
-        yield "    which constraints are to blame was not found in the time that was left"
+        yield "    time limit reached before the conflicting constraints were found"
     if solved.asked is not None:
         first, second = solved.asked
         if solved.verdict == "inconsistent":
-            yield f"There is nothing to explain about {first} and {second}: what is stated cannot all hold."
+            yield f"There is nothing to explain about {first} and {second}: the constraints cannot all hold."
         elif not solved.explained:
-            yield f"Time ran out before it was clear why {first} and {second} are related as they are."
+            yield f"Time limit reached before the relation of {first} and {second} was explained."
         elif solved.step is None:
             yield f"Nothing follows about {first} and {second}."
         else:

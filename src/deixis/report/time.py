@@ -1,8 +1,10 @@
-"""What is known of when things held: as lines of text, and as plain data for JSON."""
+"""Chronologies of fluents as lines of text and as plain data for JSON."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
+
+from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def chronology_lines(file: str, origin: str, chronology: Chronology, fluents: Sequence[Fluent]) -> list[str]:
-    """Each fluent with the tightened bounds of its start, its finish and its duration."""
+    """Return each fluent with the tightened bounds of its start, its finish and its duration, in seconds."""
     rows = [
         (
             fluent.id,
@@ -39,20 +41,21 @@ def _caveat(chronology: Chronology) -> list[str]:
     from deixis.reasoning.temporal.chronology import Status
 
     if chronology.status is Status.UNDECIDED:
-        return ["Undecided within the time limit: what is certain here is so if the statements can hold together."]
+        line = "Undecided: time limit reached; the certain facts are certain only if the statements can all hold."
+        return [doubt(line)]
     if not chronology.exact:
-        return ["There are too many alternatives to go through: more may be certain than is said here."]
+        return [doubt("There are too many alternatives to try all of them: more may be certain than is printed here.")]
     return []
 
 
 def held_lines(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> list[str]:
-    """Which fluents certainly held, and which others may have."""
+    """Return which fluents certainly held, and which others may have held."""
     rows = [("certain" if fluent in certain else "possible", fluent.id, str(fluent.statement)) for fluent in possible]
-    return [*(_aligned(rows) if rows else ["Nothing can have held then."]), *_caveat(chronology)]
+    return [*(_aligned(rows) if rows else ["No fluent can have held then."]), *_caveat(chronology)]
 
 
 def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
-    """The Allen relations that one fluent may bear to another, and what order is certain."""
+    """Return the possible Allen relations between two fluents, and the order that is certain."""
     names = [relation.name.lower() for relation in chronology.relations(a, b)]
     order = chronology.certain_order(a, b)
     lines = [f"certain: {names[0]}({a}, {b})" if len(names) == 1 else f"possible: {', '.join(names)} ({a}, {b})"]
@@ -60,22 +63,25 @@ def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
 
 
 def explanation_lines(explanations: Sequence[Proof[str]], a: str, b: str) -> list[str]:
-    """Why what is certain of two fluents or points is certain."""
+    """Return the proofs of what is certain about two fluents or points."""
     if not explanations:
-        return [f"Nothing is certain of '{a}' and '{b}'."]
+        return [f"Nothing is certain about '{a}' and '{b}'."]
     return [line for explanation in explanations for line in explanation.lines()]
 
 
 def conflict_lines(conflict: TemporalConflictError) -> list[str]:
-    """The statements that contradict one another, and the proof."""
-    lines = ["These cannot all hold:"]
-    lines += [f"    {f'{stated.source}: ' if stated.source else ''}{stated.claim}" for stated in conflict.statements]
-    minimal, unsure = "Leave out or change any one of these.", "Time was up before it was known whether all are needed."
+    """Return the statements that contradict each other, and the proof."""
+    lines = [violation("These cannot all hold:")]
+    places = [f"{stated.source}: " if stated.source else "" for stated in conflict.statements]
+    lines += [
+        violation(f"    {place}{stated.claim}") for place, stated in zip(places, conflict.statements, strict=True)
+    ]
+    minimal, unsure = "Leave out or change any one of these.", "Time limit reached before all were tried."
     return [*lines, minimal if conflict.minimal else unsure, "The proof:", *conflict.explanation.lines("    ")]
 
 
 def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dict[str, Any]:
-    """Each fluent with its tightened bounds; a bound that is not known is null."""
+    """Return each fluent with its tightened bounds in seconds; an unknown bound is None."""
     return {
         "status": chronology.status.value,
         "exact": chronology.exact,
@@ -100,13 +106,13 @@ def _bounds(bounds: Bounds) -> dict[str, Any]:
 
 
 def held_to_dict(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> dict[str, Any]:
-    """The ids of the fluents that certainly held, and of all that may have."""
+    """Return the ids of the fluents that certainly held, and of all that may have held."""
     standing = {"status": chronology.status.value, "exact": chronology.exact}
     return {**standing, "certain": [fluent.id for fluent in certain], "possible": [fluent.id for fluent in possible]}
 
 
 def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
-    """The Allen relations that one fluent may bear to another; ``certain`` where it is one."""
+    """Return the possible Allen relations between two fluents; ``certain`` holds the only one, or None."""
     names = [relation.name.lower() for relation in chronology.relations(a, b)]
     order = chronology.certain_order(a, b)
     return {
@@ -121,7 +127,7 @@ def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
 
 
 def explanation_to_dict(explanation: Proof[str]) -> dict[str, Any]:
-    """An explanation, down to what was stated."""
+    """Return a proof as a tree, down to the stated facts."""
     return {
         "conclusion": explanation.claim,
         "rule": explanation.rule.value,
@@ -131,7 +137,7 @@ def explanation_to_dict(explanation: Proof[str]) -> dict[str, Any]:
 
 
 def conflict_to_dict(conflict: TemporalConflictError) -> dict[str, Any]:
-    """The statements that contradict one another, and the proof."""
+    """Return the statements that contradict each other, and the proof."""
     statements = [{"statement": stated.claim, "source": stated.source} for stated in conflict.statements]
     proof = explanation_to_dict(conflict.explanation)
     return {"status": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}

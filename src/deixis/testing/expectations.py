@@ -43,7 +43,7 @@ class Expectation:
 
 
 def expectations_in(text: str, file: str) -> Iterator[Expectation]:
-    """Yield the expectations of a script's text; raise ExpectationError for a line that is none."""
+    """Yield the expectations of a script's text; raise ExpectationError for a malformed line."""
     start = START.search(text)
     if start is None:
         return

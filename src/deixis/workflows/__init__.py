@@ -1,1 +1,1 @@
-"""What each command does, for Python and the command line alike: one module per verb."""
+"""Functions behind the commands, for Python and the command line: one module per command."""

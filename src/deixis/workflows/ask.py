@@ -20,7 +20,7 @@ from deixis.workflows.ground import ground
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a dialogue came to, and what was said in it."""
+    """Result of a dialogue: the grounding, and the questions with their answers."""
 
     grounding: Grounding
     exchanges: tuple[Exchange, ...]

@@ -79,7 +79,7 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
 
 
 def _example(checked: Check, time_limit: float) -> Mapping[str, Box]:
-    """Return the boxes of an example table of the layout, by name; none where there is none in time."""
+    """Return the boxes of an example table of the layout, by name; empty if no table is found in time."""
     try:
         script = parse_script(layout_script(checked.layout, checked.ontology), ontology=checked.ontology)
         tables = imagine(script, time_limit=time_limit).tables

@@ -49,7 +49,7 @@ class Check(Answer):
 
     @property
     def conforms(self) -> bool:
-        """Whether the scene conforms to the layout's SHACL shapes."""
+        """True if the scene conforms to the layout's SHACL shapes."""
         return self._validated[0]
 
     @property

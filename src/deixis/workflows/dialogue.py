@@ -1,4 +1,4 @@
-"""The dialogue of ``deixis ground --ask``: questions are put until nothing is left to resolve or nobody answers."""
+"""Dialogue of ``deixis ground --ask``: ask questions until everything is resolved or there is no further answer."""
 
 from __future__ import annotations
 
@@ -39,20 +39,20 @@ MAX_ORACLE_BYTES = 2**20
 
 
 class OracleError(DeixisError, ValueError):
-    """A truth file that is none, or does not fit the scene."""
+    """Error in a truth file: it is malformed, or does not fit the scene."""
 
 
 class AnswerSource(Protocol):
-    """Who answers: a person at a terminal, or a file that knows the truth."""
+    """Source of answers: a person at a terminal, or a file with the truth."""
 
     def answer(self, question: Question, situation: Situation) -> str | None:
-        """One of the words of ``questions.py`` or a thing's id; None where there will be no further answer."""
+        """Return YES, NO, DONT_KNOW, ABSENT or the id of a thing; None where there is no further answer."""
         ...
 
 
 @dataclass(frozen=True)
 class Dialogue:
-    """Who answers, made for what there is to be seen, and where the dialogue is written."""
+    """Source of answers, as a function of the situation, and the stream that the dialogue is written to."""
 
     source: Callable[[Situation], AnswerSource]
     out: TextIO
@@ -76,7 +76,7 @@ class Answers:
 
 
 def dialogue_with(answers: Ask) -> Dialogue:
-    """Return the dialogue with who answers: a dialogue as it is; a function or the truth, and nothing is written."""
+    """Return a dialogue with a source of answers; a function or a mapping makes a dialogue that writes nothing."""
     if isinstance(answers, Dialogue):
         return answers
     silence = io.StringIO()
@@ -87,13 +87,13 @@ def dialogue_with(answers: Ask) -> Dialogue:
 
 
 Ask = Dialogue | Mapping[str, str | None] | Callable[[Question, Situation], str | None]
-"""Who answers questions: a dialogue, the truth from names to ids (None: absent), or a function of each question."""
+"""Source of answers: a dialogue, the truth from names to ids (None: absent), or a function of each question."""
 
 
 def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.inf) -> Inquiry:
-    """Holds the dialogue, up to so many questions in all, and tells of it on ``out``.
+    """Hold the dialogue, with at most ``most`` questions, write it to ``out``, and return the inquiry after it.
 
-    It ends with an answer that makes it necessary to list the groundings anew.
+    The dialogue ends early at an answer after which the groundings must be listed again.
     """
     while len(inquiry.exchanges) < most and (question := inquiry.next_question()) is not None:
         number = len(inquiry.exchanges) + 1
@@ -112,26 +112,26 @@ def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.
 def _remark(inquiry: Inquiry, out: TextIO) -> None:
     exchange = inquiry.exchanges[-1]
     if exchange.outcome is ExchangeOutcome.SURPRISING:
-        print("   No grounding that was considered has it so; they are considered anew.", file=out)
+        print("   No considered grounding agrees with this answer; the groundings are computed again.", file=out)
     if exchange.outcome is not ExchangeOutcome.CONTRADICTORY:
         return
     if exchange.against:
         numbers = " and ".join(str(k + 1) for k in exchange.against)
-        reason = f"it does not go together with the answer to {numbers}"
+        reason = f"it contradicts the answer to {numbers}"
     else:
-        reason = "no grounding that is considered agrees with it"
-    print(f"   That cannot be taken in: {reason}. It changes nothing.", file=out)
+        reason = "no considered grounding agrees with it"
+    print(f"   This answer is ignored: {reason}.", file=out)
 
 
 def closing_lines(inquiry: Inquiry) -> list[str]:
-    """How many groundings are left, and for what objects that makes a difference."""
+    """Return how many groundings are left, and the objects on which they differ."""
     left, names = inquiry.candidates, inquiry.situation.objects
     count = len(inquiry.exchanges)
     asked = f"{count} question{'' if count == 1 else 's'}"
     if inquiry.start.count == 1 and not left.complete:
-        lines = ["One grounding was considered, so that there was nothing to ask."]
+        lines = ["Only one grounding was considered, so there was no question to ask."]
     elif left.count == 1:
-        lines = [f"Of the groundings considered one is left after {asked}."]
+        lines = [f"One of the considered groundings is left after {asked}."]
     else:
         open_ = ", ".join(spoken(names[i]) for i in left.undecided)
         lines = [f"{left.count} groundings are left after {asked}; undecided: {open_}."]
@@ -141,19 +141,22 @@ def closing_lines(inquiry: Inquiry) -> list[str]:
 
 
 class Lines(Protocol):
-    """Lines that are read one by one; an empty one is the end."""
+    """Source of lines to read one by one; an empty text is the end."""
 
-    def readline(self) -> str: ...
+    def readline(self) -> str:
+        """Return the next line, or an empty text at the end."""
+        ...
 
 
 @dataclass(frozen=True)
 class Terminal:
-    """A person who types: what is no answer is asked again, the end of input is the end of the dialogue."""
+    """Person at a terminal: a question is repeated until it has a valid answer; the end of input ends the dialogue."""
 
     lines: Lines
     out: TextIO
 
     def answer(self, question: Question, situation: Situation) -> str | None:
+        """Ask until the person gives a valid answer; return it, or None at the end of input."""
         allowed = _allowed(question, situation)
         while True:
             print(visible_line(f"   {hint(question, situation)} "), end="", file=self.out, flush=True)
@@ -165,12 +168,12 @@ class Terminal:
             if found is not None:
                 return found
             near = nearest(line.strip(), allowed)
-            said = f"   '{shortened(line.strip())}' is no answer"
-            print(visible_line(said + (f"; '{near}'?" if near else ".")), file=self.out)
+            said = f"   '{shortened(line.strip())}' is not an answer"
+            print(visible_line(said + (f"; did you mean '{near}'?" if near else ".")), file=self.out)
 
 
 def hint(question: Question, situation: Situation) -> str:
-    """What may be answered; of things the likeliest ones are listed with their places."""
+    """Return the possible answers to a question as a hint; the most likely things are listed with their places."""
     if question.kind is not QuestionKind.POINTING:
         third = ", none: one of them is not there" if _may_be_absent(question) else ""
         return f"(yes, no{third}, ?)"
@@ -179,7 +182,7 @@ def hint(question: Question, situation: Situation) -> str:
 
 
 def _may_be_absent(question: Question) -> bool:
-    """Whether what is asked about is missing in some grounding that is considered."""
+    """Return True if an object of the question is absent in some considered grounding."""
     return ABSENT in dict(question.answers)
 
 
@@ -189,7 +192,7 @@ def _listed(id: str, situation: Situation) -> str:
 
 
 def _allowed(question: Question, situation: Situation) -> dict[str, str]:
-    """What can be typed, and what it means; the id of a thing goes before a word that looks like it."""
+    """Return the meaning of each text that can be typed; the id of a thing takes precedence over an equal word."""
     meant = [DONT_KNOW] if question.kind is QuestionKind.POINTING else [YES, NO, DONT_KNOW]
     if question.kind is QuestionKind.POINTING or _may_be_absent(question):
         meant.append(ABSENT)
@@ -200,7 +203,7 @@ def _allowed(question: Question, situation: Situation) -> dict[str, str]:
 
 
 def parse_answer(line: str, allowed: Mapping[str, str]) -> str | None:
-    """What a typed line means, or None where it means nothing.
+    """Return the meaning of a typed line, or None if it has none.
 
     >>> parse_answer(" Y ", {"y": "yes"})
     'yes'
@@ -211,13 +214,13 @@ def parse_answer(line: str, allowed: Mapping[str, str]) -> str | None:
 
 @dataclass(frozen=True)
 class Oracle:
-    """Answers from the truth: which perceived thing each object is, None where it is not there."""
+    """Source of answers from the truth: the perceived thing of each object, None for an absent one."""
 
     truth: Mapping[str, str | None]
     out: TextIO
 
     def answer(self, question: Question, situation: Situation) -> str:
-        """The true answer; "don't know", said aloud, where it is about an object that the truth does not name."""
+        """Return the true answer; DONT_KNOW, with a line on ``out``, for an object that the truth does not name."""
         assignment = np.full(len(situation.objects), UNMATCHED)
         for i in question.about:
             name = situation.objects[i]
@@ -232,33 +235,33 @@ class Oracle:
 
 
 def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
-    """Reads a truth file: a JSON object from names of the script to ids of the scene, or null for what is not there.
+    """Read a truth file: a JSON object from names of the script to ids of the scene, or null for absent objects.
 
-    Raises OracleError where it is none, names a thing that is not in the scene, or gives one thing to two objects.
+    Raises OracleError where it is malformed, names a thing that is not in the scene, or gives one thing to two objects.
     """
     path = Path(file)
     try:
         if path.is_file() and path.stat().st_size > MAX_ORACLE_BYTES:
-            raise OracleError(f"{path}: a truth file has at most {MAX_ORACLE_BYTES // 2**20} MiB")
+            raise OracleError(f"{path}: a truth file must have at most {MAX_ORACLE_BYTES // 2**20} MiB")
         data = json.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise OracleError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise OracleError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
     except (ValueError, RecursionError) as error:
-        raise OracleError(f"{path}: this is no JSON: {error}") from error
+        raise OracleError(f"{path}: not JSON: {error}") from error
     return Oracle(checked_truth(data, str(path), situation), out)
 
 
 def checked_truth(data: Any, where: str, situation: Situation) -> dict[str, str | None]:
-    """Return the truth from names to ids; raises OracleError, with ``where`` it stands, for what is none."""
+    """Return the truth from names to ids; raise OracleError, with its place ``where``, if it is malformed."""
     if not isinstance(data, dict) or not all(isinstance(id, str | None) for id in data.values()):
-        raise OracleError(f"{where}: a truth file is a JSON object from names to ids, null for what is not there")
+        raise OracleError(f"{where}: a truth file must be a JSON object from names to ids, null for absent objects")
     for name, id in data.items():
         if id is not None and id not in situation.things:
             near = nearest(id, situation.things)
             raise OracleError(
-                f"{where}: '{name}' is said to be '{id}', which is no thing of the scene"
+                f"{where}: '{name}' is said to be '{id}', which is not in the scene"
                 + (f"; did you mean '{near}'?" if near else "")
             )
     ids = [id for id in data.values() if id is not None]

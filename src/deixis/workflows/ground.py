@@ -52,12 +52,12 @@ MIN_SHORTLISTED, PAIRS_PER_SECOND = 10, 4e5
 deals with in a second, about."""
 
 Stage = Callable[[str], AbstractContextManager[None]]
-"""Accompanies one stage of the work, which it is told in words."""
+"""Function that returns a context for one stage of the work, from the name of the stage."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundingRequest:
-    """A script, a scene, and how the one is to be grounded in the other.
+    """Script and scene to ground it in, with the settings.
 
     The relation graph of the script, what it implies and whether it contradicts itself are computed once, when they
     are first needed.
@@ -81,7 +81,7 @@ class GroundingRequest:
         for what is absent), a function of the question and the situation that returns the answer (None to end), or a
         :class:`deixis.workflows.dialogue.Dialogue`. None asks nothing. Only the engine ``exact`` asks.
     max_questions
-        Ask at most so many.
+        Maximum number of questions.
     time_limit
         Seconds until the answer, proved or not; a person who answers is given the time that it takes.
     memory_limit
@@ -96,7 +96,7 @@ class GroundingRequest:
     Raises
     ------
     DeixisError
-        For a setting that is none of these.
+        For a setting with another value.
     """
 
     script: Script
@@ -135,25 +135,27 @@ class GroundingRequest:
             if self.max_questions < 1:
                 raise SettingError(f"`max_questions` must be at least 1, got {self.max_questions}")
             if self.ask is None:
-                raise SettingError("nobody is asked `max_questions`: add --ask or --oracle (ask=), or leave it out")
+                raise SettingError(
+                    "`max_questions` needs a source of answers: add --ask or --oracle (ask=), or leave it out"
+                )
         if not isinstance(self.meaning, Meaning):
             raise SettingError(f"`meaning` must be a Meaning, as of Session.meaning(), got {self.meaning!r:.60}")
         object.__setattr__(self, "deadline", self.deadline or Deadline.after(self.time_limit))
 
     @property
     def due(self) -> Deadline:
-        """When the answer is due."""
+        """Deadline of the answer."""
         assert self.deadline is not None
         return self.deadline
 
     @cached_property
     def graph(self) -> RelationGraph:
-        """The description: the script's facts as a relation graph."""
+        """Description: the script's facts as a relation graph."""
         return self.script.graph()
 
     @cached_property
     def implied(self) -> Implications:
-        """What the description implies."""
+        """Implications of the description."""
         return Implications(self.graph, min(TIME_LIMIT, self.due.share(CONFLICT_SHARE).left))
 
     @cached_property
@@ -166,7 +168,7 @@ class GroundingRequest:
 
     @cached_property
     def shortlisted(self) -> bool:
-        """Whether only a shortlist of the scene's things is compared, since all pairs take too much memory or time."""
+        """True if only a shortlist of the scene's things is compared, as all pairs take too much memory or time."""
         if self.engine not in (EngineName.EXACT, EngineName.SCALABLE) or self.viewpoint != ViewpointName.STATED:
             return False
         if self.ask is not None:  # the truth may be off the list
@@ -179,9 +181,9 @@ class GroundingRequest:
 
     @cached_property
     def frugal(self) -> bool:
-        """Whether the memory limit leaves no room to sample marginals.
+        """True if the memory limit leaves no room to sample marginals.
 
-        Raises OutOfMemoryError where it leaves none for an answer.
+        Raises OutOfMemoryError where it leaves no room for an answer.
         """
         things = len(self.scene.objects) * SIDES_HELD[ViewpointName(self.viewpoint)]
         return not leaves_room_for_chains(self.graph, things, self.memory_limit)
@@ -193,7 +195,7 @@ class GroundingRequest:
         return replace(self.meaning, graded=self.meaning.graded and not self.literal, weights=weights)
 
     def evidence(self, scene: Scene) -> Evidence:
-        """Return all that speaks for who is who in the scene as seen from one side."""
+        """Return the evidence for which thing each name refers to, in the scene as seen from one side."""
         if self.shortlisted:
             known = shortlisted_evidence(
                 self.graph, scene, self.script.ontology, self.effective_meaning, self.memory_limit, self.due
@@ -205,7 +207,7 @@ class GroundingRequest:
 
     @cached_property
     def _consistent(self) -> bool:
-        """Whether the firm facts can hold together; False where nothing is to be inferred."""
+        """True if the firm facts can hold together; False where there are too many objects to decide."""
         try:
             return self.implied.consistent
         except LimitError:
@@ -295,7 +297,7 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:
-    """Return what is to be said of facts that cannot hold together, or of not having found out."""
+    """Return the notes about facts that cannot hold together, or about not having checked them."""
     try:
         return conflict_notes(request.conflict)
     except OutOfTimeError:

@@ -1,4 +1,4 @@
-"""A script imagined: example tables that satisfy it, or why there are none."""
+"""Lay example tables that satisfy a script, or explain why there is no such table."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from deixis.reasoning.errors import SettingError
 
 TIME_LIMIT = 30.0
 MAX_ATTEMPTS = 5
-"""How often another table is drawn where one was seen before."""
+"""Maximum number of attempts to find a table that differs from those before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,27 +75,28 @@ class NoTable:
 
 @dataclass(frozen=True, repr=False)
 class Imagination(Answer):
-    """The tables of a script, or why there is none; neither where the time was up before it was known."""
+    """Example tables of a script, or why it has no table; neither where the time limit was reached before."""
 
     script: Script
     tables: tuple[ImaginedTable, ...] = ()
     none: NoTable | None = None
 
     def summary(self) -> str:
-        """Return how many tables there are, or that there is none."""
+        """Return the number of tables, or the verdict without one."""
         if self.tables:
             return f"of {self.script.file}: {count(len(self.tables), 'example table')}"
         return f"of {self.script.file}: {'no table satisfies it' if self.none else 'undecided within the time limit'}"
 
     @property
     def decided(self) -> bool:
+        """True if a table was found, or proved impossible."""
         return bool(self.tables) or self.none is not None
 
 
 def imagine(
     script: Script, *, any_size: bool = False, seed: int = 0, count: int = 1, time_limit: float = TIME_LIMIT
 ) -> Imagination:
-    """Example tables that satisfy every firm fact of a script in its stated reading, and the others where they can.
+    """Lay example tables that satisfy every firm fact of a script in its stated reading, and the others where possible.
 
     Things have usual sizes of their kind, or with ``any_size`` whatever sizes it takes. The first table of seed 0 is
     the plain one, with typical sizes; all others are drawn. Each takes at most about ``time_limit`` seconds. Raises
@@ -132,7 +133,7 @@ def _pictures(
     time_limit: float,
     kinds: Kinds,
 ) -> Iterator[Picture | Impossible | Undecided]:
-    """As many different pictures as wanted and found."""
+    """Yield different pictures, at most ``count``, or the reason why there is no further one."""
     sizes, lying = [thing.size for thing in objects], lying_cutlery(graph, objects, kinds)
     seen: set[bytes] = set()
     for number in range(count):

@@ -1,4 +1,4 @@
-"""What follows from a script."""
+"""Infer what follows from a script."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Inferred:
 
 @dataclass(frozen=True, repr=False)
 class Inference(Answer):
-    """What a script implies: every fact that follows without being stated, or the conflict that spoils it.
+    """Facts that follow from a script without being stated, or the conflict in it.
 
     Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
     if further facts may follow.
@@ -61,10 +61,12 @@ class Inference(Answer):
 
     @property
     def consistent(self) -> bool:
+        """True if no conflict was found."""
         return self.conflict is None
 
     @property
     def complete(self) -> bool:
+        """True if no further facts follow."""
         return self.implications.complete
 
     def inferred(self) -> tuple[Inferred, ...]:
@@ -114,7 +116,7 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
 
 
 def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
-    """What follows from a script in the wide reading, and whether it contradicts itself.
+    """Infer what follows from a script in the wide reading, and whether it contradicts itself.
 
     The time limit is for facts that leave a choice; the others need no search.
     """

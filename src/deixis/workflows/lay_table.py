@@ -47,8 +47,10 @@ def is_table(thing: Sized, ontology: Ontology) -> bool:
 
 
 def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGraph, ...]:
-    """The graph with everything said to be on the one table that it speaks of, if it speaks of one: but for what it has
-    beside the table, or on what is there."""
+    """Return the graph with facts that everything is on the table that the script names; nothing without one table.
+
+    Objects that the script places beside the table, or on such objects, are left out.
+    """
     if sum(tables) != 1:
         return ()
     on, table, facts = graph.vocabulary["on"], graph.nodes[tables.index(True)], list(graph.facts())
@@ -63,7 +65,7 @@ def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGra
 
 
 def _beside_table(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Iterator[str]:
-    """Yield what a fact has beside the table, or on what is beside it."""
+    """Yield the objects that a fact places beside the table, or on something beside it."""
     if not fact.positive:
         return
     if on in fact.relations:
@@ -75,27 +77,27 @@ def _beside_table(fact: Fact, on: Relation, table: str, beside: Set[str]) -> Ite
 
 TIME_LIMIT = 30.0
 TURN_DEVIATION = np.deg2rad(2.0)
-"""How much things are turned off their axis by whoever lays the table: a standard deviation."""
+"""Standard deviation of the random turn of each laid thing, in radians."""
 
 MAX_DRAWS = 5
-"""How often other mugs and cups are taken where those drawn first do not fit."""
+"""Maximum number of draws of other mugs and cups where the first ones do not fit."""
 
 MAX_MESH_EXTENT = 1.5
 
 
 class NoTableError(DeixisError, ValueError):
-    """There is no table that satisfies a script with things of their usual sizes."""
+    """Error for a script that no table satisfies with things of usual size."""
 
 
 class TimeIsUpError(DeixisError, TimeoutError):
-    """No table was found in time, nor was it proved that there is none."""
+    """Error for a time limit that was reached before a table was found or proved impossible."""
 
 
 @dataclass(frozen=True, eq=False)
 class LaidScript:
-    """A laid table, and what of the script does not hold there: hedged or optional facts that did not fit.
+    """Laid table, and the facts of the script that do not hold there: hedged or optional facts that did not fit.
 
-    ``top_name`` is the object of the script that is the table itself, which is none of the things on it.
+    ``top_name`` is the object of the script that is the table itself, not a thing on it.
     """
 
     table: LaidTable
@@ -105,7 +107,7 @@ class LaidScript:
 
     @property
     def beside(self) -> tuple[str, ...]:
-        """What is not over the top, but beside it in the air, since the script says so, or leaves no other place."""
+        """Names of things that are not over the table's top, as the script says so or leaves no other place."""
         low, high = np.array(self.table.top.low), np.array(self.table.top.high)
         middles = {thing.name: thing.box[:, :2].mean(axis=0) for thing in self.table.things}
         return tuple(name for name, middle in middles.items() if not ((low <= middle) & (middle <= high)).all())
@@ -152,7 +154,8 @@ def lay_script(
     unknown = sorted(set(meshes) - set(graph.nodes))
     if unknown:
         raise SimulationError(
-            f"'{unknown[0]}' is to be a mesh and is no object of {script.file}; those are {', '.join(graph.nodes)}"
+            f"there is a mesh for '{unknown[0]}', which is not an object of {script.file}; "
+            f"its objects are {', '.join(graph.nodes)}"
         )
     plan = _plan_boxes(script, graph, meshes, seed, time_limit)
     laid = _lay_and_straighten(plan)
@@ -164,9 +167,9 @@ def lay_script(
 
 
 def require_seed(seed: int) -> None:
-    """Raise SimulationError where a seed is no whole number of 0 or more."""
+    """Raise SimulationError unless a seed is a whole number of at least 0."""
     if not isinstance(seed, Integral) or seed < 0:
-        raise SimulationError(f"a seed is a whole number, 0 or more, not {seed!r}")
+        raise SimulationError(f"`seed` must be a whole number of at least 0, got {seed!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,7 +248,7 @@ def _instance(seed: int, number: int) -> int:
 
 
 def _lay_and_straighten(plan: _Plan) -> LaidTable:
-    """The table with things turned a little; those in facts that fail, or that come to overlap, are laid straight."""
+    """Lay the things slightly turned; lay those straight that then violate a fact or overlap."""
     rng = np.random.default_rng([plan.seed, 1])
     turns = rng.normal(0.0, TURN_DEVIATION, len(plan.objects))
     while True:
@@ -266,7 +269,7 @@ def _lay_and_straighten(plan: _Plan) -> LaidTable:
 
 
 def _placement(plan: _Plan, number: int, turn: float) -> Placement:
-    """The thing in the middle of its box; its head points away from the viewer, or to the left, a handle anywhere."""
+    """Return a thing in the middle of its box, its head away from the viewer or to the left, a handle anywhere."""
     thing, (low, high) = plan.objects[number], plan.boxes[number]
     x, y = ((low + high) / 2).tolist()
     across, deep = (high - low).tolist()

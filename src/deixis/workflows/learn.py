@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Learned:
-    """What a lesson left behind."""
+    """Result of learning one lesson."""
 
     lesson: Lesson
     grounding: Grounding

@@ -33,8 +33,8 @@ def perceive(
 
     Each object of the scene has its points, so that it can be taught, learned and recognised at once;
     :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the thing of each of its points, and notes on what
-    was not as one would expect. Raises CloudError for a file that is no cloud, or one without a point; SceneError for a
-    viewpoint that is no word.
+    is unusual. Raises CloudError for a file that is not a cloud, or has no point; SceneError for a viewpoint that is
+    not a word.
     """
     if settings is not None and not isinstance(settings, DetectionSettings):
         raise CloudError(f"`settings` must be DetectionSettings, got {settings!r:.60}")
@@ -57,8 +57,8 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     """Write a ``.scene.json``, and clouds that are in memory into a folder beside it; return the scene as written.
 
     A cloud in a file stays where it is, and is named as seen from the scene. The clouds of a scene that is written over
-    stay until the new scene is in its place, in one step, and then go: each cloud bears a name of its content, so that
-    at any moment there is a whole scene, the old one or the new. Raises DeixisError where the place cannot be written.
+    stay until the new scene is in its place, in one step, and then go: the name of each cloud depends on its content,
+    so at any moment there is a whole scene, old or new. Raises DeixisError where the place cannot be written.
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"`scene` must be a Scene, got {type(scene).__name__}; read_scene makes one")

@@ -28,7 +28,7 @@ def read_script(
     ontology: Ontology | None = None,
     deadline: Deadline = Deadline.never(),
 ) -> Script:
-    """Reads a layout script from a file, or from ``text``.
+    """Read a layout script from a file, or from ``text``.
 
     Raises ScriptError with every mistake in it, each with file, line and column; ScriptTimeError at the ``deadline``;
     TypeError unless exactly one of the two is given.
@@ -51,7 +51,7 @@ def _looks_like_text(name: str) -> bool:
 
 
 def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
-    """A scene from a file, its labels kept or hidden; ``image`` chooses one of several that the file describes."""
+    """Read a scene from a file, with or without its labels; ``image`` chooses one of several images of the file."""
     from deixis.perception.formats.scene_json import read_scene
 
     scene = read_scene(file, image=image) if image is not None else read_scene(file)
@@ -74,12 +74,12 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 
 
 def is_script_file(layout: str | Path) -> bool:
-    """Whether a layout is given as a file rather than by its name."""
+    """Return True if a layout is given as a file rather than by its name."""
     return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout
 
 
 def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
-    """Each script with its scene: files come in turn, of a folder every ``NAME.layout`` goes with ``NAME.scene.json``.
+    """Pair scripts with scenes: files alternate; in a folder ``NAME.layout`` goes with ``NAME.scene.json``.
 
     Raises DeixisError for what does not exist, a script without a scene, a scene in a folder without a script, and a
     folder without either.

@@ -20,7 +20,7 @@ _STATED = (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED, GraphName.
 
 
 def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
-    """The triples of some files as one ontology, and the prefixes that they declare beside the usual ones.
+    """Read files as one ontology; return its triples, and the usual prefixes with those that the files declare.
 
     Raises ImportFormatError, with the place, for a file that cannot be read.
     """
@@ -33,7 +33,7 @@ def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
 
 
 def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
-    """The triples of one file; its blank nodes are not those of another that have the same labels."""
+    """Yield the triples of one file, with blank nodes renamed so that they differ from those of other files."""
 
     def own(node: object) -> object:
         return ox.BlankNode(f"f{number}x{node.value}") if isinstance(node, ox.BlankNode) else node
@@ -43,7 +43,7 @@ def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
 
 
 def read_remembered(memory: SemanticMemory) -> tuple[list[Triple], dict[str, str]]:
-    """Return everything that a memory was told, without what was inferred, and the usual prefixes."""
+    """Return the stated triples of a memory, without inferred ones, and the usual prefixes."""
     found = [triple for name in _STATED for triple in memory.triples(name)]
     return _as_triples(list(with_blank_nodes(found))), dict(PREFIXES)
 

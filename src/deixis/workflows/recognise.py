@@ -21,10 +21,10 @@ def recognise(
     progress: Progress | None = None,
     left_out: Callable[[str], None] | None = None,
 ) -> Recognised:
-    """Names what is known among the things of a scene that have points; where nothing was taught, nothing is.
+    """Name the things of a scene that have points by the taught categories; without any, all are unknown.
 
-    ``progress`` is told of reading what was taught, and of the calibration, which take seconds after many views;
-    ``left_out``, in one line, of views that are damaged and teach nothing. Raises SceneError for a cloud that is none.
+    ``progress`` is called while the taught views are read and calibrated, which takes seconds for many views;
+    ``left_out`` with a line for each damaged view. Raises SceneError for a file that is not a cloud.
     """
     from deixis.learning.views import recognise as recognise_clouds
 

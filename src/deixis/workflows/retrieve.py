@@ -1,4 +1,4 @@
-"""Which layouts a scene is like, and which scenes a script is like: among what is remembered, and folders of files."""
+"""Rank the layouts in a memory or folder by similarity to a scene, and scenes by similarity to a script."""
 
 from __future__ import annotations
 
@@ -35,11 +35,19 @@ Known = TypeVar("Known")
 
 
 class Knowledge(Protocol):
-    """What was learned, as a session, or its knowledge store, has it."""
+    """Learned knowledge, as a session or its knowledge store offers it."""
 
-    def meaning(self) -> Meaning: ...
-    def layouts(self) -> tuple[LayoutConcept, ...]: ...
-    def recollection(self) -> Recollection: ...
+    def meaning(self) -> Meaning:
+        """Return the words and sizes in force."""
+        ...
+
+    def layouts(self) -> tuple[LayoutConcept, ...]:
+        """Return the learned layouts."""
+        ...
+
+    def recollection(self) -> Recollection:
+        """Return the lessons with their texts."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -83,12 +91,12 @@ def retrieve(
     time_limit: float = TIME_LIMIT,
     left_out: LeftOut | None = None,
 ) -> Retrieval:
-    """Ranks all known layouts by how like a scene is to them, or all known scenes by how like they are to a script.
+    """Rank all known layouts by their similarity to a scene, or all known scenes by their similarity to a script.
 
     Known are the ``.layout`` scripts or ``.scene.json`` scenes in the folder ``among``, and what ``memory``, an open
     session, remembers. ``query`` is a scene or a script, or the file of one: a script's name ends in ``.layout``, and
     in a folder in anything but ``.json``.
-    ``least`` is the similarity from which one is told. ``left_out`` is told, in one line, of what cannot be read.
+    ``least`` is the minimum similarity of a result. ``left_out`` is called with a line for each unreadable lesson.
     Raises DeixisError where nothing is known, or a file cannot be read.
     """
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
@@ -125,7 +133,7 @@ def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) ->
 
 
 def _seen(name: str, scene: Scene) -> Seen:
-    """A scene ready to be compared, its kinds those of labels of some confidence, or the categories of their words."""
+    """Return a scene ready for comparison; its kinds come from labels of sufficient confidence, or their categories."""
     ontology = default_ontology()
     kinds: list[str | None] = []
     for thing in scene.objects:
@@ -136,7 +144,7 @@ def _seen(name: str, scene: Scene) -> Seen:
 
 
 def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, Described]:
-    """The scripts of a folder, and every layout in memory; of a name learned more than once, every lesson by its id."""
+    """Return the scripts of a folder and the layouts in memory; a name learned several times is listed by lesson."""
     paths = _files(among, "*.layout", "layout scripts") if among is not None else []
     known = {path.name: Described(path.name, read_script(str(path)).graph()) for path in paths}
     layouts = memory.layouts() if memory is not None else ()
@@ -150,7 +158,7 @@ def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, De
 def _known_scenes(
     memory: Knowledge | None, among: Path | None, hide_labels: bool, left_out: LeftOut | None
 ) -> dict[str, Seen]:
-    """The scenes of a folder, and every scene in memory, told by the first lesson, by name, that showed it."""
+    """Return the scenes of a folder and in memory; a scene in memory has the name of the first lesson that has it."""
     paths = _files(among, "*.scene.json", "scenes") if among is not None else []
     known = {path.name: read_scene(path) for path in paths}
     if memory is not None:
@@ -166,7 +174,7 @@ def _known_scenes(
 
 def _files(folder: Path, pattern: str, what: str) -> list[Path]:
     if not folder.is_dir():
-        raise DeixisError(f"{folder}: this is no folder of {what}")
+        raise DeixisError(f"{folder}: not a folder; name a folder of {what}")
     found = sorted(path for path in folder.glob(pattern) if path.is_file())
     if not found:
         raise DeixisError(f"{folder}: there are no {what} in it ({pattern})")

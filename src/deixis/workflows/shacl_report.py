@@ -15,7 +15,7 @@ from deixis.reasoning.comparison.checking import TableCheck
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:
-    """Whether the scene conforms to the layout's shapes, and the validation report as Turtle."""
+    """Return whether the scene conforms to the layout's shapes, and the validation report as Turtle."""
     import rdflib
     from pyshacl import validate
 
@@ -38,7 +38,7 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
 def satisfied_relations(
     layout: LayoutConcept, scene: Scene, fills: dict[str, str], relations: Relations
 ) -> Iterator[tuple[str, Relation, str]]:
-    """Every relation that a fact of the layout names and that holds of what fills its roles."""
+    """Yield each relation that a fact of the layout names and that holds between the things in its roles."""
     thing = {role: id for id, role in fills.items()}
     names, position = scene.relations(relations).names, {id: i for i, id in enumerate(scene.ids)}
     for fact in layout.facts:

@@ -50,7 +50,7 @@ class Simulation:
 
     @property
     def points(self) -> NDArray[np.int64]:
-        """How many points each thing has, in the order of the truth, shape (n,)."""
+        """Number of points of each thing, in the order of the truth, shape (n,)."""
         assert self.cloud.labels is not None
         counts: NDArray[np.int64] = np.bincount(self.cloud.labels + 1, minlength=len(self.truth.objects) + 2)
         return counts[1 + FIRST_THING :]

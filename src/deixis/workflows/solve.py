@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 
 
 LAST_SHARE = 0.1
-"""Of the time limit, for saying why, where solving took all of it."""
+"""Share of the time limit that finding the reasons gets where solving has used all of it."""
 
 
 @dataclass(frozen=True)
 class Wish:
-    """What is asked about each network, beside the verdict.
+    """Requests about each network besides the verdict.
 
-    ``conflict`` is why it is inconsistent, where it is.
+    ``conflict`` asks for the reason of an inconsistency.
     """
 
     closure: bool = False
@@ -50,7 +50,7 @@ class Wish:
     time_limit: float = 60.0
 
     def extended(self, deadline: Deadline) -> Deadline:
-        """The deadline for saying why, when there is that verdict."""
+        """Return the deadline for finding the reasons after the verdict."""
         return max(deadline, Deadline.after(LAST_SHARE * self.time_limit))
 
 
@@ -59,8 +59,8 @@ class SolvedNetwork:
     """One network of a file, and what was found about it.
 
     ``seconds`` is the time that the verdict took. ``shown`` are the networks that were asked for, the closure or the
-    scenario, one for each calculus. ``boxes`` bear everything that several calculi, or one with distances, say: least
-    and greatest corner by thing, distances in units of the reference length.
+    scenario, one for each calculus. ``boxes`` satisfy everything that several calculi, or one with distances, say:
+    least and greatest corner by thing, distances in units of the reference length.
     """
 
     text: NetworkText
@@ -82,7 +82,7 @@ def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
     """Return the calculi of ``ra+rcc8``, or of a specification in GQR's format, with notes on them.
 
     Raises DeixisError where two are the same, or one is joined to no other, and CalculusFileError where a
-    specification is no calculus.
+    specification is not a calculus.
     """
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
@@ -185,7 +185,7 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told:
 def _with_boxes(
     solved: SolvedNetwork, boxes: NDArray[np.float64] | None, things: list[int], wish: Wish
 ) -> SolvedNetwork:
-    """With boxes (n, 2, 2) of these things, and what they bear in each calculus where a scenario is asked for."""
+    """Add the boxes of things, shape (n, 2, 2), and their relations in each calculus if a scenario is requested."""
     if boxes is None:
         return solved
     solved = replace(solved, boxes=dict(zip(things, boxes, strict=True)))
@@ -200,7 +200,7 @@ def _with_boxes(
 
 
 def _with_conflict(solved: SolvedNetwork, links: Sequence[Link], deadline: Deadline) -> SolvedNetwork:
-    """With the conflict that joint closure finds, else with that of a network which is inconsistent by itself."""
+    """Add the conflict that joint closure finds, or else that of a network that is inconsistent by itself."""
     networks = solved.text.networks
     joint = joint_conflict(networks, links, deadline.share(0.5))
     if joint is not None:

@@ -24,11 +24,11 @@ def teach(
     views: ViewStore,
     teacher: str = "user",
 ) -> Taught:
-    """Keeps what a thing of a scene looks like as a view of a category, which comes into being if it is new.
+    """Keep the look of a thing in a scene as a view of a category, which is created if it is new.
 
-    A word that differs from a known category only in case means that one. Taught again under another word, the
-    view is corrected, and belongs to no lesson any more. Raises SceneError where the scene has no such thing, or no
-    cloud of it; SettingError for a name that is none.
+    A word that differs from a known category only by case means that category. Teaching the view again under another
+    word corrects it; it then belongs to no lesson. Raises SceneError where the scene has no such thing, or no cloud of
+    it; SettingError for an invalid name.
     """
     scene = as_scene(scene)
     name = views.category_meant(new_category_name(category))

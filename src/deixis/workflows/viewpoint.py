@@ -1,4 +1,4 @@
-"""Whose left? Grounding from the side from which a script most probably speaks."""
+"""Ground a script from the side from which it most probably speaks."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class ViewpointScene:
 
     @property
     def doubt(self) -> tuple[str, ...]:
-        """What is to be said of probabilities that hold from the likeliest side alone."""
+        """Note on probabilities that hold only as seen from the most likely side; empty where the side is certain."""
         if self.share >= DECIDED:
             return ()
-        return ("from other sides the matches may be others: their probabilities hold as seen from this one",)
+        return ("the probabilities of the matches hold as seen from this side; from another side they may differ",)
 
 
 def recover_scene(
@@ -82,14 +82,14 @@ def recover_scene(
 
 
 def _from_all_quarters(scene: Scene, found: Viewpoints) -> ViewpointScene:
-    """As it stands, with the other quarter turns for the whole circle, of which no part is likelier than another."""
+    """Return the scene as it stands, with the other quarter turns for the whole circle, all equally likely."""
     upright = next(view for view in found.viewpoints if not view.angle and not view.mirrored)
     rest = replace(found, viewpoints=(upright, *(view for view in found.viewpoints if view is not upright)))
     return ViewpointScene(scene, None, (_NO_VIEWPOINT_NOTE,), _others(scene, rest), upright.probability, upright)
 
 
 def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[Viewpoint, Scene], ...]:
-    """What is seen from the sides after the first, where that is worth a look."""
+    """Return the scene as seen from each further side that is probable enough."""
     worth = [view for view in found.viewpoints[1:MAX_VIEWPOINTS] if view.probability >= MIN_VIEWPOINT_PROBABILITY]
     return tuple((view, scene_from(scene, view)) for view in worth)
 

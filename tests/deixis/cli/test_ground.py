@@ -47,7 +47,38 @@ def test_text_says_who_is_who_and_what_is_open() -> None:
     assert ["dinner_plate", "o8"] in [row[:2] for row in rows]
     assert "    dinner_knife, water_glass" in out.splitlines()
     assert "Facts: 11 stated, 11 satisfied" in out
-    assert "proved the best" in out
+    assert "Proved the best answer; engine exact" in out
+
+
+@pytest.mark.parametrize("engine", ["exact", "scalable", "similarity", "blondel"])
+def test_only_the_paper_s_engine_prints_graph_similarity(engine: str) -> None:
+    _, out, _ = deixis("ground", FULL, SCENE, "--engine", engine)
+    assert ("graph similarity 0." in out.lower()) == (engine == "similarity")
+
+
+def test_the_text_says_how_sure_the_answer_is(tmp_path: Path) -> None:
+    assert "Sure of all 12 names: each match has a probability of at least 0.99." in deixis("ground", FULL, SCENE)[1]
+    _, out, _ = deixis("ground", SCRIPT1, SCENE, "--no-sizes")
+    (line,) = [line for line in out.splitlines() if line.startswith("Sure of ")]
+    rows = [(float(row[2]), row[0]) for line in out.splitlines() if len(row := line.split()) > 2 and row[1][0] == "o"]
+    least, name = min(rows[:12])
+    assert line == f"Sure of 1 of 12 names (probability 0.99 or more); the least certain is {name} ({least:.2f})."
+    out = deixis("ground", SCRIPT1, SCENE, "--engine", "similarity")[1]
+    assert "of 12 names settled; this engine gives no probabilities." in out
+    one = write(tmp_path / "one.layout", "thingummy is red")
+    assert "Not sure: thingummy has a probability of 0." in deixis("ground", one, SCENE)[1]
+
+
+def test_kinds_are_printed_where_they_come_from_names(tmp_path: Path) -> None:
+    script = write(
+        tmp_path / "kinds.layout", "dinner_fork left of 2 plate\nwidget right of dinner_fork\njim is a knife\n"
+    )
+    lines = deixis("ground", script, SCENE)[1].splitlines()
+    assert "Kinds taken from the names: dinner fork, plate (plate_1, plate_2)." in lines
+    assert "No known kind: widget." in lines
+    declared = write(tmp_path / "declared.layout", "jim is a knife\njoe is a fork\njim left of joe\n")
+    lines = deixis("ground", declared, SCENE)[1].splitlines()
+    assert not [line for line in lines if line.startswith(("Kinds", "No known kind"))]
 
 
 @pytest.mark.parametrize("engine", ["exact", "similarity"])
@@ -79,7 +110,7 @@ def test_json_holds_what_is_promised(engine: str) -> None:
 
 
 def test_the_text_says_how_probably_the_description_is_of_the_scene() -> None:
-    told = "The description is of this scene with probability"
+    told = "The description fits this scene with probability"
     assert told in deixis("ground", FULL, SCENE)[1]
     assert told not in deixis("ground", FULL, SCENE, "--engine", "similarity")[1]
 
@@ -202,7 +233,7 @@ def test_what_only_swaps_things_that_cannot_be_told_apart_is_no_news() -> None:
 def test_who_is_likelier_something_else_taken_alone_is_told() -> None:
     arguments = (SCRIPT1, SCENE)
     _, out, _ = deixis("ground", *arguments, "--no-sizes")
-    told = next(line for line in out.splitlines() if "taken alone, likelier to be another thing: " in line)
+    told = next(line for line in out.splitlines() if "taken alone, another thing is more likely for: " in line)
     likelier = re.findall(r"^(\w+) +o\d+ +(0\.\d+) +or o\d+ (0\.\d+)", out, re.MULTILINE)
     assert told.endswith(f"{', '.join(name for name, own, other in likelier if float(other) > float(own) + 0.05)}.")
     assert "taken alone" not in deixis("ground", *arguments)[1]

@@ -251,7 +251,7 @@ def test_a_command_whose_answer_is_lost_says_what_it_changed(tmp_path: Path) -> 
     with open("/dev/full", "w") as full:
         ran = run_bounded("learn", SCRIPT, SCENE, "--memory", memory, stdout=full)
         assert ran.returncode == 2
-        assert f"No space left on device; the memory at {memory} was changed before, and keeps that" in ran.stderr
+        assert f"No space left on device; the memory at {memory} was already changed" in ran.stderr
         assert "memory" not in run_bounded("parse", SCRIPT, stdout=full).stderr
     assert deixis("memory", "stats", "--memory", memory)[0] == 0
 

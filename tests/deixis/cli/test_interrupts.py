@@ -23,7 +23,7 @@ def pythons_own_handler() -> Iterator[None]:
 def test_an_error_that_a_library_makes_of_an_interrupt_ends_the_program_quietly(
     monkeypatch: pytest.MonkeyPatch, error: Exception
 ) -> None:
-    def imports_a_native_library() -> None:
+    def imports_a_native_library(**_: object) -> None:
         try:
             signal.raise_signal(signal.SIGINT)
         except KeyboardInterrupt:
@@ -34,7 +34,7 @@ def test_an_error_that_a_library_makes_of_an_interrupt_ends_the_program_quietly(
 
 
 def test_the_same_error_without_an_interrupt_is_a_defect(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails() -> None:
+    def fails(**_: object) -> None:
         raise ImportError("generic_type: cannot initialize type")
 
     monkeypatch.setattr("deixis.cli.app.app", fails)

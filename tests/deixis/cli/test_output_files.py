@@ -24,5 +24,5 @@ def test_a_scene_is_written_to_a_file_that_ends_in_json(tmp_path: Path, writer: 
     (tmp_path / name).write_text("dear\n")
     code, out, err = deixis(*WRITERS[writer], tmp_path / name)
     assert (code, out) == (2, "")
-    assert err == f"deixis: {tmp_path / name}: a scene is a file that ends in .json\n"
+    assert err == f"deixis: {tmp_path / name}: the name of a scene must end in .json\n"
     assert (tmp_path / name).read_text() == "dear\n"

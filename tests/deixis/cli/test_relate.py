@@ -91,8 +91,8 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
         (("--calculus", "rcc"), "no calculus 'rcc' relates boxes; did you mean 'rcc8'?"),
         (("--of", "frok"), "nothing here is called 'frok'; did you mean 'fork'?"),
         (("--of", "fork", "--of", "spoon"), "nothing here is called 'spoon'"),
-        (("--of", "a", "--of", "b", "--of", "c"), "--of takes a subject"),
-        (("--matrix", "--of", "fork"), "does not go with --matrix"),
+        (("--of", "a", "--of", "b", "--of", "c"), "--of may be given once"),
+        (("--matrix", "--of", "fork"), "excludes --matrix"),
         (("--calculus", "distance"), "`reference` must be a length"),
         (("--calculus", "allen", "--axis", "q"), "`axis` must be x, y or z, got 'q'"),
         (("--image", "x.jpg"), "an image ('x.jpg') is chosen in annotation files"),
@@ -116,7 +116,7 @@ def test_a_file_that_is_no_scene_is_refused(tmp_path: Path) -> None:
     ("options", "message"),
     [
         (("--calculus", "ra", "--axis", "z"), "--axis goes with point and allen only"),
-        (("--of", "fork", "--of", "fork"), "not 'fork' twice"),
+        (("--of", "fork", "--of", "fork"), "got 'fork' twice"),
     ],
 )
 def test_an_option_that_would_do_nothing_is_refused(table: Path, options: tuple[str, ...], message: str) -> None:

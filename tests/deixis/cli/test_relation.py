@@ -109,12 +109,12 @@ def test_learning_says_as_json_what_it_learned(lesson: list[str], tmp_path: Path
 
 def test_what_relation_refuses(tmp_path: Path) -> None:
     assert "did you mean 'left'" in refused("relation", "lefft")
-    assert "no relation is called 'nosuch'; there are bottom, bottom_left," in refused("relation", "nosuch")
+    assert "no relation word 'nosuch'; use one of bottom, bottom_left," in refused("relation", "nosuch")
     assert "ends in .png" in refused("relation", "left", "--plot", tmp_path / "a.txt")
     assert "cannot be read" in refused("relation", "left", "--models", tmp_path / "none.ttl")
     empty = tmp_path / "empty.ttl"
     empty.write_text("", encoding="utf-8")
-    assert "no relation model in it" in refused("relation", "left", "--models", empty)
+    assert "no relation model in this file" in refused("relation", "left", "--models", empty)
     empty.write_text(models_to_turtle(shipped_models().models.values()).replace('"0.01"', '"x"'), encoding="utf-8")
     assert "must be numbers" in refused("relation", "left", "--models", empty)
 
@@ -125,7 +125,7 @@ def test_the_memory_keeps_what_was_learned_and_shows_what_is_in_force(lesson: li
     assert found.stdout.splitlines()[2:] == [
         "lessons     words_t-1",
         "kept as     words_t-1",
-        f"In force in {memory}.",
+        f"{memory} now uses these models.",
     ]
     assert "learned from 2 facts of one scene" in run("relation", "left").stdout
     assert "shipped, from prototypes" in run("relation", "left", "--no-memory").stdout
@@ -133,7 +133,7 @@ def test_the_memory_keeps_what_was_learned_and_shows_what_is_in_force(lesson: li
     again = json.loads(run("learn-relation", *lesson, "--json").stdout)
     assert again["left_out"] == [f"{lesson[0]} {lesson[1]}: remembered already, as words_t-1"]
     assert again["learned"][0]["examples"] == 2 and again["learned"][0]["learned_from"] == ["words_t-1"]
-    assert "The shipped models are in force" in run("learn-relation", "--reset").stdout
+    assert "uses the shipped models again" in run("learn-relation", "--reset").stdout
     assert "shipped, from prototypes" in run("relation", "left").stdout
     assert "learned from 2 facts" in run("learn-relation").stdout
 
@@ -156,17 +156,17 @@ def test_what_learning_refuses(lesson: list[str], tmp_path: Path, memory: Path) 
     folder = tmp_path / "folder.ttl"
     folder.mkdir()
     assert "a folder" in refused("learn-relation", *lesson, "-o", folder)
-    assert "ends in .ttl" in refused("learn-relation", *lesson, "-o", lesson[0])
+    assert "must end in .ttl" in refused("learn-relation", *lesson, "-o", lesson[0])
     bare = tmp_path / "bare.scene.json"
     bare.write_text('{"objects": [{"id": "a", "min": [0, 0], "max": [1, 1]}]}', encoding="utf-8")
     assert "nothing to learn" in refused("learn-relation", lesson[0], bare, "-o", out)
     assert not out.exists()
     assert "nothing to learn" in refused("learn-relation", lesson[0], bare)
     assert "there are no lessons at" in refused("learn-relation")
-    assert "--no-memory leaves nowhere" in refused("learn-relation", *lesson, "--no-memory")
-    assert "--models goes with -o" in refused("learn-relation", *lesson, "--models", out)
+    assert "--no-memory leaves no place" in refused("learn-relation", *lesson, "--no-memory")
+    assert "--models needs -o" in refused("learn-relation", *lesson, "--models", out)
     assert "name scripts and labelled scenes" in refused("learn-relation", "--no-memory", "-o", out)
-    assert "command of its own" in refused("learn-relation", *lesson, "--reset")
+    assert "learn in a second command" in refused("learn-relation", *lesson, "--reset")
     assert "there is no memory at" in refused("learn-relation", "--reset")
     assert "there is no memory at" in refused("relation", "left", "--memory", tmp_path / "gone")
     assert not memory.exists()

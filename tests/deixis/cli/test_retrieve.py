@@ -119,13 +119,13 @@ def test_where_nothing_is_similar_the_exit_code_is_1(tmp_path: Path) -> None:
     (tmp_path / "two.layout").write_text("fork left of plate\n", encoding="utf-8")
     code, out = run(SETTING, "--among", tmp_path, "--least", 0.9)
     assert code == 1
-    assert out.startswith("Nothing among 1 has a similarity of 0.9 or more to ")
+    assert out.startswith("None of the 1 candidates has a similarity of at least 0.9 to ")
 
 
 @pytest.mark.parametrize(
     ("args", "message"),
     [
-        ((SETTING, "--among", "nowhere"), "no folder of layout scripts"),
+        ((SETTING, "--among", "nowhere"), "name a folder of layout scripts"),
         ((SETTING, "--among", "EMPTY"), "no layout scripts in it"),
         ((EXAMPLES / "script1.layout", "--among", "EMPTY"), "no scenes in it"),
         ((EXAMPLES / "script1.layout",), "--among DIR"),

@@ -162,7 +162,9 @@ def test_why_not_shows_a_picture_without_the_fact() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)")
     assert (code, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0].startswith("left(dessert_fork, soup_spoon) does not follow: every firm fact holds in this picture")
+    assert lines[0].startswith(
+        "left(dessert_fork, soup_spoon) does not follow: it is false in this picture, where every firm fact holds."
+    )
     assert "    right edge of dessert_fork <= left edge of soup_spoon" in lines
     _, out, _ = deixis("infer", SCRIPT1, "--why-not", "left(dessert_fork, soup_spoon)", "--json")
     data = json.loads(out)
@@ -222,7 +224,7 @@ def test_choices_that_are_not_weighed_in_time_leave_it_undecided(tmp_path: Path)
     script.write_text("a left or right of b\nb left or right of c\na is not left of c\n", encoding="utf-8")
     code, out, err = deixis("infer", str(script), "--time-limit", "0")
     assert (code, err) == (3, "")
-    assert out.startswith("Undecided within the time limit")
+    assert out.startswith("Undecided: time limit reached")
     code, out, _ = deixis("infer", str(script), "--time-limit", "0", "--json")
     assert (code, json.loads(out)["consistent"]) == (3, None)
     assert deixis("infer", str(script))[0] == 0

@@ -91,6 +91,16 @@ def test_what_was_learned_is_recognised_on_another_table(tables: Path, tmp_path:
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_recognise_prints_one_line_a_thing_and_why_on_request(tables: Path) -> None:
+    scene, memory = tables / "20.scene.json", tables / "memory"
+    short, full = (deixis("recognise", scene, "--memory", memory, *why)[1] for why in ((), ("--why",)))
+    ids = read_scene(scene).ids
+    assert [line.split()[0] for line in short.splitlines()] == list(ids)
+    assert max(map(len, short.splitlines())) < 100 and "ND" not in short
+    assert [line for line in full.splitlines() if not line.startswith("      ")] == short.splitlines()
+    assert full.count("is nearest: ND") == len(ids) and full.count(", D_C ") >= len(ids)
+
+
 def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_forgotten(
     tables: Path, tmp_path: Path
 ) -> None:
@@ -98,7 +108,7 @@ def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_fo
     assert deixis("category", "list", "--json", *memory)[0] == 2  # there is no such memory yet
     assert deixis("teach", scene, "o1", "Bread plate", *memory)[1] == "o1 is a view of 'Bread_plate'; 1 in all.\n"
     out = deixis("teach", scene, "o1", "saucer", *memory)[1]
-    assert out == "o1 is a view of 'saucer', and no longer of 'Bread_plate'; 1 in all.\n"
+    assert out == "o1 is a view of 'saucer', no longer of 'Bread_plate'; 1 in all.\n"
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"saucer": 1}
     deixis("teach", scene, "o5", "plate", *memory)
     assert deixis("category", "merge", "saucer", "plate", *memory)[0] == 0
@@ -163,7 +173,7 @@ def test_a_word_is_asked_for_until_something_is_pointed_at(
     monkeypatch.setattr("sys.stdin", io.StringIO("o99\no1\n"))
     code, out, _ = deixis("ask", "saucer", scene, *memory)
     assert code == 0
-    assert "There is no 'o99' here." in out
+    assert "There is no object 'o99' in this scene." in out
     assert "o1 is a view of 'saucer'; 1 in all." in out
     assert "Here it is: o1" in deixis("ask", "saucer", scene, *memory)[1]
     assert "a view of 'fork'" in deixis("ask", "fork", scene, "--points-at", "o3", *memory)[1]
@@ -455,7 +465,7 @@ def test_a_word_that_differs_in_case_alone_is_a_known_category_and_that_is_told(
     assert "taken for" not in deixis("teach", scene, "o1", "Wine Glass", *memory)[1]
     for arguments in (("teach", scene, "o2", "wine glass"), ("ask", "WINE_GLASS", scene, "--points-at", "o3")):
         out = deixis(*arguments, *memory)[1]
-        assert "is taken for 'Wine_Glass', from which only its case differs." in out
+        assert "is read as 'Wine_Glass', which differs only by case." in out
         assert "is a view of 'Wine_Glass'" in out
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"Wine_Glass": 3}
 

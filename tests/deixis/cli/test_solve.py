@@ -50,7 +50,7 @@ def test_the_verdict_alone_names_no_conflict(tmp_path: Path) -> None:
     assert code == 1
     assert len(out.splitlines()) == 1 and "inconsistent" in out
     code, _, err = deixis("solve", write(tmp_path, CIRCLE), "--calculus", "point", "--verdict", "--closure")
-    assert code == 2 and "--verdict goes with none" in err
+    assert code == 2 and "--verdict excludes" in err
 
 
 def test_what_closure_lets_pass_is_caught() -> None:
@@ -164,7 +164,7 @@ def test_of_what_is_inconsistent_there_is_nothing_to_explain(tmp_path: Path) -> 
     path = write(tmp_path, CIRCLE)
     code, out, _ = deixis("solve", path, "--calculus", "point", "--explain", 0, 1)
     assert code == 1 and "These cannot all hold" in out
-    assert out.splitlines()[-1] == "There is nothing to explain about 0 and 1: what is stated cannot all hold."
+    assert out.splitlines()[-1] == "There is nothing to explain about 0 and 1: the constraints cannot all hold."
     code, _, err = deixis("solve", path, "--calculus", "point", "--explain", 0, 9)
     assert code == 2 and "no thing 9" in err
 

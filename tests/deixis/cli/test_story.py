@@ -9,17 +9,17 @@ import pytest
 from deixis.cli.story import tell
 
 CHAPTERS = [
-    "1. Somebody says how a table is laid",
-    "2. The robot looks at a table and can name nothing on it",
-    "3. Who is who, going by the words alone?",
+    "1. A person describes a laid table",
+    "2. The robot sees a table, but knows no names",
+    "3. Which object does each name refer to, by the words alone?",
     "4. A fuller script settles it",
-    "5. What the script implies without saying so",
-    "6. A script that cannot be laid",
-    "7. What was understood is learned",
-    "8. And can be asked for, in SPARQL: what cutlery do I know, and from which lesson?",
-    "9. Another table, whose things have names by now. What is wrong with it?",
-    "10. The same with a depth camera, simulated: points, and no boxes",
-    "11. Another table of points, and nobody says a word. What looks familiar?",
+    "5. A fact that the script implies but does not state",
+    "6. A script that contradicts itself",
+    "7. The robot learns the layout",
+    "8. A SPARQL query: which cutlery is known, and from which lesson?",
+    "9. Another table, with labelled things. What is wrong with it?",
+    "10. The same table seen by a simulated depth camera: points instead of boxes",
+    "11. Another cloud without a description. What does the robot recognise?",
 ]
 
 
@@ -31,12 +31,12 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         "right(water_glass, dinner_plate)",
         "It sees 12 boxes, from the chair",
         "dinner_knife, water_glass",
-        "12 names are open",
+        "of 12 names stay open",
         "left(salad_fork, soup_spoon)   by transitivity",
         "The script contradicts itself",
         "fish knife     dx:FishKnife     lx:lesson/formal_dinner-1",
         "missing     water_glass",
-        "misplaced   dinner_fork (p3), in the place of dinner_knife",
+        "misplaced   dinner_fork (p3), where dinner_knife belongs",
         "one napkin too many",
         "12 things found on the table",
     ):

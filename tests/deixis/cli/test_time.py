@@ -119,7 +119,7 @@ def test_choices_that_can_be_made_are_gone_through() -> None:
 def test_without_time_it_is_undecided_and_exits_3() -> None:
     code, out, _ = deixis("time", story(one_at_a_time()), "--time-limit", 0)
     assert code == 3
-    assert "Undecided within the time limit" in out
+    assert "Undecided: time limit reached" in out
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ def test_without_time_it_is_undecided_and_exits_3() -> None:
         (["--at", "nan"], "finite number of seconds"),
         (["--at", "inf"], "a time must be a finite number of seconds, got inf"),
         (["--window", "0", "inf"], "a window must have finite ends, got 0.0 and inf"),
-        (["--relate", "fetch", "served", "--pattern", "cup", "on", "*"], "--pattern goes with --at"),
+        (["--relate", "fetch", "served", "--pattern", "cup", "on", "*"], "--pattern excludes"),
         (["--at", "1e99"], "beyond 4e+09 s"),
         (["--window", "3", "2"], "a window must begin before it ends"),
         (["--relate", "fech", "served"], "there is no fluent 'fech'; did you mean 'fetch'?"),

@@ -47,7 +47,7 @@ def test_violations_come_first_each_with_its_shape(data: Path, tmp_path: Path) -
     lines = out.splitlines()
     assert [line.split(":")[0] for line in lines[:-1]] == ["Violation", "Violation", "Warning"]
     assert "a fork has two tines or more" in lines[0] and "<urn:t#b>" in lines[0]
-    assert lines[-1] == "3 results: it does not conform"
+    assert lines[-1] == "3 results: does not conform"
 
 
 def test_json_and_the_standard_report_say_the_same(data: Path, tmp_path: Path) -> None:

@@ -130,7 +130,7 @@ def test_who_does_not_answer_is_asked_once() -> None:
         ({"ask": {}, "engine": "scalable"}, SettingError, "only the engine 'exact' asks"),
         ({"ask": {}, "max_questions": 0}, SettingError, "`max_questions` must be at least 1, got 0"),
         ({"ask": {}, "max_questions": 1.5}, SettingError, "`max_questions` must be a whole number, got 1.5"),
-        ({"max_questions": 2}, SettingError, "nobody is asked `max_questions`"),
+        ({"max_questions": 2}, SettingError, "`max_questions` needs a source of answers"),
         ({"ask": [3]}, SettingError, "`ask` must be a mapping, a function or a Dialogue"),
         ({"ask": lambda question, situation: 3}, OracleError, "must be one of its answers, got '3'"),
         ({"meaning": None}, SettingError, "`meaning` must be a Meaning"),
@@ -138,7 +138,7 @@ def test_who_does_not_answer_is_asked_once() -> None:
         ({"time_limit": "soon"}, SettingError, "time limit"),
         ({"time_limit": None}, SettingError, "time limit"),
         ({"engine": "exakt"}, package.DeixisError, "there is no engine 'exakt'"),
-        ({"ask": {"fork": "o99"}}, OracleError, "'fork' is said to be 'o99', which is no thing of the scene"),
+        ({"ask": {"fork": "o99"}}, OracleError, "'fork' is said to be 'o99', which is not in the scene"),
         ({"ask": lambda question, situation: "perhaps"}, OracleError, "must be one of its answers, got 'perhaps'"),
     ],
 )
