@@ -1,4 +1,4 @@
-"""What else each object could be, and why objects and things were left out."""
+"""Alternatives of each object, and the reasons why objects and things have no match."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 MIN_LISTED_PROBABILITY = 0.01
-"""Probability from which an alternative is named."""
+"""Minimum probability of an alternative that is listed."""
 
 MAX_LISTED_GROUP = 100
-"""Interchangeable objects up to which each lists the others' things: of k that would be k * k."""
+"""Largest group of interchangeable objects that list each other's things: k objects list k * k things."""
 
-FITS_OTHERS = "the description names fewer things than were perceived, and fits the others at least as well"
+FITS_OTHERS = "the description names fewer things than were perceived, and it fits the others at least as well"
 
 
 def alternatives(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> tuple[Alternative, ...]:
-    """Return what else an object could be, the best first: by probability, else by similarity."""
+    """Return what else object ``i`` could be, best first: by probability where there is one, else by similarity."""
     found = (
         _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
     )
@@ -34,7 +34,7 @@ def alternatives(
 def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternative]:
     assert alignment.posterior is not None
     row, chosen = alignment.posterior.marginals[i], int(alignment.assignment[i])
-    own = max(float(row[chosen]), 1e-300)  # of what is left out the last column is its own, as UNMATCHED is
+    own = max(float(row[chosen]), 1e-300)  # UNMATCHED is -1, the last column, which is that of being left out
     found = []
     for p in np.flatnonzero(row >= MIN_LISTED_PROBABILITY).tolist():
         if p != chosen % len(row):
@@ -46,8 +46,7 @@ def _probable(evidence: Evidence, alignment: Alignment, i: int) -> list[Alternat
 def _similar(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> list[Alternative]:
-    """Return interchangeable fellows' things, which cost nothing, if not too many; and the engine's next best
-    choice."""
+    """Return the things of interchangeable objects, at no cost, and the engine's next best choice for the object."""
     name = evidence.description.nodes[i]
     found: dict[str, float] = {}
     for group in groups:
@@ -61,17 +60,17 @@ def _similar(
 
 
 def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """Return the objects that are no thing, by ``names`` in their order: why, and what they could be."""
+    """Return the objects without a match, in the order of ``names``: the reason, and what each could be."""
     reasons = {}
     for i in np.flatnonzero(alignment.assignment == UNMATCHED):
         if not len(evidence.scene.nodes):
             reason = "nothing was perceived"
         elif evidence.identified.all() and not evidence.allowed[i].any():
-            reason = "the labels of the scene leave it nothing that it could be"
+            reason = "the labels of the scene rule out every thing that it could be"
         elif len(evidence.description.nodes) > len(evidence.things) and (alignment.assignment != UNMATCHED).any():
-            reason = "the description names more than was perceived, and the rest explains the scene best without it"
+            reason = "the description names more objects than were perceived, and the others explain the scene best"
         else:
-            reason = "what is said of it fits nothing perceived as well as its not being there"
+            reason = "its absence explains the scene better than a match with any perceived thing"
         reasons[evidence.description.nodes[i]] = LeftOut(
             evidence.description.nodes[i], reason, alternatives(evidence, alignment, int(i), ())
         )
@@ -79,7 +78,7 @@ def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str,
 
 
 def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """Return the things that nobody is, by ``ids`` in their order, and why."""
+    """Return the things without a match, in the order of ``ids``, and the reasons."""
     taken = set(alignment.assignment.tolist()) - {UNMATCHED}
     reasons = {}
     for p, thing in enumerate(evidence.scene.nodes):
@@ -88,11 +87,11 @@ def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ..
         if not len(evidence.description.nodes):
             reason = "the description names nothing"
         elif evidence.identified[p] and not evidence.allowed[:, p].any():
-            reason = "the labels of the scene leave it nothing in the description that it could be"
+            reason = "the labels of the scene rule out every object that it could be"
         elif len(evidence.description.nodes) < len(evidence.things) and taken:
             reason = FITS_OTHERS
         else:
-            reason = "nothing that is described fits it better than its not being described"
+            reason = "no described object fits it better than the assumption that it is not described"
         reasons[thing] = reason
     if evidence.whole is not None:
         reasons |= dict.fromkeys(set(evidence.whole.nodes) - set(evidence.scene.nodes), FITS_OTHERS)

@@ -1,4 +1,4 @@
-"""The types of an answer: who is who, and everything that qualifies it."""
+"""Types of a grounding: the matches, with their probabilities, alternatives and the outcome of each fact."""
 
 from __future__ import annotations
 
@@ -22,26 +22,40 @@ if TYPE_CHECKING:
 
 
 class Standing(StrEnum):
-    """What the probabilities of an answer are worth."""
+    """Quality of the probabilities of an answer."""
 
-    NONE = "none"  # the engine gives none
-    EXACT = "exact"  # from all maps that count
-    SAMPLED = "sampled"  # an approximation, with an error that independent chains tell
-    BELIEVED = "believed"  # belief propagation: an approximation of which no error is known
+    NONE = "none"  # the engine computes no probabilities
+    EXACT = "exact"  # summed over all maps that matter
+    SAMPLED = "sampled"  # approximate, with an error estimated from independent chains
+    BELIEVED = "believed"  # approximate, from belief propagation, with an unknown error
 
 
 class Outcome(StrEnum):
-    """What became of a stated fact."""
+    """Outcome of a stated fact."""
 
-    SATISFIED = "satisfied"  # holds of the matched pair, at least widely
-    VIOLATED = "violated"  # does not hold of the matched pair
-    WAIVED = "waived"  # does not hold, and was optional
-    OPEN = "open"  # an object of it is not matched
+    SATISFIED = "satisfied"  # the matched pair fulfils the fact, at least in the wide reading
+    VIOLATED = "violated"  # the matched pair does not fulfil the fact
+    WAIVED = "waived"  # the matched pair does not fulfil the fact, which was optional
+    OPEN = "open"  # an object of the fact is not matched
 
 
 @dataclass(frozen=True, slots=True)
 class FactOutcome:
-    """A stated fact, what became of it, and the exact relation perceived instead or accordingly."""
+    """A stated fact, its outcome, and the relation that was perceived between the matched things.
+
+    Attributes
+    ----------
+    fact
+        The fact as stated.
+    outcome
+        Whether it holds of the matched pair.
+    degree
+        Degree to which it holds, in [0, 1].
+    perceived
+        The matched things; None where an object is not matched.
+    seen
+        The exact relation between the matched things; None where an object is not matched.
+    """
 
     fact: Fact
     outcome: Outcome
@@ -52,7 +66,7 @@ class FactOutcome:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """An object or a perceived thing without a counterpart, and why; what an object could be all the same."""
+    """An object or a perceived thing without a match, the reason, and (of an object) what it could still be."""
 
     name: str
     reason: str
@@ -61,10 +75,18 @@ class LeftOut:
 
 @dataclass(frozen=True, slots=True)
 class Pivotal:
-    """A fact without which the answer would be another.
+    """A fact without which the answer would be different.
 
-    ``changes`` are the objects that would be something else then (None: not there), ``unsettled`` those that would no
-    longer be decided, ``settled`` those that only then would be.
+    Attributes
+    ----------
+    fact
+        The fact.
+    changes
+        Objects that would be matched to another thing without the fact, each with that thing (None: not matched).
+    unsettled
+        Objects that would no longer be decided without the fact.
+    settled
+        Objects that would be decided only without the fact.
     """
 
     fact: Fact
@@ -75,17 +97,53 @@ class Pivotal:
 
 @dataclass(frozen=True, repr=False)
 class Grounding(Answer):
-    """The answer of an engine, with all that qualifies it.
+    """Result of grounding a description in a scene: the matches, and how certain they are.
 
-    ``probabilities`` says what those of the matches are worth, and ``probability_error`` by how much they may be off.
-    ``fits`` is the probability that the description is of this scene at all, from whichever side; None of engines
-    without a posterior. ``sides`` are those from which it may speak, with probabilities that add up to ``fits``.
-    ``pivotal`` is None where it was not looked for what would change without a fact, as where the description is taken
-    to be of another scene. ``finished`` says whether the engine came to its end within the time limit. By ``gap``
-    (nats) another answer may be likelier at most: 0 where this one is proved the best, infinite where the engine has no
-    bound. ``exchanges`` are the questions that were asked, with their answers, and ``viewpoints`` those from which the
-    script may speak, most probable first, where they were to be recovered; None where that was not wanted. ``scene`` is
-    the scene that was grounded in, for pictures; None where an engine was called directly.
+    Attributes
+    ----------
+    engine
+        Name of the engine.
+    matches
+        Matches by the name of the object.
+    unmatched_objects, unmatched_perceived
+        Objects and perceived things without a match, with the reasons.
+    interchangeable
+        Groups of objects that the description cannot tell apart.
+    graph_similarity
+        Overall similarity of the two graphs by the paper's measure, in [0, 1].
+    outcomes
+        Outcome of each fact that can be compared, in the order in which the facts were stated.
+    proved_best
+        Whether the engine proved that no map is likelier.
+    converged
+        Whether the iteration of the paper's similarity converged.
+    notes
+        Remarks for the user, such as a time limit that was reached.
+    seconds
+        Time that grounding took.
+    pivotal
+        Facts without which the answer would be different; None where this was not computed, for example because the
+        description is probably of another scene.
+    probabilities
+        Quality of the probabilities of the matches.
+    probability_error
+        Largest error of these probabilities.
+    fits
+        Probability that the description is of this scene, from any side; None for engines without a posterior.
+    sides
+        Sides from which the description may be spoken, with probabilities that add up to ``fits``.
+    finished
+        Whether the engine finished within the time limit.
+    gap
+        Upper bound, in nats, on how much likelier another map may be: 0 where ``proved_best``, infinite where the
+        engine has no bound.
+    exchanges
+        Questions that were asked, with their answers; None where asking was not requested.
+    viewpoints
+        Viewpoints from which the script may be spoken, most probable first; None where their recovery was not
+        requested.
+    scene
+        The scene, for pictures; None where an engine was called directly.
     """
 
     engine: str
@@ -111,7 +169,7 @@ class Grounding(Answer):
     scene: object | None = field(default=None, compare=False)
 
     def summary(self) -> str:
-        """Return how many objects were found and decided, and whether the description fits."""
+        """Return how many objects are matched and decided, and how probably the description fits the scene."""
         objects = len(self.matches) + len(self.unmatched_objects)
         decided = sum(match.decided for match in self.matches.values())
         parts = [f"{len(self.matches)} of {count(objects, 'object')} matched", f"{decided} decided"]
@@ -121,19 +179,20 @@ class Grounding(Answer):
         return ", ".join(parts)
 
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
+        """Return the facts with this outcome."""
         return tuple(entry for entry in self.outcomes if entry.outcome is outcome)
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
-        """Return the answer as a ``networkx.MultiDiGraph`` over objects, things and what relates them.
+        """Return the answer as a ``networkx.MultiDiGraph`` of objects, things, matches and facts.
 
         Returns
         -------
         networkx.MultiDiGraph
-            Nodes are ``("object", name)`` and ``("thing", id)``, with ``matched``, and ``reason`` where they are left
-            out. Edges have the attribute ``kind``: a ``match`` from an object to its thing, with ``probability`` (or
-            None), ``similarity``, ``score`` and ``decided``; an ``alternative`` from an object to another thing that it
-            could be, with ``probability`` (or None) and ``cost``; and a ``fact`` from its subject to its object, with
-            ``relations`` (names), ``positive``, ``weight``, ``outcome``, ``degree`` and ``source``.
+            Nodes are ``("object", name)`` and ``("thing", id)``, with the attribute ``matched``, and ``reason`` where
+            they are not matched. Edges have the attribute ``kind``: a ``match`` from an object to its thing, with
+            ``probability`` (or None), ``similarity``, ``score`` and ``decided``; an ``alternative`` from an object to
+            another thing that it could be, with ``probability`` (or None) and ``cost``; and a ``fact`` from its subject
+            to its object, with ``relations`` (names), ``positive``, ``weight``, ``outcome``, ``degree`` and ``source``.
 
         Examples
         --------
@@ -184,12 +243,14 @@ class Grounding(Answer):
 
     @property
     def satisfied(self) -> tuple[FactOutcome, ...]:
+        """Facts that hold of the matched pairs."""
         return self.of(Outcome.SATISFIED)
 
     def noting(self, notes: tuple[str, ...]) -> Grounding:
-        """Return the same answer with notes before its own."""
+        """Return a copy of the answer with ``notes`` before its own notes."""
         return replace(self, notes=notes + self.notes)
 
     @property
     def violated(self) -> tuple[FactOutcome, ...]:
+        """Facts that are not optional and do not hold of the matched pairs."""
         return self.of(Outcome.VIOLATED)

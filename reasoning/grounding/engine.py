@@ -1,4 +1,4 @@
-"""What an engine is and what it returns: the protocol, and the alignment of a description with a scene."""
+"""Protocol of engines, and the alignment of a description with a scene that they return."""
 
 from __future__ import annotations
 
@@ -22,37 +22,39 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """What an engine found: ``assignment`` (n1,) into the scene or ``UNMATCHED``, and how it came about."""
+    """Result of an engine for n1 objects and n2 things: the assignment, and how certain it is."""
 
     engine: str
-    assignment: NDArray[np.int64]
-    matrix: NDArray[np.float64]  # (n1, n2) node similarities, Frobenius norm 1, or 0
-    converged: bool
+    assignment: NDArray[np.int64]  # (n1,) the thing of each object, or UNMATCHED
+    matrix: NDArray[np.float64]  # (n1, n2) node similarities with Frobenius norm 1, or all 0
+    converged: bool  # whether the node similarities converged
     proved_best: bool
     notes: tuple[str, ...] = ()
-    finished: bool = True  # whether the time limit left the search its course
-    gap: float = math.inf  # by how much another map may be more likely (log) at most; infinite where nobody knows
-    verdict: Verdict | None = None  # over maps, sides and scenes: of engines that work with likelihoods
-    seen: Evidence | None = None  # from the side from which the assignment is read, where that is not the evidence's
-    margins: NDArray[np.float64] | None = None  # (n1,) what the next best choice for each would lose; nan: not known
-    runners_up: NDArray[np.int64] | None = None  # (n1,) that choice, or UNMATCHED
+    finished: bool = True  # whether the search ended before the time limit
+    gap: float = math.inf  # upper bound in nats on how much likelier another map may be; infinite where unknown
+    verdict: Verdict | None = None  # posterior over maps, sides and scenes; None of engines without likelihoods
+    seen: Evidence | None = None  # evidence from the side of the assignment, where that is not the stated side
+    margins: NDArray[np.float64] | None = None  # (n1,) loss of the next best choice of each object; nan: unknown
+    runners_up: NDArray[np.int64] | None = None  # (n1,) next best choice of each object, or UNMATCHED
 
     @property
     def posterior(self) -> Posterior | None:
-        """The posterior of matches over all hypotheses."""
+        """Posterior of the matches over all hypotheses; None of engines without likelihoods."""
         return None if self.verdict is None else self.verdict.posterior
 
     @property
     def of_another(self) -> bool:
-        """Whether the description is probably of another scene, so that only what labels tell is matched."""
+        """True where the description is probably of another scene, so that only labels give matches."""
         return self.verdict is not None and self.verdict.fits < 0.5
 
     @property
     def graph_similarity(self) -> float:
+        """Overall similarity of the two graphs under the assignment, in [0, 1]."""
         return graph_similarity(self.matrix, self.assignment)
 
 
 class Engine(Protocol):
-    """Aligns the description with the scene until ``deadline``."""
+    """Method that aligns a description with a scene."""
 
-    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment: ...
+    def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        """Return the best alignment that is found until ``deadline``."""

@@ -1,10 +1,10 @@
 """The engines that align a description with a scene, by name.
 
-``exact`` finds the likeliest map by branch and bound and proves it so; ``scalable`` looks for it by annealing, at any
-size. ``similarity`` is the paper's: equations 5 to 9, the Hungarian method, and a choice among sub-graphs where one
-side has more objects. ``blondel`` and ``heymans-singh`` are node similarities from the literature, to compare with. All
-work on the evidence in the order in which they get it; whoever wants an answer that does not depend on that order goes
-through :func:`deixis.reasoning.grounding.ground.ground`.
+``exact`` finds the likeliest map by branch and bound and proves that it is the likeliest; ``scalable`` searches for it
+by annealing, at any size. ``similarity`` is the paper's engine: equations 5 to 9, the Hungarian method, and a choice
+among sub-graphs where one side has more objects. ``blondel`` and ``heymans-singh`` are node similarities from the
+literature, for comparison. All engines break ties by the order of the evidence; to get an answer that does not depend
+on that order, call :func:`deixis.reasoning.grounding.ground.ground`.
 """
 
 from __future__ import annotations
@@ -22,10 +22,24 @@ def engine_named(
     sides: tuple[Side, ...] = STATED_SIDES,
     seen: tuple[Evidence | None, ...] = (),
 ) -> Engine:
-    """Return the engine of that name (:class:`EngineName`); raises UnknownTermError for another.
+    """Return the engine with a name.
 
-    ``sides`` and ``seen`` are for engines with a posterior (:func:`deixis.reasoning.grounding.hypotheses.weigh`): from
-    where a description may speak, and what is seen from there.
+    Parameters
+    ----------
+    name
+        One of :class:`EngineName`.
+    select
+        Criterion of the paper's engine for choosing among sub-graphs.
+    sides
+        Sides from which a description may be spoken; used by engines with a posterior
+        (:func:`deixis.reasoning.grounding.hypotheses.weigh`).
+    seen
+        Evidence as seen from each of the sides, in their order; None to turn the scene instead.
+
+    Raises
+    ------
+    UnknownTermError
+        There is no engine of this name.
     """
     from deixis.reasoning.grounding.map_engines import BaselineEngine, ExactEngine, ScalableEngine
     from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity

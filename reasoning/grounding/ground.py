@@ -1,4 +1,4 @@
-"""Who is who: a description aligned with a scene, and everything that qualifies the answer."""
+"""Ground a description in a scene: align the two, and report how certain the answer is and what it rests on."""
 
 from __future__ import annotations
 
@@ -28,24 +28,42 @@ from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
 from deixis.reasoning.grounding.symmetry import interchangeable
 
 SENSITIVITY_SHARE = 0.1
-"""Share of the time limit for finding out what would change without each fact."""
+"""Share of the time limit for computing what would change without each fact."""
 
 SECONDS_PER_NAME, MAX_MARGIN = 1e-4, 0.15
-"""What is kept of the time for telling the answer: seconds for each object and thing, and the most of what is left."""
+"""Time reserved for building the answer: seconds per object and thing, and the maximum share of the time left."""
 
-SENSITIVITY_OUT_OF_TIME = "there was no time to find out what rests on which fact"
+SENSITIVITY_OUT_OF_TIME = "time limit reached before the sensitivity to each fact was computed"
 
-SENSITIVITY_NOT_ASKED = "whether it would be so without one of the facts was not looked for"
+SENSITIVITY_NOT_ASKED = "the sensitivity to each fact was not computed, because the description hardly fits the scene"
 
 
 def ground(
     evidence: Evidence, engine: Engine, deadline: Deadline = Deadline.never(), notes: tuple[str, ...] = ()
 ) -> Grounding:
-    """Align, and say what the alignment rests on.
+    """Align a description with a scene, and report how certain the matches are and which facts they rest on.
 
-    The evidence is first put in the order of its names, so that the answer does not depend on the order in which
-    objects and facts were stated or things perceived: where the evidence leaves several answers, names decide, and
-    the result says so (``interchangeable``, ``decided``).
+    Parameters
+    ----------
+    evidence
+        Description, scene, and the evidence for each match.
+    engine
+        Engine that finds the matches (:func:`deixis.reasoning.grounding.engines.engine_named`).
+    deadline
+        End of the time limit.
+    notes
+        Notes to put before those of the answer.
+
+    Returns
+    -------
+    Grounding
+        Matches, probabilities, alternatives and outcomes of facts.
+
+    Notes
+    -----
+    The evidence is first sorted by names, so that the answer does not depend on the order in which objects and facts
+    were stated or things perceived. Where the evidence leaves several answers, the order of names decides, and the
+    result says so (``interchangeable``, ``decided``).
     """
     started = time.perf_counter()
     told = len(evidence.description.nodes) + len(evidence.things)
@@ -87,7 +105,7 @@ def ground(
 
 
 def _standing(posterior: Posterior | None) -> Standing:
-    """Return what the probabilities of an answer are worth."""
+    """Return the quality of the probabilities of an answer."""
     if posterior is None:
         return Standing.NONE
     if posterior.believed:
@@ -96,9 +114,9 @@ def _standing(posterior: Posterior | None) -> Standing:
 
 
 def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
-    """Return the same evidence with its facts by what they say, and where each was stated (edges,).
+    """Return the evidence with its facts sorted by content, and the stated position of each, shape (edges,).
 
-    Sums in another order could break a tie by rounding.
+    Without sorting, a sum in another order could break a tie by rounding.
     """
     graph = evidence.description
     keys = (graph.weights, graph.optional, graph.positive, graph.relation_sets, graph.objects, graph.subjects)
@@ -117,7 +135,7 @@ def _facts_in_order(evidence: Evidence) -> tuple[Evidence, NDArray[np.int64]]:
 
 
 def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64]) -> tuple[FactOutcome, ...]:
-    """Return what became of the facts that can be compared, in the order in which they were stated."""
+    """Return the outcomes of the facts that can be compared, in the order in which they were stated."""
     degrees = evidence.degrees(alignment.assignment)
     outcomes = []
     for edge, degree in zip(evidence.facts, degrees, strict=True):
@@ -170,7 +188,7 @@ def _matches(
 
 
 def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) -> bool:
-    """Return whether a match is probable enough; without probabilities, whether nothing else is as similar."""
+    """Return whether a match is probable enough; without probabilities, whether no other thing is as similar."""
     if alignment.posterior is None:
         similar = alignment.margins is not None and bool(alignment.margins[i] > 1e-9)
         return bool(evidence.allowed[i].sum() == 1) or (similar and not grouped)
@@ -181,10 +199,10 @@ def _decided(evidence: Evidence, alignment: Alignment, i: int, grouped: bool) ->
 def _pivotal(
     evidence: Evidence, alignment: Alignment, matches: dict[str, Match], deadline: Deadline
 ) -> tuple[Pivotal, ...] | None:
-    """Return the facts without which something would be otherwise; None where there was no time to look at all.
+    """Return the facts without which the answer would be different; None where not all facts could be examined.
 
-    None, too, where nothing was found as of another scene: the likeliest maps without a fact do not say whether it
-    would be so still.
+    Also returns None where the description is probably of another scene: the likeliest maps without a fact do not show
+    whether that would still be so.
     """
     if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None
@@ -205,8 +223,7 @@ def _pivotal(
 
 
 def _why_not_pivotal(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
-    """Return what is to be said where a proved answer, with its probabilities, is without the facts that it rests
-    on."""
+    """Return the note that explains why a proved answer with probabilities has no pivotal facts."""
     if (
         len(evidence.description.nodes) > MAX_SENSITIVITY_OBJECTS
         or alignment.posterior is None
@@ -244,15 +261,15 @@ def _notes(evidence: Evidence, alignment: Alignment) -> tuple[str, ...]:
     notes = list(alignment.notes)
     nothing = alignment.matrix.size and not alignment.matrix.any()
     if not alignment.converged and not nothing:
-        notes.append("the similarity did not converge; its figures are those of the last iteration")
+        notes.append("the similarity did not converge; its values are those of the last iteration")
     if alignment.converged and nothing:
-        notes.append("the paper's similarity is zero: no exact name of the description is one of the scene's")
+        notes.append("the paper's similarity is zero: the description and the scene share no exact relation")
     if alignment.posterior is not None:
         unlikely = alignment.posterior.marginals.max(axis=1, initial=0.0) < MIN_LISTED_PROBABILITY
         vague = _named(evidence.description.nodes, unlikely & (alignment.assignment != UNMATCHED))
         if vague:
-            notes.append(f"any of many things is about as likely, and none of them likely, to be: {', '.join(vague)}")
+            notes.append(f"many things are about equally likely, and none is likely, for: {', '.join(vague)}")
     hidden = [str(fact) for fact in evidence.description.facts() if not fact.plain]
     if hidden:
-        notes.append("not seen by the similarity, being no single affirmed relation: " + "; ".join(hidden))
+        notes.append("the similarity ignores facts that are not one affirmed relation: " + "; ".join(hidden))
     return tuple(notes)

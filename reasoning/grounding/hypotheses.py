@@ -1,24 +1,25 @@
-"""What a description may be of: this scene as it is stated, seen from another side or in a mirror, or another scene.
+"""Posterior over the hypotheses of a description: this scene, from the stated or another side, or another scene.
 
-All of it is one posterior with the maps. A side weighs its prior times a power of the likelihood of the facts as seen
-from there, Z / U: Z sums the value of all maps, U the same without facts. *Another scene* explains kinds and labels as
-well as this one, or, where those speak against it, by chance; and the facts as well as scenes do that the facts are not
-about. How well that is depends on M, how much the facts could say beyond telling the things apart: the sum of the
-largest entry of each, less the entropy of the maps where no fact is known, but at least 0.
+Sides, scenes and maps have one common posterior. The weight of a side is its prior times a power of the likelihood of
+the facts as seen from there, Z / U: Z sums the exponentials of the values of all maps, U does so without the facts.
+*Another scene* explains kinds and labels as well as this one, or by chance where they speak against this one. It
+explains the facts as well as scenes do that the facts do not describe. How well that is depends on M, the information
+that the facts could give beyond telling the things apart: the sum of the largest entry of each fact's table, less the
+entropy of the maps without facts, and at least 0.
 
     log weight of a side     = log prior + FACTS_POWER (log Z - log U)
     log weight of another    = log prior + CHANCE_SHARE M - KINDS_POWER min(0, log U - log U0 + KINDS_SLACK n1)
 
-U0 sums what leaving out costs alone, n1 is the number of objects. Where somebody pointed an object out, or a label that
-is free of error names it, the description is of this scene.
+U0 is U with the costs of leaving objects out alone; n1 is the number of objects. Where the user pointed out an object,
+or a label without error names it, the description is of this scene.
 
-The power of facts is below 1 since facts are counted as independent, and are not: places in one plane that please one
-fact please others. :mod:`deixis.reasoning.grounding.fitting.fits` says how the powers are fitted to right and wrong
-pairs of descriptions and scenes, and ``benchmarks/bench_fits.py`` prints the fit with its interval. What is shipped is
-near the lower ends of the intervals, for evidence that is taken for more than it is accuses right descriptions.
+The power of the facts is below 1 because they are treated as independent and are not: a place that satisfies one fact
+often satisfies others. :mod:`deixis.reasoning.grounding.fitting.fits` fits the powers to right and wrong pairs of
+descriptions and scenes, and ``benchmarks/bench_fits.py`` prints the fit with its interval. The shipped values are near
+the lower ends of the intervals, because overweighted evidence rejects right descriptions.
 
-A side, or a reading of the labels, is left out unsearched where an upper bound of the sum of its maps shows that its
-share of all hypotheses is below ``NEGLIGIBLE``.
+A side, or a reading of the labels, is not searched where an upper bound of the sum of its maps shows that its share of
+all hypotheses is below ``NEGLIGIBLE``.
 """
 
 from __future__ import annotations
@@ -40,10 +41,11 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.matching.scalable import scalable
 
 FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.7, 0.37, 1.4
+"""Fitted powers of the evidence; see the formulas above."""
 
 KINDS_SLACK = 0.7
-"""By how many nats for each object kinds may fit less than chance before that speaks for another scene: in images,
-sizes of things that are described rightly do so, too."""
+"""Nats per object by which kinds may fit worse than chance before that is evidence for another scene: in images, the
+sizes of correctly described things often fit worse than chance."""
 
 ANOTHER_PRIOR = 0.01
 """Prior probability that a description is of another scene: one in a hundred."""
@@ -51,20 +53,25 @@ ANOTHER_PRIOR = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """A side from which a description may speak: the scene turned by ``angle`` (radians, counter-clockwise), having
-    mirrored left and right if so, with its prior probability among all sides."""
+    """A side from which a description may be spoken."""
 
-    angle: float
-    mirrored: bool
-    prior: float
+    angle: float  # radians by which the scene is turned, counter-clockwise
+    mirrored: bool  # whether left and right are exchanged before the turn
+    prior: float  # prior probability among all sides
 
 
 @dataclass(frozen=True, slots=True)
 class FitEvidence:
-    """What tells whether a description is of a scene, in nats.
+    """Evidence that a description is of a scene, in nats.
 
-    ``facts`` is the log-likelihood ratio of the facts given kinds and labels, log Z - log U; ``most`` is M, what it
-    could be at most; ``kinds`` is by how much kinds and labels fit the scene less than chance and a slack, at most 0.
+    Attributes
+    ----------
+    facts
+        Log-likelihood ratio of the facts given kinds and labels, log Z - log U.
+    most
+        Upper bound M of that ratio.
+    kinds
+        Log-likelihood ratio of kinds and labels against chance, plus a slack, at most 0.
     """
 
     facts: float
@@ -73,18 +80,18 @@ class FitEvidence:
 
     @property
     def beside(self) -> float:
-        """The log-likelihood, up to the same power, of another scene."""
+        """Log-likelihood of another scene, with the same powers."""
         return CHANCE_SHARE * self.most - KINDS_POWER * self.kinds
 
     @property
     def log_odds(self) -> float:
-        """By how much the evidence adds to the log-odds that the description is of this scene."""
+        """Contribution of the evidence to the log-odds that the description is of this scene."""
         return FACTS_POWER * self.facts - self.beside
 
 
 OPPOSITE_PRIOR, BESIDE_PRIOR, MIRROR_PRIOR = 0.001, 0.0002, 0.001
-"""Prior probabilities that a stated viewpoint is wrong: the speaker sits opposite; at the one or the other end; or left
-and right are exchanged (each of the other mirror images has that of an end)."""
+"""Prior probabilities that a stated viewpoint is wrong: the speaker is opposite; the speaker is at a given end; left
+and right are exchanged. Each of the other mirror images has the prior of an end."""
 
 STATED_SIDES = (
     Side(0.0, False, 1 - OPPOSITE_PRIOR - MIRROR_PRIOR - 5 * BESIDE_PRIOR),
@@ -96,31 +103,32 @@ STATED_SIDES = (
     Side(math.pi, True, BESIDE_PRIOR),
     Side(3 * math.pi / 2, True, BESIDE_PRIOR),
 )
-"""Sides from which a description may speak of a scene whose viewpoint is stated: strong evidence, and not certain."""
+"""Sides of a scene with a stated viewpoint, which is strong but not certain evidence."""
 
 AS_IT_STANDS = (Side(0.0, False, 1.0),)
-"""The one side of a scene whose viewpoint is certain."""
+"""Only side of a scene whose viewpoint is certain."""
 
 MAX_THINGS = 150
-"""Things up to which other sides are looked from; of larger scenes they are as likely as another scene."""
+"""Maximum number of things of a scene whose other sides are searched; in larger scenes, the other sides are as likely
+as another scene."""
 
 NEGLIGIBLE = 1e-5
-"""Share of all hypotheses that a side, or a reading of the labels, is left out below: where a bound shows that."""
+"""Share of all hypotheses below which a side, or a reading of the labels, is left out, where a bound shows that."""
 
 NOT_LISTED = 1e-3
-"""Share of the likeliest side's weight below which a side's maps are not listed, as far as a search tells."""
+"""Share of the likeliest side's weight, estimated by a search, below which the maps of a side are not listed."""
 
 SEARCH_EFFORT = 0.05
-"""Effort of the search that shows whether a side is worth a look."""
+"""Effort of the search that estimates the weight of a side."""
 
 ENTROPY_SHARE = 0.27
-"""By how much the logarithm of the sum is above the best value, for each nat of the sum of the objects' entropies: the
-least squares of a trial with 100 generated tables on which both are exact."""
+"""Excess of the logarithm of the sum over the best value, per nat of the sum of the objects' entropies: a least-squares
+fit to 100 generated tables on which both are exact."""
 
 
 @dataclass(frozen=True, eq=False)
 class SeenSide:
-    """A side, its posterior probability, and the evidence as seen from there."""
+    """A side, its posterior probability, and the evidence as seen from that side."""
 
     side: Side
     probability: float
@@ -129,11 +137,22 @@ class SeenSide:
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """All hypotheses together: the posterior of matches over them, the sides, and how probable one of them is.
+    """Posterior over all hypotheses.
 
-    ``fits`` is the probability that the description is of this scene from whichever side; ``evidence`` is what tells
-    it as seen from the first. ``sides`` begins with the first that was given. ``by_labels`` (n1,) is the map by labels
-    alone, and ``labelled`` its posterior: what is left in another scene.
+    Attributes
+    ----------
+    posterior
+        Posterior of the matches, summed over all hypotheses.
+    fits
+        Probability that the description is of this scene, from any side.
+    evidence
+        Evidence for ``fits`` as seen from the first side.
+    sides
+        Sides in the order in which they were given.
+    by_labels
+        Best map by labels alone, shape (n1,): the answer where the description is of another scene.
+    labelled
+        Posterior of the matches by labels alone.
     """
 
     posterior: Posterior
@@ -145,7 +164,7 @@ class Verdict:
 
     @property
     def best(self) -> SeenSide:
-        """The likeliest side, the first of equals."""
+        """Likeliest side; the first one of equally likely sides."""
         return max(self.sides, key=lambda one: round(one.probability, 9))
 
 
@@ -162,17 +181,23 @@ def weigh(
     Parameters
     ----------
     evidence
-        All that speaks for each match as seen from the first of the sides.
+        Evidence for each match as seen from the first side.
     assignment
-        The best map (n1,) known from there.
+        Best known map as seen from the first side, shape (n1,).
     deadline
-        Sides that there was no time to look from are as likely as another scene makes them, and say nothing of matches.
+        End of the time limit. Sides that were not searched by then are as likely as another scene and give no matches.
     sides
-        The sides and their priors.
+        Sides and their priors.
     seen
-        What is seen from each of them, in the order of ``evidence``; for None the scene is turned as the side says.
+        Evidence as seen from each side, with objects and things in the order of ``evidence``; where it is None, the
+        scene is turned.
     another
         Prior probability of another scene.
+
+    Returns
+    -------
+    Verdict
+        Posterior of the matches, the sides, and the probability that the description is of this scene.
 
     Examples
     --------
@@ -201,7 +226,7 @@ def weigh(
         min(0.0, alone - log_prior(evidence.without_facts) + KINDS_SLACK * len(problem.absent)),
     )
     elsewhere = math.log(another / (1 - another)) + told.beside
-    if evidence.present.any():  # what somebody pointed out is of this scene
+    if evidence.present.any():  # an object that was pointed out is of this scene
         elsewhere = -math.inf
     maps = [first]
     weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
@@ -231,9 +256,9 @@ def weigh(
 
 @dataclass(frozen=True, eq=False)
 class _Maps:
-    """The maps of a description in a scene as seen from one side, over both readings of its labels.
+    """Maps of a description in a scene as seen from one side, over both readings of the labels.
 
-    ``evidence`` is that of the likelier reading, ``log_best`` what its best map is worth. ``found`` is the posterior,
+    ``evidence`` is that of the likelier reading, ``log_best`` the value of its best map. ``found`` is the posterior,
     None where the maps are not listed.
     """
 
@@ -253,15 +278,15 @@ def _maps_of(
 ) -> _Maps:
     """Return the maps of both readings of the labels.
 
-    ``assignment`` is the best map of the first reading, where it is known. No maps are looked at where a bound shows
-    that the logarithm of their sum is not above ``negligible``, and none are listed where a search takes it to be below
-    ``not_listed``; ``spread`` is then by how much it is taken to be above that of the best map.
+    ``assignment`` is the best map of the first reading, where it is known. The maps are not searched where a bound
+    shows that the logarithm of their sum is at most ``negligible``. They are not listed where a search estimates that
+    logarithm below ``not_listed``; the estimate is the value of the best map plus ``spread``.
     """
     readings, parted = evidence.label_readings, math.log(len(evidence.label_readings))
     if negligible > -math.inf:
         bounds = [weight + _bound(one, negligible - parted - weight) for weight, one in readings]
         if _log_sum(bounds) <= negligible:
-            return _Maps(replace(evidence), -math.inf, -math.inf, None)  # no tables are kept
+            return _Maps(replace(evidence), -math.inf, -math.inf, None)  # a copy without the cached tables
     seen: list[tuple[float, float, Evidence, Posterior | None]] = []
     for weight, known in readings:
         if seen:
@@ -288,17 +313,15 @@ def _maps_of(
 
 
 def _bound(evidence: Evidence, enough: float) -> float:
-    """Return a number that the logarithm of the sum over all maps is not above, infinite where that takes long; see
-    :func:`log_sum_bound`."""
+    """Return an upper bound (:func:`log_sum_bound`) of the log sum over all maps, infinite where that takes long."""
     if 2 * len(evidence.facts) * (len(evidence.scene.nodes) + 1) ** 2 > BOUND_CELLS:
-        return math.inf  # before any tables are made for it
+        return math.inf  # without building the tables
     outside = _log_outside(evidence)
     return log_sum_bound(evidence.upper_problem, enough - outside) + outside
 
 
 def _of_shortlist(found: Posterior, whole: Whole) -> Posterior:
-    """Return the posterior of a shortlist's things in the whole scene: what is not on the list is missing, and makes it
-    no better known than by that."""
+    """Return a shortlist's posterior for the whole scene, scaled and with the probability of other things as error."""
     inside = 1.0 - whole.outside
     errors = found.errors + whole.outside
     return replace(
@@ -307,14 +330,14 @@ def _of_shortlist(found: Posterior, whole: Whole) -> Posterior:
 
 
 def _log_outside(evidence: Evidence) -> float:
-    """Return about how much is added to the logarithm of the sum by maps to what is not on a shortlist; 0 for none."""
+    """Estimate how much maps to things that are not on the shortlist add to the log sum; 0 without a shortlist."""
     if evidence.whole is None:
         return 0.0
     return -math.log1p(-min(float(evidence.whole.outside.max(initial=0.0)), 1.0 - 1e-9))
 
 
 def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
-    """Return the sum of posteriors by their shares; what has no posterior adds nothing to a match."""
+    """Return the mixture of posteriors with these shares; a share without a posterior gives no match a probability."""
     parts = [(share, one) for share, one in parts if share > 0]
     return Posterior(
         np.sum([share * one.marginals for share, one in parts], axis=0),
@@ -330,14 +353,14 @@ def _log_sum(values: Sequence[float]) -> float:
 
 
 def log_total(found: Posterior, value: float) -> float:
-    """Return the logarithm of the sum of all maps: exact, or estimated from the best value and the entropies."""
+    """Return the log sum over all maps: exact, or estimated from the best ``value`` and the objects' entropies."""
     return found.log_total if math.isfinite(found.log_total) else value + ENTROPY_SHARE * float(found.entropy.sum())
 
 
 def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
-    """Return the best map and the posterior of what only labels tell: nothing of objects that no label speaks for.
+    """Return the best map (n1,) by labels alone, and its posterior; objects that no label supports have no match.
 
-    That an object of another scene is not here is as likely as not.
+    The prior odds that an object of another scene is absent here are 1.
     """
     from deixis.reasoning.grounding.matching.exact import exact
 
@@ -357,7 +380,7 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
 
 
 def side_text(angle: float, mirrored: bool) -> str:
-    """Return how the scene is turned or mirrored for a side, in words.
+    """Describe in words how the scene is turned or mirrored for a side.
 
     >>> side_text(math.pi, False), side_text(0.0, True)
     ('turned by 180 degrees counter-clockwise', 'mirrored and as it stands')

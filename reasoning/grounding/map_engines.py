@@ -1,7 +1,7 @@
-"""The engines that look for the likeliest map: exact, scalable, and two similarities from the literature beside them.
+"""Engines that search for the likeliest map: exact and scalable, and two similarities from the literature.
 
-All of them get the same problem (:attr:`deixis.reasoning.grounding.evidence.evidence.Evidence.problem`): every fact,
-label and size says by how much likelier it makes a match than chance does, and leaving an object out has its price.
+All of them solve the same problem (:attr:`deixis.reasoning.grounding.evidence.evidence.Evidence.problem`): every fact,
+label and size gives a log-likelihood ratio of a match against chance, and leaving an object out has a cost.
 """
 
 from __future__ import annotations
@@ -26,63 +26,79 @@ from deixis.reasoning.grounding.similarity import assign
 from deixis.reasoning.grounding.similarity_engine import CUT_SHORT, paper_similarity
 
 PROOF_SHARE, SEARCH_SHARE = 0.5, 0.8
-"""Shares of the time that a proof, and a search without one, may take; the rest is for the probabilities."""
+"""Shares of the time for a search with a proof, and for a search without one; the rest is for the probabilities."""
 
 SIMILARITY_SHARE = 0.3
-"""Share of that rest that the similarity may take."""
+"""Share of the remaining time that the paper's similarity may take."""
 
 SIMILARITY_CELLS_PER_SECOND, MAX_LATENESS = 2e7, 0.1
-"""Pairs of things by relation that the similarity looks at in a second before its first step; it may be so late."""
+"""Speed of preparing the paper's similarity, in pairs of things times relations per second, and its maximum overrun of
+the deadline, in seconds."""
 
 APART, MAX_NAMED = 0.05, 10
-"""Error of a marginal from which chains are said to disagree on an object, and the most objects to be named."""
+"""Error of a marginal from which the note on disagreeing chains names an object, and the maximum number of names."""
 
-UNRELATED_NOTE = "the description{} fits so little that it is probably of another scene"
+UNRELATED_NOTE = "the description{} fits this scene so poorly that it is probably of another scene"
 
 OTHER_SIDE_NOTE = (
-    "the description fits the scene {} better than as its viewpoint is stated: with probability {:.2f} it is so seen"
+    "the description fits the scene {} better than from the stated viewpoint: the probability of that view is {:.2f}"
 )
 
 
 @dataclass(frozen=True)
 class ExactEngine:
-    """The likeliest map, proved so as far as the time allows.
+    """Branch and bound: the likeliest map, proved as far as the time allows.
 
-    ``sides`` are those from which the description may speak, that of the evidence first; ``seen`` is what is seen from
-    each, where that is more than the scene turned.
+    Attributes
+    ----------
+    sides
+        Sides from which the description may be spoken, that of the evidence first.
+    seen
+        Evidence as seen from each side, in the order of ``sides``; None to turn the scene instead.
     """
 
     sides: tuple[Side, ...] = STATED_SIDES
     seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        """Return the likeliest map, with its proof where the time suffices, and the posterior of its matches."""
         found = exact(evidence.problem, deadline.share(PROOF_SHARE))
-        notes = () if found.proved else ("the time limit struck before the alignment was proved the best",)
+        notes = () if found.proved else ("time limit reached before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
         return _answer("exact", self, evidence, found.assignment, deadline, notes, gap=gap, finished=found.proved)
 
 
 @dataclass(frozen=True)
 class ScalableEngine:
-    """The likeliest map that annealing and belief propagation find; it proves nothing. The rest as for the other."""
+    """Annealing and belief propagation: the likeliest map that they find, without a proof.
+
+    Attributes
+    ----------
+    sides
+        Sides from which the description may be spoken, that of the evidence first.
+    seen
+        Evidence as seen from each side, in the order of ``sides``; None to turn the scene instead.
+    """
 
     sides: tuple[Side, ...] = STATED_SIDES
     seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        """Return the likeliest map that the search finds, and the posterior of its matches."""
         found = scalable(evidence.problem, deadline.share(SEARCH_SHARE))
-        notes = () if found.finished else ("the time limit struck before the search came to its end",)
+        notes = () if found.finished else ("time limit reached before the search ended",)
         return _answer("scalable", self, evidence, found.assignment, deadline, notes, finished=found.finished)
 
 
 @dataclass(frozen=True)
 class BaselineEngine:
-    """A node similarity from the literature, made a map by the Hungarian method."""
+    """Node similarity from the literature, with the Hungarian method to choose the matches."""
 
     name: str
     similarity: Callable[[Problem, Deadline], NodeSimilarity]
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        """Return the assignment with the largest sum of similarities."""
         found = self.similarity(evidence.problem, deadline)
         return Alignment(
             self.name,
@@ -106,9 +122,11 @@ def _answer(
     finished: bool,
     gap: float = math.inf,
 ) -> Alignment:
-    """Return the likeliest map of the likeliest side with its probability over all hypotheses, where the time sufficed
-    for one, and the paper's similarity for comparison."""
-    if evidence.whole is not None:  # other things are not looked at, so that nothing is proved
+    """Return the likeliest map of the likeliest side, its posterior, and the paper's similarity for comparison.
+
+    The posterior is left out where the time did not suffice.
+    """
+    if evidence.whole is not None:  # things that are not on the shortlist were not searched, so nothing is proved
         gap = math.inf
         notes += _shortlist_notes(evidence, evidence.whole)
     matrix, converged, unknown = _similarity(evidence, deadline.share(SIMILARITY_SHARE))
@@ -116,14 +134,14 @@ def _answer(
     found = weigh(evidence, assignment, deadline, engine.sides, seen)
     notes += unknown
     if found is None:
-        late = "there was no time to find out how probable the matches are"
+        late = "time limit reached before the probabilities of the matches were computed"
         return Alignment(name, assignment, matrix, converged, gap == 0, (*notes, late), finished, gap)
     best = found.best
     from_elsewhere = best.evidence is not evidence
     if found.fits < 0.5:
         assignment = found.by_labels
         colours = evidence.colours is not None and evidence.colours.any()
-        used = ["how large such things usually are"] * bool(evidence.sizes.any()) + ["their colours"] * bool(colours)
+        used = ["the usual sizes"] * bool(evidence.sizes.any()) + ["the colours"] * bool(colours)
         notes += (UNRELATED_NOTE.format(f", with {' and '.join(used)}," if used else ""),)
     elif from_elsewhere:
         again = exact(best.evidence.problem, deadline)
@@ -147,20 +165,23 @@ def _answer(
 
 
 def _shortlist_notes(evidence: Evidence, whole: Whole) -> tuple[str, ...]:
-    """Return what is to be said of an answer that rests on a shortlist of things."""
+    """Return the note for an answer that rests on a shortlist of things."""
     apart = [name for name, share in zip(evidence.description.nodes, whole.outside, strict=True) if share > APART]
     shown = ", ".join(apart[:MAX_NAMED]) + (", …" if len(apart) > MAX_NAMED else "")
-    found = f"{len(evidence.scene.nodes)} of {len(whole.nodes)} things were looked at closely"
+    found = f"{len(evidence.scene.nodes)} of {len(whole.nodes)} things were compared in detail"
     return (f"{found}: others are as likely to be {shown}" if apart else f"{found}: no other is likely to be meant",)
 
 
 def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]:
-    """Return what is to be said of probabilities that are not known, or on which independent chains disagree."""
+    """Return the note for probabilities that are unknown, or on which independent chains disagree."""
     if probable.believed:
         lacking = "memory" if evidence.frugal else "time"
-        return (f"no {lacking} was left to sample how probable matches are: these are beliefs, and nothing is decided",)
+        return (
+            f"not enough {lacking} to sample the probabilities of matches: belief propagation estimated them, and no "
+            "match is decided",
+        )
     if not math.isfinite(probable.error):
-        return ("there was no time to find out how probable the matches are",)
+        return ("time limit reached before the probabilities of the matches were computed",)
     apart = [name for name, error in zip(evidence.description.nodes, probable.errors, strict=True) if error > APART]
     if probable.exact or not apart:
         return ()
@@ -169,10 +190,10 @@ def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]
 
 
 def _similarity(evidence: Evidence, deadline: Deadline) -> tuple[NDArray[np.float64], bool, tuple[str, ...]]:
-    """Return the paper's similarity (n1, n2) and whether it converged; zeros and a note where there is no time to
-    begin."""
+    """Return the paper's similarity (n1, n2), whether it converged, and notes; zeros where there is no time."""
     cells = len(evidence.description.vocabulary) * len(evidence.scene.nodes) ** 2
     if cells / SIMILARITY_CELLS_PER_SECOND > deadline.left + MAX_LATENESS:
-        return np.zeros(evidence.allowed.shape), False, ("there was no time for the paper's similarity: it says 0",)
+        late = "time limit reached before the paper's similarity was computed: it is given as 0"
+        return np.zeros(evidence.allowed.shape), False, (late,)
     found = paper_similarity(evidence, deadline=deadline)
     return found.matrices[0], bool(found.converged[0]), ()

@@ -1,4 +1,4 @@
-"""How much memory a grounding takes, estimated before any of it is taken."""
+"""Estimate of the memory that a grounding needs, before it is allocated."""
 
 from __future__ import annotations
 
@@ -11,39 +11,46 @@ if TYPE_CHECKING:
     from deixis.ontology.graph import RelationGraph
 
 DEFAULT_MEMORY_LIMIT = 2.0
-"""Gigabytes (of 10^9 bytes) that a grounding may take, beyond the program itself."""
+"""Default memory limit of a grounding in units of 10^9 bytes, without the program itself."""
 
 BYTES_PER_PAIR, BYTES_PER_PAIR_AND_TABLE = 24, 16
-"""Of each pair of things: names, neighbours and a table in the making; and for each table its degrees, its logarithms,
-and what the engines read."""
+"""Bytes per pair of things: for names, neighbours and a table under construction; and for each table, for its degrees,
+its logarithms, and the copy that the engines read."""
 
 BYTES_PER_MATCH, BYTES_OF_CHAINS, BYTES_PER_MESSAGE = 160, 140, 24
-"""Of each object with each thing: evidence, gains and beliefs; guides and counts of chains, where they are run; and of
-each end of a fact with each thing."""
+"""Bytes per object and thing for evidence, gains and beliefs; per object and thing for the guides and counts of chains,
+where they are run; per end of a fact and thing for messages."""
 
 FIXED_BYTES = 3e7
-"""Blocks of pairs at work, and the processor's own caches of compiled code."""
-
+"""Bytes for the blocks of pairs in progress and the caches of compiled code."""
 
 BYTES_PER_LISTED_MATCH = 250
-"""Of each object with each thing of a scene of which a shortlist is made: labels, trusted and not, sizes, colours, what
-they come to, and beliefs."""
+"""Bytes per object and thing of a scene with a shortlist: labels (trusted and doubted), sizes, colours, their sums, and
+beliefs."""
 
 BYTES_PER_LISTED_THING = 3000
-"""Of each thing of such a scene: how crowded it is, and what the answer says of it."""
+"""Bytes per thing of a scene with a shortlist: its surroundings, and its entry in the answer."""
 
 
 def bytes_of_things(objects: int, things: int) -> float:
-    """Return about how many bytes it takes to know things by themselves, before any two are compared."""
+    """Estimate the bytes for labels, sizes and colours of all things, before any two things are compared."""
     return float(things * (objects * BYTES_PER_LISTED_MATCH + BYTES_PER_LISTED_THING))
 
 
 def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, chains: bool = True) -> float:
-    """Return about how many gigabytes (10^9 bytes) it takes at most to ground a description in a scene.
+    """Estimate the maximum memory for grounding a description in a scene, in units of 10^9 bytes.
 
-    ``tables`` is the number of different facts: of relation, sign and weight. Without ``chains`` no marginals are
-    sampled.
+    Parameters
+    ----------
+    objects, things, facts
+        Number of objects and facts of the description, and of things of the scene.
+    tables
+        Number of facts that differ in relation, sign or weight.
+    chains
+        Whether marginals are sampled by Markov chains.
 
+    Examples
+    --------
     >>> required_gigabytes(1000, 1000, 2500, 10) < 1 < required_gigabytes(20000, 20000, 50000, 10)
     True
     """
@@ -59,15 +66,15 @@ def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, ch
 
 
 def different_facts(description: RelationGraph) -> int:
-    """Return how many facts differ in relation, sign or weight: each takes a table."""
+    """Return the number of facts that differ in relation, sign or weight; each needs a table."""
     columns = (description.relation_sets, description.affirmed, description.net_weights)
     return len(set(zip(*(column.tolist() for column in columns), strict=True)))
 
 
 def leaves_room_for_chains(description: RelationGraph, things: int, limit: float) -> bool:
-    """Return whether ``limit`` gigabytes are enough to sample marginals, too.
+    """Return whether a grounding that samples marginals fits in ``limit`` gigabytes.
 
-    Raises OutOfMemoryError where a description beside so many things takes more even without.
+    Raises OutOfMemoryError where a grounding without sampling does not fit either.
     """
     objects, facts, tables = len(description.nodes), len(description), different_facts(description)
     if required_gigabytes(objects, things, facts, tables) <= limit:
@@ -75,13 +82,13 @@ def leaves_room_for_chains(description: RelationGraph, things: int, limit: float
     needed = required_gigabytes(objects, things, facts, tables, chains=False)
     if needed > limit:
         raise OutOfMemoryError(
-            f"{objects} objects of a description beside {things} things take about {needed:.1f} GB, and the memory "
-            f"limit is {limit:g} GB: raise it (--memory-limit), or ground in parts of the table"
+            f"a description of {objects} objects in a scene of {things} things needs about {needed:.1f} GB, and the "
+            f"memory limit is {limit:g} GB; raise the limit (--memory-limit), or ground in parts of the scene"
         )
     return False
 
 
 def require_memory_limit(gigabytes: float) -> None:
-    """Raise SettingError for what is no memory limit."""
+    """Raise SettingError unless ``gigabytes`` is a positive number."""
     if not isinstance(gigabytes, int | float) or not gigabytes > 0 or math.isnan(gigabytes):
-        raise SettingError(f"a memory limit is above 0 gigabytes, not {gigabytes}")
+        raise SettingError(f"the memory limit must be above 0 gigabytes, got {gigabytes}")

@@ -1,4 +1,4 @@
-"""Options of grounding: names of engines and viewpoints, and what *decided* means; loads no engine."""
+"""Options of grounding: names of engines and viewpoints, and the definition of *decided*. Imports no engine."""
 
 from __future__ import annotations
 
@@ -21,38 +21,51 @@ class EngineName(StrEnum):
 
 
 class Select(StrEnum):
-    """What chooses among sub-graphs under the paper's engine."""
+    """Criterion by which the paper's engine chooses among sub-graphs."""
 
-    FACTS = "facts"  # the sum of degrees first, the graph similarity second
+    FACTS = "facts"  # the sum of the facts' degrees, then the graph similarity
     SIMILARITY = "similarity"  # the graph similarity alone, as in the paper
 
 
 class ViewpointName(StrEnum):
-    """Where left and right are said from: as the scene states, or a side to be recovered
-    (:mod:`deixis.workflows.viewpoint`)."""
+    """Side from which left and right are meant: as stated in the scene, or to be recovered.
 
-    STATED = "stated"
-    QUARTER = "quarter"  # turned by quarters of a circle
-    UNKNOWN = "unknown"  # turned by any angle
+    See :mod:`deixis.workflows.viewpoint`.
+    """
+
+    STATED = "stated"  # as the scene states it
+    QUARTER = "quarter"  # recovered, turned by a multiple of 90 degrees
+    UNKNOWN = "unknown"  # recovered, turned by any angle
 
 
 DEFAULT_TIME_LIMIT = 10.0
-"""Seconds that grounding may take where nobody says otherwise."""
+"""Default time limit of grounding, in seconds."""
 
 DECIDED = 0.99
-"""Probability from which a match is called decided: where things are missing, somewhat less is right than was said, for
-an extra thing may fit all that is said of what is absent (docs/explanation/scoreboard.md)."""
-
+"""Minimum probability of a decided match. Where things are missing, somewhat fewer decided matches are right than this
+probability says, because an extra thing may fit everything that is said of an absent object
+(docs/explanation/scoreboard.md)."""
 
 DECIDED_LOWER_BOUND = 0.975
-"""Probability of a decided match less the error of that probability, at least."""
+"""Minimum of a decided match's probability minus the error of that probability."""
 
 
 def is_decided(probability: NDArray[np.float64], error: float | NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which of these probabilities (…,) are high enough, and known well enough, to call a match decided.
+    """Return which matches are decided: their probability is high, and its error is small.
 
-    ``error`` is by how much they may be off: one number for all of them, or one for each.
+    Parameters
+    ----------
+    probability
+        Probabilities of matches, any shape.
+    error
+        Errors of the probabilities: one number, or an array of the shape of ``probability``.
 
+    Returns
+    -------
+    Boolean array of the shape of ``probability``.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> is_decided(np.array([0.98, 0.995]), 0.01).tolist(), is_decided(np.array([0.995]), 0.05).tolist()
     ([False, True], [False])

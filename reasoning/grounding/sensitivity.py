@@ -14,32 +14,30 @@ from deixis.reasoning.grounding.matching.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 MAX_OBJECTS = 30
-"""Maximum number of objects of a problem that is solved anew without each fact."""
+"""Maximum number of objects of a problem that is solved again without each fact."""
 
 TIE_BREAK_BONUS = 1e-4
-"""Bonus in nats for the matches of the present map, so that ties keep them."""
+"""Bonus in nats for the current matches, so that ties keep them."""
 
 
 @dataclass(frozen=True, eq=False)
 class WithoutFact:
-    """The likeliest map (n1,) without a fact, whether it is better then than the present one and not just as good, and
-    how probable each of its matches is then (nan: not known).
-    """
+    """Solution of the problem without one fact."""
 
-    fact: int
-    assignment: NDArray[np.int64]
-    better: bool
-    probability: NDArray[np.float64]
+    fact: int  # index of the fact
+    assignment: NDArray[np.int64]  # (n1,) the likeliest map without the fact
+    better: bool  # whether it is then strictly likelier than the current map
+    probability: NDArray[np.float64]  # (n1,) probability of each of its matches without the fact; nan: unknown
 
 
 def leave_one_out(
     problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: Deadline
 ) -> Iterator[WithoutFact]:
-    """Find the likeliest map without each fact in turn, until the deadline.
+    """Yield the likeliest map without each fact in turn, until the deadline.
 
-    Problems of more than ``MAX_OBJECTS`` objects are not solved. Of several maps as good it is one like the present
-    ``assignment``. Probabilities are worked out where they are ``probable`` to be had exactly. The iterator ends early
-    where there is no more time.
+    Problems of more than ``MAX_OBJECTS`` objects are not solved. Among equally likely maps, the one closest to the
+    current ``assignment`` (n1,) is taken. Probabilities are computed where ``probable`` is true and they can be exact.
+    The iterator ends early at the deadline.
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.array([[0, 0.5], [0, 0]]), np.full(2, -1.0))

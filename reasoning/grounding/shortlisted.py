@@ -1,4 +1,4 @@
-"""The evidence of a shortlist of things of a large scene: what fits in memory where all pairs of things do not."""
+"""Evidence for a shortlist of the things of a large scene, where the pairs of all things do not fit in memory."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from deixis.reasoning.grounding.matching.posterior import FACTOR_CELLS
 from deixis.reasoning.grounding.memory_budget import bytes_of_things, different_facts, required_gigabytes
 
 BLOCKS_SHARE = 0.5
-"""Share of the memory that pairs of candidates may take; when the shortlist is compared, they are gone."""
+"""Share of the memory for the pairs of candidates, which are freed before the shortlist is compared."""
 
 MAX_THINGS, MIN_THINGS = 400, 60
-"""Things on a shortlist at the most, and the fewest that the most may be where exact sums would want fewer still."""
+"""Maximum number of things on a shortlist, and the least value to which exact sums may lower that maximum."""
 
 
 def evidence_of_shortlist(
@@ -43,29 +43,34 @@ def evidence_of_shortlist(
     gigabytes: float,
     deadline: Deadline,
 ) -> Evidence:
-    """Return the evidence of the things that the objects may be, with what is known of the whole scene.
+    """Return the evidence of the most likely things of a scene, with a summary of the whole scene.
 
     Parameters
     ----------
     description
         The n1 objects and the facts.
     ids, boxes
-        All things of the scene (n2,), (n2, 2, d).
+        All things of the scene: names (n2,) and boxes (n2, 2, d).
     vocabulary
         The relations.
     known
-        What all things are by themselves.
+        Labels, sizes and colours of all things.
     meaning
-        How words are taken.
+        Models of words and weights of evidence.
     gigabytes
-        Memory that all of it may take.
+        Memory limit in units of 10^9 bytes.
     deadline
-        When the evidence is due.
+        Time by which the evidence must be computed.
+
+    Returns
+    -------
+    Evidence
+        Evidence of the shortlist, with ``whole`` set.
 
     Raises
     ------
     OutOfMemoryError, OutOfTimeError
-        Where what is known of the things by themselves leaves too many.
+        Labels, sizes and colours leave too many candidates.
     """
     require_boxes(boxes)
     n1, n2 = known.labels.shape
@@ -107,9 +112,9 @@ def _unary(known: ThingEvidence, labels: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def _most_things(description: RelationGraph, gigabytes: float) -> int:
-    """Return how many things a shortlist may have: few enough that exact sums are tried, and that all fits in memory.
+    """Return the maximum length of a shortlist: exact sums are still tried, and the evidence fits in memory.
 
-    Raises OutOfMemoryError where not even as many things as objects do.
+    Raises OutOfMemoryError where a shortlist as long as the description does not fit in memory.
     """
     objects, facts, tables = len(description.nodes), len(description), different_facts(description)
     few = math.isqrt(int(FACTOR_CELLS / max(2 * facts, 1))) - 1
@@ -118,7 +123,7 @@ def _most_things(description: RelationGraph, gigabytes: float) -> int:
         most = most * 9 // 10
     if required_gigabytes(objects, most, facts, tables) > gigabytes:
         raise OutOfMemoryError(
-            f"{objects} objects of a description take more memory than the limit leaves beside the things of the "
-            "scene: raise it (--memory-limit), or ground in parts of the table"
+            f"a description of {objects} objects needs more memory than the limit leaves beside the things of the "
+            "scene; raise the limit (--memory-limit), or ground in parts of the scene"
         )
     return most

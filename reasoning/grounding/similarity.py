@@ -1,13 +1,13 @@
-"""The paper's node similarity (equations 5 to 9) in batches of sub-graphs, its completion of a description, and the
-assignment of its matrix.
+"""Node similarity of the paper (equations 5 to 9) in batches of sub-graphs, and the assignment by its matrix.
 
-The whole calculus (:mod:`deixis.reasoning.entailment.implications`) says more, but in the wide reading, which names no
-exact relation: with it, equations 5 to 9 were seen to find fewer objects.
+The description is first completed with the facts that inverses and transitivity imply. The whole calculus
+(:mod:`deixis.reasoning.entailment.implications`) implies more facts, but in the wide reading, which names no exact
+relation: with these facts, equations 5 to 9 found fewer objects.
 
-How the equations are read: 5 counts per label and direction, over the labels that both graphs use; 6 and 7 are taken
-per label, each label by its own case (both degrees non-zero, both zero, otherwise), and summed over the shared labels;
-8 and 9 stop when no entry changes by more than the tolerance. Not converging is reported, and so is a matrix that
-collapses to zero, which it does where the graphs share no label.
+Reading of the equations: equation 5 counts per label and direction, over the labels that both graphs use. Equations 6
+and 7 are applied to each label by its own case (both degrees non-zero, both zero, otherwise) and summed over the shared
+labels. Equations 8 and 9 stop when no entry changes by more than the tolerance. The result tells whether the iteration
+converged. The matrix is zero where the graphs share no label.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = None) -> RelationGraph:
     """Return the graph with the firm facts that inverses and transitivity of single words add, after the stated ones.
 
-    Facts that contradict each other imply everything, so that then nothing is added; nor is it where there would be
-    more than ``most`` facts. ``consistent`` says whether the firm facts can hold together, where that is known.
+    Contradictory facts imply everything, so nothing is added to them. Nothing is added either where there would be more
+    than ``most`` facts. ``consistent`` tells whether the firm facts can hold together; None where that is unknown.
 
     >>> from deixis.ontology.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
@@ -70,13 +70,13 @@ def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = No
 
 
 def _added(graph: RelationGraph) -> Iterator[tuple[Relation, NDArray[np.int64]]]:
-    """Yield by relation the pairs that its facts and those of its inverse add."""
+    """Yield each relation with the pairs (k, 2) that its facts and those of its inverse imply."""
     firm = graph.positive & ~graph.optional & (graph.weights >= 1.0)
     for relation in graph.vocabulary.values():
         inverse = graph.vocabulary[relation.inverse]
         same = np.flatnonzero(firm & np.isin(graph.relation_sets, (relation.bit, inverse.bit)))
         if len(same):
-            # the pairs of which the relation follows from these facts alone, without those of which it is stated
+            # the pairs for which the relation follows from these facts alone, and is not stated
             stated = graph.relation_sets[same] == relation.bit
             ends = np.stack([graph.subjects[same], graph.objects[same]], axis=1).astype(np.int64)
             n = len(graph.nodes)
@@ -98,21 +98,21 @@ def _added(graph: RelationGraph) -> Iterator[tuple[Relation, NDArray[np.int64]]]
             yield relation, pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], known)]
 
 
-TOLERANCE = 1e-8
+TOLERANCE = 1e-8  # largest change of an entry at convergence
 ITERATIONS = 500
-CARRIED_CELLS = 1 << 20  # numbers that the edges of labels taken together carry in one step
+CARRIED_CELLS = 1 << 20  # maximum number of cells in one product over several labels
 
 
 @dataclass(frozen=True, eq=False)
 class SimilarityMatrices:
-    """Similarity matrices of Frobenius norm 1 (0 where nothing is alike), one for each of b sub-graphs."""
+    """Similarity matrices of b sub-graphs, each of Frobenius norm 1, or 0 where no nodes are similar."""
 
     matrices: NDArray[np.float64]  # (b, n1, n2); rows of nodes outside the sub-graph are 0
     converged: NDArray[np.bool_]  # (b,)
     iterations: int
 
     def transposed(self) -> SimilarityMatrices:
-        """Return the same with the graphs exchanged."""
+        """Return the similarity with the two graphs exchanged."""
         return replace(self, matrices=self.matrices.transpose(0, 2, 1))
 
 
@@ -127,9 +127,23 @@ def node_similarity(
 ) -> SimilarityMatrices:
     """Iterate equations 5 to 9 for induced sub-graphs of ``first`` against the whole of ``second``.
 
-    ``members`` (b, n1) says which nodes each sub-graph has (default: one, of all nodes). ``prior`` (n1, n2), at least
-    0, multiplies equation 5: 0 forbids a pair, 1 leaves it. At the ``deadline`` it stops.
+    Parameters
+    ----------
+    first, second
+        Graphs with n1 and n2 nodes.
+    members
+        Nodes of each sub-graph, shape (b, n1); by default, one sub-graph of all nodes.
+    prior
+        Factors of equation 5, shape (n1, n2), at least 0: 0 forbids a pair, 1 leaves it unchanged.
+    tolerance
+        Largest change of an entry at convergence.
+    iterations
+        Maximum number of iterations.
+    deadline
+        Time at which the iteration stops.
 
+    Examples
+    --------
     >>> import numpy as np
     >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
     >>> node_similarity(graph, graph).matrices[0].round(3).tolist()
@@ -151,22 +165,22 @@ def node_similarity(
 
 
 def _normalised(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return equation 9; a zero matrix stays zero."""
+    """Return matrices divided by their Frobenius norms (equation 9); a zero matrix stays zero."""
     norms = np.sqrt(np.einsum("abc,abc->b", matrices, matrices))[None, :, None]
     normalised: NDArray[np.float64] = np.divide(matrices, norms, out=np.zeros_like(matrices), where=norms > 0)
     return normalised
 
 
 MAX_DENSE = 1 << 18
-"""Products of numbers up to which edges are multiplied as a full matrix."""
+"""Maximum number of multiplications for which edges are multiplied as a dense matrix."""
 
 MAX_LOOPED = 256
-"""Edges that are gone through in Python where a full matrix is too much: loading sparse matrices takes longer."""
+"""Maximum number of edges of a Python loop where a dense matrix is too large; importing scipy.sparse takes longer."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Edges:
-    """Edges from n nodes to others, by row and column in rising order: a sparse matrix ``shape`` (r, n) of ones."""
+    """Sparse matrix of ones of shape (r, n): edges from n nodes to r others, sorted by row and column."""
 
     shape: tuple[int, int]
     rows: NDArray[np.int64]
@@ -199,10 +213,10 @@ class _Edges:
 
 
 class _Iteration:
-    """Equations 5 to 7 on arrays of shape (n1, b, n2): b sub-graphs of the first graph, L shared labels.
+    """Equations 5 to 7 on arrays of shape (n1, b, n2), for b sub-graphs of the first graph and L shared labels.
 
-    Nodes of the first graph come first, so that what its edges carry is two products of matrices, one of them sparse.
-    Labels, each in both directions, are taken together as far as ``CARRIED_CELLS`` go.
+    The nodes of the first graph are the first axis, so that a step is two matrix products, one of them sparse. One
+    product covers as many labels and directions as fit in ``CARRIED_CELLS``.
     """
 
     def __init__(self, first: PaperGraph, second: PaperGraph, kept: NDArray[np.bool_]) -> None:
@@ -231,8 +245,7 @@ class _Iteration:
         self._both_zero = self._zero_pairs(self._in1, self._in2) + self._zero_pairs(self._out1, self._out2)
 
     def _carried(self, labels: int) -> list[tuple[slice, _Edges]]:
-        """Return which of 2L labels and directions are taken together, and the first graph's edges of these k from the
-        node that has them (k n1) to the other one (n1)."""
+        """Return the blocks of k labels and directions (of 2L), each with the first graph's edges, shape (k n1, n1)."""
         n1, b = self._kept.shape
         some = max(1, int(CARRIED_CELLS / max(1, n1 * b * self._across.shape[1])))
         edges = np.array(self._edges, dtype=np.int64).reshape(-1, 3)
@@ -248,7 +261,7 @@ class _Iteration:
         return parts
 
     def _zero_pairs(self, degrees1: NDArray[np.float64], degrees2: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return for how many of the labels that a sub-graph uses both degrees are zero, shape (n1, b, n2)."""
+        """Count the labels of a sub-graph for which both degrees are zero, shape (n1, b, n2)."""
         used = (self._in1.sum(axis=1) > 0)[:, None, :]
         zero1 = ((degrees1 == 0) & self._kept & used).astype(float)
         pairs: NDArray[np.float64] = np.einsum("lab,lc->abc", zero1, (degrees2 == 0).astype(float))
@@ -276,7 +289,7 @@ class _Iteration:
 
 
 def _inverse(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return 1 over each degree, 0 where it is 0."""
+    """Return the inverse of each degree, 0 where the degree is 0."""
     inverse: NDArray[np.float64] = np.divide(1.0, degrees, out=np.zeros_like(degrees), where=degrees > 0)
     return inverse
 
@@ -303,10 +316,10 @@ def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[n
 
 
 def graph_similarity(matrix: NDArray[np.float64], assignment: NDArray[np.int64]) -> float:
-    """Return the overall similarity of two graphs under an assignment, which the paper leaves open.
+    """Return the overall similarity of two graphs under an assignment, in [0, 1].
 
-    The sum of the matched entries of the normalised matrix over the square root of how many are matched: at most 1,
-    and 1 only where the matrix is a perfect one-to-one map.
+    The paper does not define it. It is the sum of the matched entries of the normalised matrix (n1, n2) over the square
+    root of the number of matches: 1 only where the matrix is a perfect one-to-one map.
     """
     rows = np.flatnonzero(assignment != UNMATCHED)
     if len(rows) == 0:

@@ -1,7 +1,7 @@
 """The paper's engine: equations 5 to 9, the Hungarian method, and a choice among sub-graphs.
 
-Where one side has more objects than the other, all sub-graphs of its size are tried, or, of too many, those that a
-heuristic chooses; the result says which.
+Where one side has more objects than the other, the engine tries all of its sub-graphs that are as large as the other
+side. Where these are too many, a heuristic chooses one, and a note of the answer says so.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,33 +28,28 @@ from deixis.reasoning.grounding.similarity import (
     with_same_word,
 )
 
-if TYPE_CHECKING:
-    pass
-
 MAX_SUBGRAPHS = 5000
-"""Sub-graphs that are all tried; where there are more, a heuristic chooses, and the result says so."""
+"""Maximum number of sub-graphs that are all tried; where there are more, a heuristic chooses one."""
 
-CUT_SHORT = "the time limit struck before the similarity came to its end"
+CUT_SHORT = "time limit reached before the similarity converged"
 
 _SUBGRAPHS_PER_BLOCK = 500
 _MAX_MULTIPLICATIONS = 2e10
-"""Multiplications that the similarity may take; it is equation 5 alone where one step would take more."""
-
+"""Maximum number of multiplications of the similarity; where one step would need more, only equation 5 is computed."""
 
 MAX_DESCRIBED = 20_000
-"""Facts, stated and implied, that the similarity looks at; of a larger description it sees the stated ones alone."""
+"""Maximum number of stated and implied facts of the similarity; where there are more, it uses only the stated ones."""
 
 
 def described(description: RelationGraph, consistent: bool | None = None) -> PaperGraph:
-    """Return the description as the paper's matcher sees it: with the inverses and what single words imply by
-    transitivity."""
+    """Return the description as the paper's graph, with inverse facts and those that transitivity of a word implies."""
     return with_same_word(description, MAX_DESCRIBED, consistent).paper_view()
 
 
 def paper_similarity(
     evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: Deadline = Deadline.never()
 ) -> SimilarityMatrices:
-    """Return equations 5 to 9 for the evidence: certain labels forbid pairs, uncertain ones multiply equation 5."""
+    """Compute equations 5 to 9: certain labels forbid pairs, and uncertain labels multiply equation 5."""
     first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
     n2 = len(second.vertices)
     work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
@@ -65,7 +59,7 @@ def paper_similarity(
 
 
 def _prior(evidence: Evidence) -> NDArray[np.float64]:
-    """Return the factors (n1, n2) of labels for the similarity: 1 for what it names best, 0 for what it rules out."""
+    """Return the factors (n1, n2) of labels for the similarity: 1 for the best-named object, 0 where ruled out."""
     named = evidence.allowed | ~evidence.identified
     best = evidence.labels.max(axis=0, where=named, initial=-np.inf)
     prior: NDArray[np.float64] = np.exp(evidence.labels - np.where(np.isneginf(best), 0.0, best))
@@ -74,11 +68,12 @@ def _prior(evidence: Evidence) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class SimilarityEngine:
-    """The paper's matcher."""
+    """Engine of the paper: node similarity and the Hungarian method, over sub-graphs of the larger side."""
 
     select: Select = Select.FACTS
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
+        """Return the assignment with the largest similarity, over the sub-graphs of the larger side."""
         n1, n2 = evidence.allowed.shape
         if n1 == n2 or not n1 or not n2:
             found = paper_similarity(evidence, deadline=deadline)
@@ -99,7 +94,7 @@ class SimilarityEngine:
         return self._all_subgraphs(evidence, larger, smaller, deadline)
 
     def _all_subgraphs(self, evidence: Evidence, larger: int, smaller: int, deadline: Deadline) -> Alignment:
-        """Return the best of all sub-graphs of the larger side that have as many objects as the smaller one."""
+        """Return the best alignment over all sub-graphs of the larger side that have as many nodes as the smaller."""
         flipped = len(evidence.description.nodes) == smaller
         prior = _prior(evidence)
         first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
@@ -152,7 +147,7 @@ class SimilarityEngine:
 
 
 def _in_time(aligned: Alignment, deadline: Deadline) -> Alignment:
-    """Return the same, said to be cut short where the iteration was still under way at the deadline."""
+    """Return the alignment, marked as cut short where the iteration had not converged at the deadline."""
     return aligned if aligned.converged or not deadline.passed else _cut_short(aligned)
 
 
@@ -163,7 +158,7 @@ def _cut_short(aligned: Alignment) -> Alignment:
 def _similarity_margins(
     matrix: NDArray[np.float64], assignment: NDArray[np.int64], allowed: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return by how much each match's similarity leads over the next best entry of its row."""
+    """Return the lead (n1,) of each match's similarity over the next best entry of its row, and that entry (n1,)."""
     margins = np.full(len(assignment), np.nan)
     runners_up = np.full(len(assignment), UNMATCHED, dtype=np.int64)
     for i in np.flatnonzero(assignment != UNMATCHED):

@@ -1,10 +1,10 @@
-"""Which objects a description cannot tell apart: the orbits of its automorphisms.
+"""Find the objects that a description cannot tell apart: the orbits of its automorphisms.
 
-Two objects are interchangeable where a renaming of the objects that exchanges them leaves every fact, and everything
-else known of each object, as it was. Colour refinement (Weisfeiler and Leman) finds who may be; a swap of the two, or
-a search that follows one choice at a time, proves it. What could not be proved within the budget is not claimed.
-networkx finds isomorphisms one by one, of which there are k! for k interchangeable objects, and no orbits; its
-connected components take 5 to 9 times as long as the 12 lines here.
+Two objects are interchangeable where a renaming of the objects that exchanges them preserves every fact, and everything
+else that is known of each object. Colour refinement (Weisfeiler and Leman) finds the candidates; a swap of the two, or
+a search that follows one choice at a time, proves that they are interchangeable. Pairs that could not be proved within
+the budget are not reported. networkx lists isomorphisms one by one, of which there are k! for k interchangeable
+objects, and finds no orbits; its connected components take 5 to 9 times as long as the 12 lines here.
 """
 
 from __future__ import annotations
@@ -18,18 +18,19 @@ from numpy.typing import NDArray
 from deixis.ontology.graph import RelationGraph
 
 BUDGET = 3_000_000
-"""Nodes visited by colour refinements at the most, over a whole description."""
+"""Maximum number of nodes that colour refinements visit, over a whole description."""
 
 _Colouring = dict[int, int]
 
 _Edges = tuple[tuple[tuple[int, Hashable], ...], ...]
-"""For each node its neighbours, each with the edge's colour, which includes the direction."""
+"""Neighbours of each node, each with the colour of the edge, which includes its direction."""
 
 
 def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[tuple[str, ...]]:
-    """Return the groups of two and more objects that the description cannot tell apart, in node order.
+    """Return the groups of two or more objects that the description cannot tell apart, in node order.
 
-    ``colours`` holds what else is known of each node; only nodes of equal colour can be interchangeable.
+    ``colours`` (n,) stands for everything else that is known of each node; only nodes of equal colour can be
+    interchangeable.
 
     >>> from deixis.ontology.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
@@ -54,9 +55,9 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
 
 
 def _stable(graph: RelationGraph, colours: Sequence[int]) -> NDArray[np.int64]:
-    """Return the stable colouring of the whole graph, shape (n,), by hashes of what each node's neighbours are.
+    """Return the stable colouring of the whole graph, shape (n,), by hashes of each node's neighbours.
 
-    Two hashes that happen to be equal could only leave more to be proved, never claim what is not so.
+    Hashes that are equal by chance only leave more pairs to be proved; they cannot make a result wrong.
     """
     kinds = [graph.relation_sets, graph.positive, graph.optional, graph.weights.view(np.int64)]
     edge = np.unique(np.stack([kind.astype(np.int64) for kind in kinds], axis=1), axis=0, return_inverse=True)[
@@ -112,10 +113,10 @@ def _orbits(members: list[int], stable: _Colouring, search: _Automorphisms) -> l
 
 
 class _Automorphisms:
-    """Finds automorphisms of one graph, within a budget of node visits.
+    """Search for automorphisms of one graph, within a budget of node visits.
 
-    An automorphism that takes one node to another exists where the connected part of the one can be laid on the part
-    of the other; so each search looks at these two parts alone.
+    An automorphism that maps one node to another exists where there is an isomorphism between their connected
+    components that does; so each search visits these two components only.
     """
 
     def __init__(self, edges: _Edges) -> None:
@@ -137,7 +138,7 @@ class _Automorphisms:
         self._budget = BUDGET
 
     def refine(self, colours: _Colouring) -> _Colouring:
-        """Return the coarsest stable colouring that is finer; numbers depend on structure alone, not on node order."""
+        """Return the coarsest stable refinement; its numbers depend on the structure, not on the order of nodes."""
         count = len(set(colours.values()))
         while True:
             self._budget -= len(colours)
@@ -152,7 +153,7 @@ class _Automorphisms:
             count = len(ranks)
 
     def exchangeable(self, a: int, b: int, stable: _Colouring) -> bool:
-        """Return whether some automorphism takes ``a`` to ``b``."""
+        """Return whether some automorphism maps ``a`` to ``b``."""
         # an automorphism may swap the two and leave all others
         swap = {a: b, b: a}
         swapped = Counter({(swap.get(j, j), c): count for (j, c), count in self._bags[a].items()})
@@ -163,7 +164,7 @@ class _Automorphisms:
         return len(first) == len(second) and self._extends(_marked(first, a), _marked(second, b))
 
     def _extends(self, first: _Colouring, second: _Colouring) -> bool:
-        """Return whether the one coloured part can be laid on the other."""
+        """Return whether there is an isomorphism between two coloured components."""
         if self._budget <= 0:
             return False
         first, second = self.refine(first), self.refine(second)
@@ -172,7 +173,7 @@ class _Automorphisms:
             return False
         cell = next((colour for colour, count in sorted(sizes.items()) if count > 1), None)
         if cell is None:
-            # laying nodes on those of their colour must take edges to edges
+            # the map of nodes to those of equal colour must preserve edges
             position = {colour: node for node, colour in second.items()}
             image = {node: position[colour] for node, colour in first.items()}
             return all(
@@ -185,5 +186,5 @@ class _Automorphisms:
 
 
 def _marked(colours: _Colouring, node: int) -> _Colouring:
-    """Return the colouring with one node set apart."""
+    """Return the colouring with a colour of its own for one node."""
     return {other: 2 * colour + (other == node) for other, colour in colours.items()}

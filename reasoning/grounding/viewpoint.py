@@ -1,19 +1,19 @@
-"""Viewpoints: the sides from which a description may speak, recovered together with the matches.
+"""Recover the viewpoint of a description: the side from which it is spoken, together with the matches.
 
-A *viewpoint* is how far the scene has to be turned, and whether it has to be mirrored, so that left is what the speaker
-calls left. For each the matching problem is built anew; its log evidence is the logarithm of the sum over all maps of
-the exponential of their values, as far as maps can be listed. Raised to the power by which facts weigh
-(:mod:`deixis.reasoning.grounding.hypotheses`), and with a prior (uniform over the circle; mirrored with probability
-``MIRROR_PRIOR``, for speakers do not often stand behind a mirror), that is a posterior.
+A *viewpoint* is the angle by which the scene must be turned, and whether it must be mirrored, so that left is what the
+speaker calls left. The matching problem is built again for each viewpoint; its log evidence is the logarithm of the sum
+over all maps of the exponential of their values, as far as maps can be listed. The posterior is the evidence, raised to
+the power of facts (:mod:`deixis.reasoning.grounding.hypotheses`), times a prior: uniform over the circle, and mirrored
+with probability ``MIRROR_PRIOR``, because speakers seldom stand behind a mirror.
 
-Quarter turns are exact. For any other angle centres are turned exactly; extents are those of the thing of which the box
-is the enclosing box, on the assumption that things lie parallel to the speaker's axes: of a rectangle w by h that is
-turned by t, the enclosing box has W + H = (w + h)(|cos t| + |sin t|) and W - H = (w - h)(|cos t| - |sin t|). Boxes that
-are about square are taken for round things, whose box does not change. At an eighth of a turn a long thing is square,
-too, and cannot be told from a round one.
+Quarter turns are exact. For any other angle, centres are turned exactly. The extents are estimated on the assumption
+that things lie parallel to the speaker's axes: the enclosing box of a w by h rectangle that is turned by t has
+W + H = (w + h)(|cos t| + |sin t|) and W - H = (w - h)(|cos t| - |sin t|). Approximately square boxes are taken for
+round things, whose box does not change. At an eighth of a turn the box of a long thing is square, too, and cannot be
+distinguished from that of a round one.
 
-The probability of a match sums over sides (:mod:`deixis.reasoning.grounding.hypotheses`): what holds from a side that
-is itself doubtful is no more probable than the side.
+The probability of a match is a sum over sides (:mod:`deixis.reasoning.grounding.hypotheses`): a match that depends on a
+side is at most as probable as the side.
 """
 
 from __future__ import annotations
@@ -34,22 +34,36 @@ from deixis.reasoning.grounding.matching.problem import Problem
 Array = NDArray[np.float64]
 
 MIRROR_PRIOR = 0.05
-COARSE_ANGLES = 24  # angles that are tried at first: every 15 degrees
-FINE_PER_COARSE = 5  # by how much the grid is finer where it is worth it
-REFINEMENT_MARGIN = 6.0  # nats below the best, within which an angle is looked at finely
-VIEWPOINT_MARGIN = 12.0  # nats by which its best map lags behind, beyond which a viewpoint's other maps are not listed
-MAP_MARGIN = 4.0  # nats below the best, within which maps are listed
-MAX_LISTED_MAPS = 300  # maps at the most
-TIE_TOLERANCE = 1e-6  # nats within which a description cannot tell
+COARSE_ANGLES = 24  # angles of the first grid: every 15 degrees
+FINE_PER_COARSE = 5  # angles of the fine grid per angle of the coarse grid
+REFINEMENT_MARGIN = 6.0  # nats below the best angle within which an angle is refined
+VIEWPOINT_MARGIN = 12.0  # nats below the best map; a viewpoint whose best map is lower lists no other maps
+MAP_MARGIN = 4.0  # nats below the best map within which maps are listed
+MAX_LISTED_MAPS = 300
+TIE_TOLERANCE = 1e-6  # nats within which two viewpoints are tied
 
 
 @dataclass(frozen=True, eq=False)
 class Viewpoint:
-    """Turn the scene by ``angle`` (radians, counter-clockwise, 0 to 2 pi), having mirrored left and right if so.
+    """A viewpoint with its posterior probability and its best map.
 
-    ``log_evidence`` is in nats; ``assignment`` (n1,) is the best map as seen from there. ``concentration`` is the mean
-    resultant length of the angles that were taken together (Mardia and Jupp 2000, 2.3): 1 for a single one, 0 where
-    they are the whole circle, so that their mean says nothing. ``prior`` is their share of all sides.
+    Attributes
+    ----------
+    angle
+        Radians in [0, 2 pi) by which the scene is turned, counter-clockwise.
+    mirrored
+        Whether left and right are exchanged before the turn.
+    probability
+        Posterior probability.
+    log_evidence
+        Log evidence in nats.
+    assignment
+        Best map as seen from the viewpoint, shape (n1,).
+    concentration
+        Mean resultant length of the angles that the viewpoint combines (Mardia and Jupp 2000, 2.3): 1 for a single
+        angle, 0 where they cover the whole circle, so that their mean has no meaning.
+    prior
+        Prior probability of these angles.
     """
 
     angle: float
@@ -63,11 +77,16 @@ class Viewpoint:
 
 @dataclass(frozen=True, eq=False)
 class Viewpoints:
-    """All viewpoints that were told apart, most probable first.
+    """Posterior over viewpoints.
 
-    ``ties`` are those for which the description speaks as much as for the first, itself among them: where there are
-    several, the words cannot tell, and only the prior chooses. ``exact``: every log evidence counts all maps within the
-    margin; if not, it is a lower bound. ``everywhere``: there was time to look from every side.
+    Attributes
+    ----------
+    viewpoints
+        Distinct viewpoints, most probable first.
+    exact
+        Whether every log evidence counts all maps within the margin; if not, it is a lower bound.
+    everywhere
+        Whether the time sufficed to search every side.
     """
 
     viewpoints: tuple[Viewpoint, ...]
@@ -76,10 +95,12 @@ class Viewpoints:
 
     @property
     def best(self) -> Viewpoint:
+        """Most probable viewpoint."""
         return self.viewpoints[0]
 
     @property
     def ties(self) -> tuple[Viewpoint, ...]:
+        """Viewpoints with the same evidence as the best one, which is among them; only the prior chooses."""
         best = self.best.log_evidence
         return tuple(view for view in self.viewpoints if abs(view.log_evidence - best) <= TIE_TOLERANCE)
 
@@ -92,13 +113,27 @@ def recover_viewpoint(
     mirror: bool = True,
     deadline: Deadline = Deadline.never(),
 ) -> Viewpoints:
-    """Return the posterior over viewpoints, quarter turns or (``any_angle``) any, until ``deadline``.
+    """Return the posterior over viewpoints.
 
-    The scene is first looked at as it stands, deadline or not, then quarter turned, then from the other sides. Sides
-    for which there was no time are taken to be as likely, but for the prior, as the best that was looked from.
+    Parameters
+    ----------
+    boxes
+        Boxes of the scene, shape (n2, 2, d).
+    problem_of
+        Function that builds the matching problem from boxes (n2, 2, d) as seen from a viewpoint. The values must be
+        log-likelihood ratios that are comparable between viewpoints.
+    any_angle
+        Whether to search all angles instead of quarter turns.
+    mirror
+        Whether to search mirrored viewpoints, too.
+    deadline
+        End of the time limit. The scene is searched as it stands in any case, then quarter turned, then from the other
+        sides. Sides that were not searched have the evidence of the best one that was.
 
-    ``problem_of`` builds the matching problem from boxes (n2, 2, d) as seen from a viewpoint; its values have to be
-    log-likelihood ratios, comparable between viewpoints. Raises GraphError for boxes that are none.
+    Raises
+    ------
+    GraphError
+        ``boxes`` are not valid boxes.
     """
     require_boxes(boxes)
     sides = (False, True) if mirror else (False,)
@@ -124,7 +159,7 @@ def recover_viewpoint(
 
 @dataclass(frozen=True)
 class _Angle:
-    """An angle that stands for a share of the circle."""
+    """Angle that represents a share of the circle."""
 
     angle: float
     mirrored: bool
@@ -146,9 +181,10 @@ class _AngleSearch:
     deadline: Deadline
 
     def at(self, tried: Sequence[_Angle]) -> list[_AngleEvidence]:
-        """Return the best map of each until the deadline; where that is not hopeless, the evidence of all maps.
+        """Search the angles until the deadline: the best map of each, and the evidence of all maps where that is near.
 
-        Each has its share of the time that is left, lest the first search takes it all; the first is always looked at.
+        Each search gets its share of the time left, so that the first one does not use all of it. The first angle is
+        searched in any case.
         """
         found: list[tuple[_AngleEvidence, Problem]] = []
         for one in tried:
@@ -176,15 +212,14 @@ class _AngleSearch:
         return _AngleEvidence(one.tried, _log_sum(maps.values.tolist()), maps.assignments[0], maps.complete)
 
     def closer(self, looked: Sequence[_AngleEvidence]) -> tuple[list[_AngleEvidence], bool]:
-        """Return every angle that is worth it replaced by finer ones over the same arc, and whether there was time
-        for all."""
+        """Replace the best angles by finer ones over the same arc; also return whether the time sufficed for all."""
         best = max(one.log_evidence for one in looked)
         worth = [one.tried for one in looked if one.log_evidence >= best - REFINEMENT_MARGIN]
         if self.deadline.passed:
             return list(looked), False
         fine = [finer for one in worth for finer in _finer(one)]
         seen = self.at(fine)
-        done = len(seen) // FINE_PER_COARSE  # an arc of which not all was seen is left as it was
+        done = len(seen) // FINE_PER_COARSE  # an arc that was not searched completely keeps its coarse angle
         replaced = {id(one) for one in worth[:done]}
         kept = [one for one in looked if id(one.tried) not in replaced]
         return kept + seen[: done * FINE_PER_COARSE], len(seen) == len(fine)
@@ -198,7 +233,7 @@ def _finer(one: _Angle) -> list[_Angle]:
 
 
 def _modes(looked: Sequence[_AngleEvidence]) -> list[list[_AngleEvidence]]:
-    """Return neighbouring angles that are one viewpoint: those on the slopes of one peak, or with one best map."""
+    """Group neighbouring angles into viewpoints: those on the slopes of one peak, or with the same best map."""
     modes: list[list[_AngleEvidence]] = []
     for side in (False, True):
         ring = sorted((one for one in looked if one.tried.mirrored is side), key=lambda one: one.tried.angle)
@@ -210,7 +245,7 @@ def _modes(looked: Sequence[_AngleEvidence]) -> list[list[_AngleEvidence]]:
 
 
 def _homes(ring: list[_AngleEvidence]) -> list[int]:
-    """Return for each angle of a circle the number of its group."""
+    """Return the group number of each angle of a circle."""
     n = len(ring)
     homes = list(range(n))
     for i in range(n):
@@ -225,7 +260,7 @@ def _homes(ring: list[_AngleEvidence]) -> list[int]:
 
 
 def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, float]:
-    """Return a peak as one viewpoint at its mean angle, and the logarithm of its prior times its evidence."""
+    """Return a group of angles as a viewpoint at its mean angle, and its log score: prior times evidence."""
     prior = _prior(mode[0].tried.mirrored, mirror)
     peak = max(mode, key=lambda one: (round(one.log_evidence, 9), -one.tried.angle))
     shares = [FACTS_POWER * one.log_evidence + math.log(one.tried.share) for one in mode]
@@ -237,12 +272,12 @@ def _viewpoint(mode: list[_AngleEvidence], mirror: bool) -> tuple[Viewpoint, flo
 
 
 def _prior(mirrored: bool, mirror: bool) -> float:
-    """Return the prior of a side of the mirror, where ``mirror`` leaves the choice."""
+    """Return the prior of being mirrored or not; 1 where mirrored viewpoints are not searched."""
     return (MIRROR_PRIOR if mirrored else 1 - MIRROR_PRIOR) if mirror else 1.0
 
 
 def _mean_angle(mode: list[_AngleEvidence]) -> tuple[float, float]:
-    """Return the circular mean by evidence and the mean resultant length; of a single angle just that, and 1."""
+    """Return the circular mean weighted by evidence, and the mean resultant length (1 for a single angle)."""
     if len(mode) == 1:
         return mode[0].tried.angle, 1.0
     most = max(one.log_evidence for one in mode)

@@ -1,9 +1,9 @@
-"""Candidates: the names that a perceived thing may bear, each with a probability, as evidence for who is who.
+"""Candidates: possible names of a perceived thing, each with a probability, as evidence for matches.
 
-A recogniser says how probable each name is that it was taught, and how probable it is that none of them fits. Bayes'
-rule turns a probability back into a likelihood ratio by dividing by the prior: P(seen | name) / P(seen) =
-P(name | seen) / P(name). An object of a description that bears a taught name weighs by the probability of that name; an
-object with another name weighs by the probability that none of the taught ones fits.
+A recogniser returns the probability of each name that it was taught, and the probability that none of them fits. By
+Bayes' rule, a probability over its prior is a likelihood ratio: P(seen | name) / P(seen) = P(name | seen) / P(name).
+For an object with a taught name, the evidence is the probability of that name; for an object with another name, it is
+the probability that none of the taught names fits.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from deixis.ontology.kinds import Kinds
 from deixis.reasoning.grounding.evidence.labels import Label, naming
 
 NONE_PRIOR = 0.5
-"""Prior probability that a thing bears no taught name, as recognisers assume it; taught names share the rest evenly."""
+"""Prior probability that a thing has no taught name, as recognisers assume; the taught names share the rest equally."""
 
 CANDIDATE_OUTLIERS = 0.02
-"""Share of things of which the candidates say nothing, so that no name is ruled out."""
+"""Share of things whose candidates are independent of their names, so that no name is ruled out."""
 
 Candidates = Mapping[str, float]
-"""Names with the probability of each; what is missing to 1 is the probability of none of them."""
+"""Names with their probabilities; the probability that no name fits is 1 minus their sum."""
 
 
 def candidate_ratios(
     description: RelationGraph, candidates: Sequence[Candidates | None], kinds: Kinds
 ) -> NDArray[np.float64]:
-    """Return what candidates say of n1 objects being each of n2 things, shape (n1, n2), as log-likelihood ratios.
+    r"""Return log-likelihood ratios by candidates of n1 objects being each of n2 things, shape (n1, n2).
 
     Parameters
     ----------
@@ -38,14 +38,15 @@ def candidate_ratios(
         The objects, by name and kind. A candidate names an object as a label does: by its name, its kind, or a
         narrower or broader kind.
     candidates
-        Those of each thing; None, or no name, says nothing. A name that any of the things has counts as taught.
+        Candidates of each thing; None, or an empty mapping, gives 0. A name that any thing has counts as taught.
     kinds
         The known kinds.
 
     Notes
     -----
-    With C taught names, u the prior of none of them and w the share of outliers, the ratio of an object that the names
-    in S call is log((1 - w) p(S) C / ((1 - u) \\|S\\|) + w); of one that no name calls, log((1 - w) p(none) / u + w).
+    Let C be the number of taught names, u the prior of none of them, and w the share of outliers. The ratio of an
+    object that the names in S name is log((1 - w) p(S) C / ((1 - u) \|S\|) + w); that of an object without a taught
+    name is log((1 - w) p(none) / u + w).
     """
     taught = list(dict.fromkeys(name for each in candidates for name in each or ()))
     ratios = np.zeros((len(description.nodes), len(candidates)))

@@ -1,7 +1,8 @@
-"""What colours say of who is who: how much likelier a described colour is of a thing than of things at large.
+"""Evidence of colours: the likelihood of a thing's colour given the described colour, against chance.
 
-A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`). Chance is a mixture of all terms, each by
-its share of the scene, which begins as an equal one: red says much of the only red thing, and nothing where all are.
+A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`). Chance is a mixture of all terms by their
+shares in the scene, with equal prior shares: *red* is strong evidence for the only red thing, and none where all things
+are red.
 """
 
 from __future__ import annotations
@@ -16,20 +17,20 @@ from deixis.ontology.colours import Colour, Colours
 Array = NDArray[np.float64]
 
 OUTLIERS = 0.05
-"""Share of things seen in any colour, whatever is said of them: by how they are lit, or since they have several."""
+"""Share of things whose seen colour is independent of the described one, because of the light or several colours."""
 
 MAX_OTHER_RATIO = 0.05
-"""A thing is of another colour where the described one is so much less likely its name than the likeliest, or less."""
+"""Maximum ratio of the described colour's density to the greatest density for a thing of another colour."""
 
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-"""From linear sRGB to CIE XYZ, white point D65 (IEC 61966-2-1)."""
+"""Matrix from linear sRGB to CIE XYZ, white point D65 (IEC 61966-2-1)."""
 
 
 def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
-    """Return CIELAB of colours in sRGB, 0 to 255, shape (…, 3): L 0 to 100, a towards red, b towards yellow; NaN stays
-    NaN.
+    """Convert colours in sRGB, 0 to 255, to CIELAB, both of shape (…, 3).
 
-    IEC 61966-2-1 for sRGB, CIE 15 for CIELAB under the white of sRGB (D65).
+    L is 0 to 100, a grows towards red, b towards yellow; NaN stays NaN. The sources are IEC 61966-2-1 for sRGB, and
+    CIE 15 for CIELAB under the white of sRGB (D65).
 
     >>> lab_of_srgb(np.array([[255.0, 255.0, 255.0], [255.0, 0.0, 0.0]])).round(1).tolist()
     [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
@@ -46,19 +47,29 @@ def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
 
 
 def _linear(rgb: NDArray[np.float64]) -> Array:
-    """Return linear sRGB, 0 to 1, of values 0 to 255."""
+    """Return linear sRGB in [0, 1] of sRGB values 0 to 255."""
     share = rgb / 255
     linear: Array = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     return linear
 
 
 def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> Array:
-    """Return what colours say of n1 objects described in some (IRIs) being each of n2 things, shape (n1, n2), finite.
+    """Return log-likelihood ratios by colour of n1 objects being each of n2 things, shape (n1, n2), finite.
 
-    ``seen`` holds the things' colours in sRGB, 0 to 255, shape (n2, 3), a row of NaN where none is known; that thing
-    says nothing, nor does an object of which no colour is described. Otherwise it is
-    log((1 - outliers) p(seen | described) / p(seen) + outliers). The ratio is never above one over the share of the
-    described colour, so that a scene all in one colour says little.
+    Parameters
+    ----------
+    described
+        Colour of each object (IRI); None where none is described.
+    seen
+        Colours of the things in sRGB, 0 to 255, shape (n2, 3); a row of NaN where the colour is unknown.
+    colours
+        Known colour terms.
+
+    Notes
+    -----
+    The evidence is log((1 - outliers) p(seen | described) / p(seen) + outliers), and 0 where either colour is unknown.
+    The ratio is at most one over the share of the described colour, so that colours are weak evidence in a scene that
+    is all in one colour.
     """
     evidence = np.zeros((len(described), len(seen)))
     known = np.flatnonzero(~np.isnan(seen).any(axis=1))
@@ -66,7 +77,7 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
         return evidence
     lab, terms = lab_of_srgb(seen[known]), list(colours)
     densities = np.stack([_log_density(lab, term) for term in terms], axis=1)
-    # the share (k,) of each term among the things of the scene, from the log densities of those that have a colour
+    # the share (k,) of each term among the things of the scene, from the log densities of things with a known colour
     things = len(seen)
     named_terms = densities.shape[1]
     naming = np.exp(densities - np.logaddexp.reduce(densities, axis=1, keepdims=True))
@@ -82,12 +93,11 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
 
 
 def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
-    """Return the colours that n things plainly are instead of those in which they are described (IRIs), None for the
-    others.
+    """Return the colour of each of n things that clearly differs from the described one (IRIs), None for other things.
 
-    ``seen``, shape (n, 3), is as for :func:`colour_evidence`. Between neighbours such as red and orange either word may
-    do: p(seen | described) has to be ``MAX_OTHER_RATIO`` of the greatest density at the most. What others there are
-    says nothing.
+    ``seen`` (n, 3) holds sRGB colours as for :func:`colour_evidence`. For neighbouring colours such as red and orange,
+    either word may be used; so p(seen | described) must be at most ``MAX_OTHER_RATIO`` of the greatest density. The
+    other things of the scene do not matter.
     """
     found: list[Colour | None] = [None] * len(described)
     terms = list(colours)
@@ -102,7 +112,7 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
 
 
 def _log_density(lab: Array, term: Colour) -> Array:
-    """Return log density of colours (n, 3) under a term's normal distribution, up to a constant, shape (n,)."""
+    """Return log densities of CIELAB colours (n, 3) under a term's normal distribution, up to a constant, (n,)."""
     apart = lab - lab_of_srgb(np.array(term.prototype, dtype=np.float64))
     precision = np.linalg.inv(term.matrix())
     result: Array = -0.5 * np.einsum("ni,ij,nj->n", apart, precision, apart) + 0.5 * np.linalg.slogdet(precision)[1]

@@ -1,9 +1,10 @@
-"""Degrees of words, and what they weigh as evidence.
+"""Degrees of words for pairs of boxes, and their log-likelihood ratios.
 
 A term is a piecewise linear log degree; the degree of a word is exp of the sum of its terms: 1 at the prototype. A
-speaker says the word of a pair as far as it fits, except that a share ``outliers`` of facts is said of anything:
-P(word | pair) is proportional to outliers + (1 - outliers) * degree. Its ratio to the same for a random pair is the
-likelihood ratio; the outliers bound what a single fact can say against a pair, ``chance`` what it can say for it.
+speaker states the word of a pair in proportion to its degree, except for a share ``outliers`` of facts that are stated
+of any pair: P(word | pair) is proportional to outliers + (1 - outliers) * degree. The likelihood ratio divides this by
+its value for a random pair. The outliers bound the evidence of a single fact against a pair, ``chance`` the evidence
+for it.
 """
 
 from __future__ import annotations
@@ -23,12 +24,11 @@ Array = NDArray[np.float64]
 INVERSES = {"left": "right", "top": "bottom", "top_left": "bottom_right", "top_right": "bottom_left", "on": "under"}
 INVERSES |= {inverse: word for word, inverse in INVERSES.items()}
 
-BLOCK = 1 << 14  # numbers that fit a processor's cache several times
+BLOCK = 1 << 14  # cells of a block: several arrays of this size fit in a processor's cache
 
 
 def degree_of_view(model: RelationModel, features: View) -> Array:
-    """Return exp of the sum of terms, shape (n, n), in (0, 1]; terms of features that are not there count as
-    fitting."""
+    """Return exp of the sum of terms, shape (n, n), in (0, 1]; terms of missing features are ignored."""
     logs = [_log_degree(term, features[term.feature]) for term in model.terms if term.feature in features]
     if not logs:
         return np.ones_like(next(iter(features.values())))
@@ -38,9 +38,9 @@ def degree_of_view(model: RelationModel, features: View) -> Array:
 
 
 def _log_degree(term: Term, feature: Array) -> Array:
-    """Return what ``np.interp`` gives, up to rounding, as a sum of hinges: one for every knot where the slope bends.
+    """Interpolate like ``np.interp``, up to rounding, by a sum of hinges: one for every knot where the slope changes.
 
-    Block by block of rows, so that what is at work stays in the cache: twice as fast for a million pairs.
+    The computation goes by blocks of rows that fit in the cache, which is twice as fast for a million pairs.
     """
     bends = _bends(term.knots, term.values)
     logs = np.full_like(feature, term.values[0])
@@ -57,13 +57,13 @@ def _log_degree(term: Term, feature: Array) -> Array:
 
 @lru_cache(maxsize=1024)
 def _bends(knots: tuple[float, ...], values: tuple[float, ...]) -> list[tuple[float, float]]:
-    """Return where the slope of a term changes, and by how much; it is 0 before the first knot and after the last."""
+    """Return the knots where the slope of a term changes, with the change; the slope is 0 outside the knots."""
     bends = np.diff(np.diff(values) / np.diff(knots), prepend=0.0, append=0.0).tolist()
     return [(knot, bend) for knot, bend in zip(knots, bends, strict=True) if bend]
 
 
 def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
-    """Return how well one of the ten words describes each ordered pair, wide reading, shape (n, n), in (0, 1].
+    """Return the degree of one of the ten words for each ordered pair, wide reading, shape (n, n), in (0, 1].
 
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
@@ -77,7 +77,7 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
 
 
 class WordDegrees:
-    """The degrees of words over pairs of a scene, each worked out once; an inverse's is that of the pairs reversed."""
+    """Cached degrees of words for the pairs of a scene; the degrees of an inverse are those of the reversed pairs."""
 
     def __init__(self, pairs: PairGeometry, models: RelationModels) -> None:
         self._pairs, self._models = pairs, models
@@ -85,7 +85,7 @@ class WordDegrees:
 
     @cached_property
     def reverse(self) -> WordDegrees:
-        """The degrees of the same pairs the other way round."""
+        """Degrees of the reversed pairs."""
         if self._pairs.reverse is self._pairs:
             return self
         other = WordDegrees(self._pairs.reverse, self._models)
@@ -93,17 +93,17 @@ class WordDegrees:
         return other
 
     def of_word(self, word: str) -> Array:
-        """See :func:`word_degree`."""
+        """Return the degree of a word, shape (n, n), as :func:`word_degree` does."""
         if word not in self._found:
             inverse = self.reverse._found.get(INVERSES[word])
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 
     def of(self, relation: Relation) -> Array:
-        """Return the degree of a relation, shape (n, n), in [0, 1]; raises UnknownTermError where its word has no
-        model.
+        """Return the degree of a relation, shape (n, n), in [0, 1].
 
-        In the exact reading the word has to fit better than the other nine: its degree times its share of the best.
+        In the exact reading, the word must fit better than the other nine: the result is its degree times the ratio of
+        its degree to the best one. Raises UnknownTermError where its word has no model.
         """
         self._models.of(relation)
         own = self.of_word(relation.word)
@@ -115,18 +115,17 @@ class WordDegrees:
 
 
 def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the degree of one relation: see :meth:`WordDegrees.of`."""
+    """Return the degree of one relation, shape (n, n), as :meth:`WordDegrees.of` does."""
     return WordDegrees(pairs, models).of(relation)
 
 
 def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:
-    """Return how readily people speak of a pair with this one of the two as the subject, whatever the word, shape
-    (n, n)."""
+    """Return how readily people mention each ordered pair, whatever the word, shape (n, n), in (0, 1]."""
     return degree_of_view(models[SAYING], view(pairs, SAYING))
 
 
 def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array:
-    """Return log P(said | pair) - log P(said | random pair), natural logarithm, finite.
+    """Return log P(said | pair) - log P(said | random pair) in nats, finite.
 
     >>> log_likelihood_ratio(np.array([1.0, 0.0]), outliers=0.01, chance=0.1).round(2).tolist()
     [2.22, -2.39]
@@ -136,7 +135,6 @@ def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array
 
 
 def relation_evidence(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the log-likelihood ratio of a word alone, shape (n, n): that of ``left`` is that of ``right``
-    transposed."""
+    """Return the log-likelihood ratio of a single relation for each ordered pair, shape (n, n), in nats."""
     model = models.of(relation)
     return log_likelihood_ratio(relation_degree(pairs, relation, models), model.outliers, model.chance)

@@ -1,10 +1,10 @@
-"""What grounding goes by: the facts, what labels, sizes and colours say, and how far each stated fact holds of a pair.
+"""Evidence of grounding: facts, labels, sizes and colours of a description in a scene, and the degrees of facts.
 
-What an engine searches is :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that add
-up, with what leaving an object out costs. Beside it stands the crisp reading, by which an answer says what holds: a
-stated fact holds of a pair to the degree 1 where the pair's exact name is the word itself, 0.5 where the name only
-implies the word in its wide reading, else 0. A choice (``or``) holds as far as its best alternative; a denial holds (1)
-where none of its relations does, even widely. A fact is *satisfied* where its degree is above 0.
+Engines search :attr:`Evidence.problem`: facts, labels, sizes and colours as log-likelihood ratios that are added up,
+and the costs of leaving objects out. The answer reports facts by the crisp reading: a fact holds of a pair to degree 1
+where the pair's exact relation is the stated word, 0.5 where the exact relation only implies the word in its wide
+reading, else 0. The degree of a choice (``or``) is that of its best alternative; the degree of a denial is 1 where none
+of its relations holds, even widely. A fact is *satisfied* where its degree is above 0.
 """
 
 from __future__ import annotations
@@ -37,54 +37,72 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.memory_budget import different_facts
 
 MAX_ABSENCE_ODDS = 0.015
-"""Upper bound of the odds that an object is absent from a scene that has room for all."""
+"""Upper bound of the odds that an object is absent from a scene with at least as many things as objects."""
 
 PRESENT_LOG_ODDS = -30.0
-"""Log-odds of absence of an object that a certain label, or an answer, says is there."""
+"""Log-odds of absence of an object that a certain label, or an answer of the user, identifies."""
 
 SECONDS_PER_CELL = 1e-8
-"""Seconds that it takes to lay out a cell of the tables for an engine, which nothing interrupts."""
+"""Seconds for copying one cell of the tables for an engine, which cannot be interrupted."""
 
 MAX_KEPT_THINGS = 150
-"""Things up to which what the facts say of their pairs is kept beside the tables that are made of it."""
+"""Maximum number of things for which the likelihood ratios of all pairs are cached beside the tables."""
 
 UNRELIABLE_PRIOR, UNRELIABLE_ERROR = 0.01, 0.7
-"""Probability that the labels of a scene are not to be trusted, and that one of them is wrong then: whoever is wrong
-once is often wrong again."""
+"""Probability that the labels of a scene are unreliable, and the probability that an unreliable label is wrong: errors
+of a labeller are correlated."""
 
 
 @dataclass(frozen=True, eq=False)
 class DoubtedLabels:
-    """What labels say where they are not to be trusted: log-likelihood ratios (n1, n2), and by how much likelier, in
-    nats, all labels together are then, of things that the description does not mention."""
+    """Evidence of labels under the hypothesis that the labels of the scene are unreliable.
+
+    Attributes
+    ----------
+    ratios
+        Log-likelihood ratios of the matches, shape (n1, n2).
+    log_likelihood
+        Log-likelihood ratio in nats of all labels, unreliable against reliable, for things that the description does
+        not mention.
+    """
 
     ratios: NDArray[np.float64]
     log_likelihood: float
 
     def reordered(self, both: tuple[NDArray[np.intp], ...]) -> DoubtedLabels:
-        """Return the same with objects and things in another order, as ``numpy.ix_`` has it."""
+        """Return a copy with objects and things in another order, an index of ``numpy.ix_``."""
         return replace(self, ratios=self.ratios[both])
 
 
 @dataclass(frozen=True, eq=False)
 class Whole:
-    """The scene of which evidence holds a shortlist: what all its n things are, and what is left out.
+    """Whole scene of n things, of which the evidence holds a shortlist.
 
-    ``alone`` is the matching problem of all things without facts, ``doubted`` the same where labels are not to be
-    trusted (None where no label can be doubted). ``outside`` (n1,) is about the posterior probability that each object
-    is a thing that is not on the shortlist; ``labelled_inside`` (n1,) the share of what labels say of each object, or
-    of its being none, that is said of the shortlist.
+    Attributes
+    ----------
+    nodes
+        Names of all things.
+    boxes
+        Boxes of all things, shape (n, 2, d).
+    alone
+        Matching problem of all things, without facts.
+    doubted
+        Matching problem of all things without facts, if labels are unreliable; None where no label can be doubted.
+    outside
+        Approximate posterior probability that each object is a thing that is not on the shortlist, shape (n1,).
+    labelled_inside
+        Posterior probability by labels alone that each object is on the shortlist or absent, shape (n1,).
     """
 
     nodes: tuple[str, ...]
-    boxes: NDArray[np.float64]  # (n, 2, d)
+    boxes: NDArray[np.float64]
     alone: Problem
     doubted: Problem | None
     outside: NDArray[np.float64]
     labelled_inside: NDArray[np.float64]
 
     def reordered(self, rows: NDArray[np.int64]) -> Whole:
-        """Return the same with the objects in another order."""
+        """Return a copy with the objects in another order."""
 
         def in_order(problem: Problem) -> Problem:
             return replace(
@@ -105,16 +123,35 @@ class Whole:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """A description of n1 objects by m facts beside a scene of n2 things, with all that speaks for each match.
+    """A description of n1 objects and m facts, a scene of n2 things, and the evidence for each match.
 
-    ``labels``, ``sizes`` and ``colours`` (n1, n2) are finite log-likelihood ratios of each object being each perceived
-    thing; no ``colours`` where none are known. ``allowed`` (n1, n2) says which object may be which thing: a certain
-    label, or an answer, rules matches out. ``identified`` (n2,) are the things of which a certain label, or an answer,
-    says what they are. ``doubted_labels`` are what labels say that are not to be trusted. Masks that are left out rule
-    nothing out and identify nothing. ``consistent`` says whether the firm facts can hold together, where that is known
-    already. By the ``deadline`` the facts' evidence has to be worked out: else :attr:`problem` raises OutOfTimeError.
-    ``frugal``: there is no memory for chains of maps to be drawn, so that probabilities are beliefs. ``whole`` is the
-    scene of which ``scene`` is a shortlist, where it is one.
+    Attributes
+    ----------
+    description
+        The objects and the facts.
+    scene
+        The things, with their boxes and relations.
+    labels, sizes
+        Log-likelihood ratios of each object being each thing, shape (n1, n2), finite.
+    meaning
+        Models of words, and weights of evidence.
+    colours
+        Log-likelihood ratios by colour, shape (n1, n2); None where no colours are known.
+    doubted_labels
+        Evidence of the labels if they are unreliable; None where no label can be doubted.
+    allowed
+        Matches that are allowed, shape (n1, n2): a certain label, or an answer of the user, rules matches out. By
+        default, all are allowed.
+    identified
+        Things that a certain label, or an answer, identifies, shape (n2,). By default, none is.
+    consistent
+        Whether the firm facts can hold together; None where that is unknown.
+    deadline
+        Time by which the evidence of the facts must be computed; after it, :attr:`problem` raises OutOfTimeError.
+    frugal
+        True where the memory does not suffice for Markov chains, so that marginals come from belief propagation.
+    whole
+        Whole scene, where ``scene`` is a shortlist of it.
     """
 
     description: RelationGraph
@@ -138,7 +175,7 @@ class Evidence:
 
     @property
     def unary(self) -> NDArray[np.float64]:
-        """What speaks for each match besides the facts, shape (n1, n2); 0 where it is not allowed."""
+        """Evidence for each match without the facts, shape (n1, n2); 0 where the match is not allowed."""
         total: NDArray[np.float64] = self.labels + self.sizes
         if self.colours is not None:
             total = total + self.colours
@@ -146,32 +183,32 @@ class Evidence:
 
     @property
     def present(self) -> NDArray[np.bool_]:
-        """Which objects are known to be there (n1,): those of which an identified thing bears the label."""
+        """Mask (n1,) of the objects that are certainly present: an identified thing has their label."""
         present: NDArray[np.bool_] = np.any((self.labels > 0) & self.identified[None, :], axis=1)
         return present
 
     @property
     def absent(self) -> NDArray[np.float64]:
-        """What leaving each object out is worth, shape (n1,)."""
+        """Log-odds of each object's absence, shape (n1,)."""
         return np.where(self.present, PRESENT_LOG_ODDS, absence(len(self.labels), len(self.things)))
 
     @property
     def things(self) -> tuple[str, ...]:
-        """All things of the scene, those that are not on a shortlist included."""
+        """Names of all things of the scene, including those that are not on the shortlist."""
         return self.scene.nodes if self.whole is None else self.whole.nodes
 
     @property
     def without_facts(self) -> Problem:
-        """The matching problem of all things of the scene, without facts."""
+        """Matching problem of all things of the scene, without facts."""
         if self.whole is not None:
             return self.whole.alone
         return without_facts(self.unary, self.absent, self.allowed)
 
     @cached_property
     def label_readings(self) -> tuple[tuple[float, Evidence], ...]:
-        """The evidence with its labels taken as they are, then as not to be trusted, each with its log weight.
+        """Evidence with reliable labels, then with unreliable labels, each with its log weight.
 
-        There is one reading of weight 0 where no label can be doubted.
+        Where no label can be doubted, there is only the first, with log weight 0.
         """
         if self.doubted_labels is None:
             return ((0.0, self),)
@@ -186,10 +223,10 @@ class Evidence:
 
     @cached_property
     def problem(self) -> Problem:
-        """The matching problem to be searched. A scene without boxes is taken literally, by the names of its pairs."""
+        """Matching problem for engines; a scene without boxes is read literally, by the relations of its pairs."""
         absent, boxes = self.absent, self.scene.boxes
         if boxes is None or not self.meaning.graded:
-            # the crisp reading, chance being one pair for each of the names
+            # the crisp reading; by chance, each exact relation is equally frequent
             graph, edges = self.description, self.facts
             said = np.column_stack([self.degree_table, graph.net_weights[edges]])
             rows, kinds = np.unique(said, axis=0, return_inverse=True)
@@ -207,14 +244,14 @@ class Evidence:
 
     @cached_property
     def upper_problem(self) -> Problem:
-        """A problem in which no map is worth less than in :attr:`problem`, and that is made without any search."""
+        """Matching problem in which every map has at least its value in :attr:`problem`; needs no search."""
         if self.scene.boxes is None or not self.meaning.graded:
             return self.problem
         facts = self._said().most()
         return Problem(facts.ends, facts.kinds, facts.tables, self.unary, self.absent, self.allowed)
 
     def _said(self) -> FactEvidence:
-        """Return what the facts say of the boxes; of small scenes it is kept, for both readings of their labels."""
+        """Return the evidence of the facts for the boxes; for small scenes it is cached, for both label readings."""
         known = self.__dict__.get("_facts_said")
         if known is None:
             boxes = self.scene.boxes
@@ -234,17 +271,17 @@ class Evidence:
 
     @cached_property
     def facts(self) -> NDArray[np.int64]:
-        """The edges of the description that can be compared: all but those of an object to itself."""
+        """Edges of the description that can be compared: all except those of an object to itself."""
         return np.flatnonzero(self.description.subjects != self.description.objects)
 
     def firm(self) -> NDArray[np.bool_]:
-        """Return which comparable facts must hold: neither optional nor hedged."""
+        """Return the mask of comparable facts that must hold: neither optional nor hedged."""
         must: NDArray[np.bool_] = ~self.description.optional[self.facts] & (self.description.weights[self.facts] >= 1)
         return must
 
     @cached_property
     def degree_table(self) -> NDArray[np.float64]:
-        """The degree of each comparable fact by the pair's exact name, shape (facts, relations + 1); last column 0."""
+        """Degree of each comparable fact by the pair's exact relation, shape (facts, relations + 1); last column 0."""
         degrees = self.description.vocabulary.degrees
         sets = self.description.relation_sets[self.facts]
         member = (sets[:, None] >> np.arange(len(degrees))[None, :] & 1).astype(bool)
@@ -254,7 +291,7 @@ class Evidence:
         return np.concatenate([table, np.zeros((len(table), 1))], axis=1)
 
     def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return how far each comparable fact holds, 0 where an object of it is unmatched.
+        """Return the degree to which each comparable fact holds, 0 where one of its objects is unmatched.
 
         ``assignment`` has shape (…, n1), the result (…, facts).
         """
@@ -266,7 +303,7 @@ class Evidence:
         return degrees
 
     def total(self, assignment: NDArray[np.int64]) -> float:
-        """Return the sum of degrees times weights, plus what labels say for each match."""
+        """Return the sum of degrees times weights, plus the log-likelihood ratios of labels of the matches."""
         return float(self.totals(assignment[None])[0])
 
     def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -279,10 +316,11 @@ class Evidence:
         return totals
 
     def seen_from(self, angle: float, mirrored: bool) -> Evidence:
-        """Return the same evidence where the facts speak of the scene turned by ``angle`` (radians, counter-clockwise),
-        having mirrored left and right if so; what the things are by themselves is the same from all sides.
+        """Return the evidence with the facts read in the scene as seen from another side.
 
-        Raises GraphError where the scene has no boxes.
+        The scene is turned by ``angle`` radians counter-clockwise, after left and right are exchanged where it is
+        ``mirrored``. Labels, sizes and colours do not depend on the side. Raises GraphError where the scene has no
+        boxes.
         """
         scene = self.scene
         if scene.boxes is None:
@@ -291,7 +329,7 @@ class Evidence:
         return replace(self, scene=scene_relations(scene.nodes, boxes, scene.vocabulary, scene.kinds))
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
-        """Return the same evidence with the objects and the perceived things in another order."""
+        """Return a copy with the objects (``rows``) and the things (``columns``) in another order."""
         both = np.ix_(rows, columns)
         return replace(
             self,
@@ -307,21 +345,21 @@ class Evidence:
         )
 
     def in_order_of(self, other: Evidence) -> Evidence:
-        """Return the same evidence with objects and things in the order of another's, whose names are the same."""
+        """Return a copy with the order of objects and things of ``other``, which has the same names."""
         rows = [self.description.index(name) for name in other.description.nodes]
         columns = [self.scene.index(name) for name in other.scene.nodes]
         return self.reordered(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64))
 
 
 def absence(objects: int, things: int) -> float:
-    """Return what leaving one of n1 objects out is worth in log-likelihood, beside n2 things.
+    """Return the log-odds that one of n1 objects is absent from a scene of n2 things.
 
-    Whoever leaves an object out says that it is not there, and that one thing more was not described. The odds of
-    either are those of Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the k that there are at least: all but as many
-    as there are on the other side. And of k objects and k things there are k times as many maps that match all as of
-    k - 1 and k - 1, so that each of the former is as many times less likely. But a few words about a full table are no
-    sign that what they name is missing: where none has to be absent, its odds are ``MAX_ABSENCE_ODDS`` at most, and
-    where most things are not described anyway, one more says nothing.
+    Leaving an object out means that it is absent, and that one more thing is not described. The odds of either follow
+    Jeffreys' rule, (k + 1/2) / (n - k + 1/2), for the least possible number k: the excess over the other side. Also,
+    there are k times as many complete maps of k objects and k things as of k - 1 and k - 1, so that each of them is k
+    times less likely. A short description of a full table is not evidence that its objects are missing: where no object
+    has to be absent, the odds are at most ``MAX_ABSENCE_ODDS``, and where most things are not described anyway, one
+    more undescribed thing is not evidence.
 
     >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
     (-4.9, -2.0, -4.2)
@@ -333,15 +371,14 @@ def absence(objects: int, things: int) -> float:
 
 
 def no_unary_evidence(description: RelationGraph, scene: SceneRelations, meaning: Meaning = SHIPPED) -> Evidence:
-    """Return the evidence of the facts alone: everything is allowed, and nothing else speaks for a match."""
+    """Return the evidence of the facts alone: all matches are allowed, without labels, sizes and colours."""
     nothing = np.zeros((len(description.nodes), len(scene.nodes)))
     return Evidence(description, scene, nothing, nothing, meaning)
 
 
 @dataclass(frozen=True, eq=False)
 class ThingEvidence:
-    """What is known of n2 things by themselves: log-likelihood ratios of n1 objects being them, as in
-    :class:`Evidence`."""
+    """Evidence without the facts: fields of :class:`Evidence` for n1 objects and n2 things."""
 
     labels: NDArray[np.float64]
     sizes: NDArray[np.float64]
@@ -364,7 +401,7 @@ def thing_evidence(
     label_error: float = LABEL_ERROR,
     candidates: Sequence[Candidates | None] = (),
 ) -> ThingEvidence:
-    """Return what labels, sizes and colours say, each by its weight; arguments are those of :func:`evidence_from`."""
+    """Return the weighted evidence of labels, sizes and colours; parameters as for :func:`evidence_from`."""
     weights, shape = meaning.weights, (len(description.nodes), len(labels))
     said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
     doubted = None
@@ -389,7 +426,7 @@ def thing_evidence(
 
 
 def without_facts(unary: NDArray[np.float64], absent: NDArray[np.float64], allowed: NDArray[np.bool_]) -> Problem:
-    """Return the matching problem of what is known of things by themselves (n1, n2), and no fact."""
+    """Return the matching problem without facts: unary evidence (n1, n2), absence (n1,) and allowed matches."""
     n2 = unary.shape[1]
     ends, nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, n2, n2), dtype=np.float32)
     return Problem(ends, ends[:, 0], nothing, unary, absent, allowed)
@@ -410,12 +447,32 @@ def evidence_from(
     deadline: Deadline = Deadline.never(),
     candidates: Sequence[Candidates | None] = (),
 ) -> Evidence:
-    """Return facts, labels, sizes and colours together, each by its weight; ``metric`` where the scene's boxes are in
-    metres.
+    """Combine facts, labels, sizes and colours of a description and a scene into evidence.
 
-    ``seen`` are the things' colours in sRGB, shape (n2, 3), NaN where not known; ``colours`` are the known terms.
-    ``label_error`` is the probability that a label of confidence 1 is wrong; 0 takes such labels as identities.
-    ``candidates`` are those of each thing, and weigh as labels do; none of any where they are left out.
+    Parameters
+    ----------
+    description
+        The n1 objects and the facts.
+    scene
+        The n2 things, with their relations and boxes.
+    labels
+        Label of each thing; None where it has none.
+    kinds, sizes
+        Known kinds, and their usual sizes.
+    metric
+        Whether the boxes are in metres; otherwise they are in pixels.
+    meaning
+        Models of words, and weights of evidence.
+    seen
+        Colours of the things in sRGB, shape (n2, 3), NaN where unknown.
+    colours
+        Known colour terms.
+    label_error
+        Probability that a label of confidence 1 is wrong; with 0, such labels identify things.
+    deadline
+        Time by which the evidence of the facts must be computed.
+    candidates
+        Names of each thing with probabilities, weighted like labels; by default, no thing has any.
     """
     known = thing_evidence(
         description,

@@ -1,17 +1,18 @@
-"""What stated facts weigh for every pair of perceived boxes: graded (or crisp) tables for matching.
+"""Evidence of stated facts for every pair of perceived boxes: graded (or crisp) tables for matching.
 
-A saying model gives the probability that a fact is said of a pair, up to a constant that cancels against chance:
+A model of the speaker gives the probability that a fact is stated of a pair, up to a constant that cancels against
+chance:
 
-- a word: outliers + (1 - outliers) * s * d, with d the word's degree and s how readily the pair is spoken of;
-- a choice (``or``): the mixture of its words, each as likely as the next: d is the mean of theirs;
-- a denial (``not``): d is the product of the complements 1 - d of its words, where a word that holds widely of a pair
-  counts as fitting, however far apart the two are: what is far to the left is no less left, only said less often;
-- a fact that is meant literally is said of any pair, near or far, as readily as its name fits: 1 where the name is the
-  word, ``IMPLIED`` where it only implies it, else 0; by chance one name in ten fits. The share of such facts is judged
-  from the whole description (:mod:`deixis.reasoning.grounding.evidence.literalness`);
-- a hedge of weight w: it holds with probability w, else it says nothing: log(w exp(l) + 1 - w), with l its evidence;
-  below one half (*rarely*) it is the opposite that is said, with the weight 1 - w;
-- ``optional``: a fact that need not hold is one that holds every other time: w is halved.
+- a word: outliers + (1 - outliers) * s * d, where d is the word's degree and s how readily people mention the pair;
+- a choice (``or``): the mixture of its words with equal shares: d is the mean of their degrees;
+- a denial (``not``): d is the product of the complements 1 - d of its words. A word that holds widely of a pair counts
+  as fitting at any distance: a thing far to the left is still left, and people only mention it less often;
+- a literal fact is stated of any pair, near or far, as readily as the pair's exact relation fits: 1 where it is the
+  word, ``IMPLIED`` where it only implies the word, else 0; by chance one relation in ten fits. The share of literal
+  facts is estimated from the whole description (:mod:`deixis.reasoning.grounding.evidence.literalness`);
+- a hedge of weight w: the fact holds with probability w, else it is ignored: log(w exp(l) + 1 - w), where l is the
+  evidence of the fact. Below one half (*rarely*) the opposite is stated, with weight 1 - w;
+- ``optional``: the fact holds every second time: w is halved.
 """
 
 from __future__ import annotations
@@ -40,49 +41,46 @@ from deixis.reasoning.grounding.matching.problem import Problem, empty_tables
 Array = NDArray[np.float64]
 
 JUDGEMENT_SHARE = 0.2
-"""Share of the time left for judging how literally the facts are meant."""
+"""Share of the time left for estimating how literally the facts are meant."""
 
 SIDE = 256
-"""Things on either side of a block of pairs that is looked at at once: small enough for a processor's cache."""
+"""Things on either side of a block of pairs: small enough for a processor's cache."""
 
 FORESEEN_FROM, FORESEEN_EXCESS = 4, 1.5
-"""Blocks after which it is foreseen how long all of them take, and times as long as is left that is too long."""
+"""Number of blocks after which the total time is extrapolated, and the ratio of that to the time left from which the
+computation stops."""
 
 TABLE_CELLS = 1 << 18
-"""Cells of tables that are worked out together."""
+"""Number of cells of tables that are computed together."""
 
 IMPLIED = 0.1
-"""How readily a literal speaker says *left* of a pair whose name is *top left*: nine times in ten, the name is said."""
+"""Probability that a literal speaker says *left* of a pair whose exact relation is *top left*, instead of that word."""
 
 LITERAL_CHANCE = 0.1
-"""The degree by chance of a word taken literally: it is one of ten names."""
+"""Chance degree of a literal word: one of ten exact relations."""
 
 ABSENT_LOG_ODDS = -30.0
-"""Log-odds of an object's absence that the judgement of literalness assumes, where none are given."""
+"""Default log-odds of an object's absence for the estimate of literalness."""
 
 
 @dataclass(frozen=True, eq=False)
 class FactTables:
-    """The facts of a description as :class:`deixis.reasoning.grounding.matching.problem.Problem` takes them (m facts, k
-    tables).
+    """Evidence of m facts in k tables, in the form of :class:`deixis.reasoning.grounding.matching.problem.Problem`."""
 
-    ``edges`` are the description's edges that are compared: all but those of an object to itself.
-    """
-
-    edges: NDArray[np.int64]  # (m,)
-    ends: NDArray[np.int64]  # (m, 2)
-    kinds: NDArray[np.int64]  # (m,)
+    edges: NDArray[np.int64]  # (m,) edges of the description: all except those of an object to itself
+    ends: NDArray[np.int64]  # (m, 2) subject and object
+    kinds: NDArray[np.int64]  # (m,) table of each fact
     tables: NDArray[np.float32]  # (k, n2, n2), log-likelihood ratios, finite, 0 on the diagonal
 
 
 Said = tuple[int, bool, float]
-"""What makes facts differ: the set of relations, the sign, and the weight."""
+"""Content of a fact: the set of relations as a bit mask, the sign, and the weight."""
 
 
 def compared_facts(
     description: RelationGraph,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], list[Said]]:
-    """Return the m edges that are compared (m,), their ends (m, 2), which different fact each is (m,), and those."""
+    """Return the m comparable edges (m,), their ends (m, 2), the index of each one's content (m,), and the contents."""
     edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
     columns = (description.relation_sets, description.affirmed, description.net_weights)
     keys = list(zip(*(column[edges].tolist() for column in columns), strict=True))
@@ -103,34 +101,52 @@ def fact_tables(
     allowed: NDArray[np.bool_] | None = None,
     deadline: Deadline = Deadline.never(),
 ) -> FactTables:
-    """Return the evidence of every fact for every ordered pair of n2 boxes (n2, 2, d).
+    """Return the evidence of every fact for every ordered pair of n2 boxes.
 
-    ``saying`` takes into account which pairs people speak of; without it only the words count. ``literal`` is the share
-    of facts that are meant literally; where it is None, it is judged (:meth:`FactEvidence.literal`) with what is known
-    of things by themselves (``unary``, shape (n1, n2), and the mask ``allowed``) and of their absence (``absent``,
-    (n1,)). Raises what :meth:`FactEvidence.of` raises, and SettingError for a share beyond 0 to 1.
+    Parameters
+    ----------
+    description
+        The n1 objects and the facts.
+    boxes
+        Boxes of the things, shape (n2, 2, d).
+    models
+        Models of the relation words; by default, the shipped ones.
+    saying
+        Whether to model which pairs people mention; otherwise, only the words count.
+    literal
+        Share of facts that are meant literally, in [0, 1]; None to estimate it (:meth:`FactEvidence.literal`).
+    unary, absent, allowed
+        Evidence without facts for that estimate: shapes (n1, n2), (n1,) and (n1, n2).
+    deadline
+        End of the time limit.
+
+    Raises
+    ------
+    SettingError
+        ``literal`` or a weight is outside 0 to 1.
+    GraphError, OutOfTimeError, UnknownTermError
+        As for :meth:`FactEvidence.of`.
     """
     if literal is not None and not 0 <= literal <= 1:
-        raise SettingError(f"the share of facts that are meant literally lies between 0 and 1, not at {literal:g}")
+        raise SettingError(f"`literal`, the share of literal facts, must be between 0 and 1, got {literal:g}")
     said = FactEvidence.of(description, boxes, models, saying=saying, deadline=deadline)
     return said.tables(said.literal(unary, absent, allowed) if literal is None else literal)
 
 
 @dataclass(frozen=True, eq=False)
 class FactEvidence:
-    """The evidence of m facts (k different ones) about n1 objects for n2 boxes, for any share that is meant literally.
+    """Evidence of m facts (k different ones) about n1 objects for n2 boxes, for any share of literal facts.
 
-    Built by :meth:`of`. ``order`` (n2,) lists the boxes by their coordinates, and ``by_name`` (n1,) the objects by
-    their names: what is judged does not depend on how either was given. Pairs are compared with facts when that is
-    first asked for, by ``models`` or by the shipped ones.
+    It is built by :meth:`of`. The share is estimated with boxes and objects in a fixed order, so that it does not
+    depend on the order in which they were given. Pairs are compared when the evidence is first used.
     """
 
-    edges: NDArray[np.int64]  # (m,)
-    ends: NDArray[np.int64]  # (m, 2)
-    kinds: NDArray[np.int64]  # (m,)
-    order: NDArray[np.intp]
-    by_name: NDArray[np.intp]
-    models: RelationModels | None
+    edges: NDArray[np.int64]  # (m,) edges of the description
+    ends: NDArray[np.int64]  # (m, 2) subject and object
+    kinds: NDArray[np.int64]  # (m,) which different fact each is
+    order: NDArray[np.intp]  # (n2,) boxes sorted by coordinates
+    by_name: NDArray[np.intp]  # (n1,) objects sorted by name
+    models: RelationModels | None  # None: the shipped models
     compared: Callable[[RelationModels], _FactRatios]
     deadline: Deadline
 
@@ -146,12 +162,33 @@ class FactEvidence:
         everything: NDArray[np.float64] | None = None,
         deadline: Deadline = Deadline.never(),
     ) -> FactEvidence:
-        """Compare the facts of a description with boxes (n2, 2, d).
+        """Build the evidence of a description for boxes.
 
-        ``names`` (n2, n2) are the exact names of the pairs, where they are known already. ``everything`` (n, 2, d) are
-        all boxes of the scene, where those that are compared are some of them. Raises GraphError for boxes that are
-        none, and OutOfTimeError at the deadline. So do the methods, which raise UnknownTermError for a word that has no
-        model and SettingError for a weight beyond 0 to 1, too.
+        Parameters
+        ----------
+        description
+            The objects and the facts.
+        boxes
+            Boxes of the things, shape (n2, 2, d).
+        models
+            Models of the relation words; by default, the shipped ones.
+        saying
+            Whether to model which pairs people mention.
+        names
+            Exact relations of the pairs as indices, shape (n2, n2), where they are already known.
+        everything
+            All boxes of the scene, shape (n, 2, d), where ``boxes`` are only some of them.
+        deadline
+            End of the time limit.
+
+        Raises
+        ------
+        GraphError
+            ``boxes`` are not valid boxes.
+        OutOfTimeError
+            The deadline passed; the methods raise it, too.
+        UnknownTermError, SettingError
+            Raised by the methods only: a word has no model, or a weight is outside 0 to 1.
         """
         edges, ends, kinds, distinct = compared_facts(description)
         order = np.zeros(0, dtype=np.intp)
@@ -171,7 +208,7 @@ class FactEvidence:
 
     @cached_property
     def ratios(self) -> _FactRatios:
-        """The likelihood ratios of the facts by the models."""
+        """Likelihood ratios of the facts by the models."""
         return self.compared(self.models or shipped_models())
 
     def literal(
@@ -180,11 +217,11 @@ class FactEvidence:
         absent: Array | None = None,
         allowed: NDArray[np.bool_] | None = None,
     ) -> float:
-        """Return the share of facts to be taken literally, 0 to ``literalness.LITERAL``.
+        """Estimate the share of facts that are meant literally, in [0, ``literalness.LITERAL``].
 
-        It is judged by the shipped models, with what is known of things by themselves (``unary``, shape (n1, n2), and
-        the mask ``allowed``) and of their absence (``absent``, (n1,)), as in
-        :class:`deixis.reasoning.grounding.matching.problem.Problem`.
+        The estimate uses the shipped models and the evidence without facts, as in
+        :class:`deixis.reasoning.grounding.matching.problem.Problem`: ``unary`` and ``allowed`` of shape (n1, n2), and
+        ``absent`` of shape (n1,).
         """
         shape = len(self.by_name), len(self.order)
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, self.order])
@@ -195,11 +232,11 @@ class FactEvidence:
         return literal_share(either, self.by_name, self.deadline.share(JUDGEMENT_SHARE))
 
     def tables(self, literal: float) -> FactTables:
-        """Return the evidence where such a share of the facts is meant literally."""
+        """Return the evidence if the share ``literal`` of the facts is meant literally."""
         return self._as_given(self.ratios.tables(literal, np.argsort(self.order)))
 
     def most(self) -> FactTables:
-        """Return what no evidence is above, pair by pair, whatever share :meth:`literal` gives."""
+        """Return an upper bound of the evidence of every pair, for any share that :meth:`literal` may return."""
         back = np.argsort(self.order)
         graded, literal = self.ratios.tables(0.0, back), self.ratios.tables(LITERAL, back)
         return self._as_given(np.maximum(graded, literal, out=graded))
@@ -209,10 +246,10 @@ class FactEvidence:
 
 
 class SaidFacts:
-    """What different facts (relations, sign, weight) say of pairs, to a graded speaker and to a literal one.
+    """Likelihood ratios of k different facts (relations, sign, weight), for a graded and for a literal speaker.
 
-    ``literal`` (k, relations + 1) holds the likelihood ratios of a literal speaker by the exact name of the pair, the
-    last one of no name, -1; ``weights`` (k, 1) those of the facts.
+    ``literal`` (k, relations + 1) holds the likelihood ratios of a literal speaker by the exact relation of the pair;
+    the last column is for pairs without one (index -1). ``weights`` (k, 1) holds the weights of the facts.
     """
 
     def __init__(self, models: RelationModels, vocabulary: Relations, saying: bool, distinct: Sequence[Said]) -> None:
@@ -224,7 +261,7 @@ class SaidFacts:
         self.weights = np.reshape([weight for _, _, weight in self.said], (-1, 1))
 
     def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
-        """Return how readily each pair of a block is spoken of."""
+        """Return how readily people mention each pair of a block, in (0, 1]."""
         return saying_degree(pairs, self.models).astype(np.float32) if self.saying else np.float32(1.0)
 
     def ratio(
@@ -234,7 +271,7 @@ class SaidFacts:
         names: NDArray[np.uint8],
         spoken: NDArray[np.float32] | np.float32,
     ) -> NDArray[np.float32]:
-        """Return by how much likelier a graded speaker says a fact of each pair of a block than by chance."""
+        """Return the likelihood ratio of a fact for each pair of a block, for a graded speaker against chance."""
         relations, positive, _ = self.said[fact]
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
@@ -253,14 +290,13 @@ class SaidFacts:
         return ratio
 
     def offset(self, facts: int | slice, share: float) -> NDArray[np.float32]:
-        """Return what is added to the graded speaker's part of one fact, or of some, by the exact name of the pair: a
-        ``share`` of facts is meant literally, and a hedged fact may say nothing."""
+        """Return the terms to add to the graded ratios, by exact relation: the literal ``share``, and hedges."""
         weights = self.weights[facts]
         offset: NDArray[np.float32] = (weights * share * self.literal[facts] + (1 - weights)).astype(np.float32)
         return offset
 
     def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
-        """Return the likelihood ratio of a fact for each pair of a block, ``share`` of facts being meant literally."""
+        """Return the likelihood ratio of a fact for each pair of a block, if ``share`` of the facts are literal."""
         ratio = self.ratio(fact, WordDegrees(pairs, self.models), names, self.spoken(pairs))
         ratio *= np.float32(self.said[fact][2] * (1 - share))
         ratio += self.offset(fact, share)[names]
@@ -274,9 +310,9 @@ class SaidFacts:
 
 
 class _FactRatios:
-    """What k different facts say of all pairs of one scene.
+    """Likelihood ratios of k different facts for all pairs of one scene.
 
-    Kept as likelihood ratios, not as their logarithms: speakers mix and hedges weaken by sums of them.
+    They are kept as ratios instead of logarithms, because speakers and hedges are mixtures.
     """
 
     def __init__(
@@ -294,9 +330,9 @@ class _FactRatios:
             self._fill(subjects, objects, pairs.block(subjects, objects))
 
     def tables(self, share: float, order: NDArray[np.int64] | None = None) -> NDArray[np.float32]:
-        """Return the evidence where ``share`` of facts is meant literally, shape (k, n2, n2), 0 on the diagonals.
+        """Return the evidence if ``share`` of the facts are literal, shape (k, n2, n2), 0 on the diagonals.
 
-        ``order`` (n2,) lists the things as they shall stand.
+        ``order`` (n2,) is the order of the things in the result.
         """
         n, k, known = len(self.names), len(self.facts.said), self.facts
         tables = empty_tables(k, n)
@@ -319,16 +355,18 @@ class _FactRatios:
         return tables
 
     def _require_time(self, needed: float = 0.0) -> None:
-        """Raise OutOfTimeError at the deadline, or where much more is ``needed`` (seconds) than is left; a scene of one
-        block takes no time worth mentioning."""
+        """Raise OutOfTimeError at the deadline, or where the seconds ``needed`` are far more than the time left.
+
+        A scene of a single block is quick, and never raises.
+        """
         if len(self.names) > SIDE and (self.deadline.passed or needed > FORESEEN_EXCESS * self.deadline.left):
             raise OutOfTimeError(
-                f"the time limit passed before the evidence of {len(self.names)} things was worked out; raise it, or "
+                f"time limit reached before the evidence of {len(self.names)} things was computed; raise it, or "
                 "ground a smaller scene"
             )
 
     def _fill(self, subjects: slice, objects: slice, pairs: PairGeometry) -> None:
-        """Work out the degrees of a block of pairs, and of the same pairs the other way round."""
+        """Compute the likelihood ratios of a block of pairs, and of the reversed pairs."""
         degrees = WordDegrees(pairs, self.facts.models)
         both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
         for rows, columns, some, fitting in both if subjects != objects else both[:1]:
@@ -344,7 +382,7 @@ def literal_degree(
     vocabulary: Relations,
     implied: float = 0.5,
 ) -> Array:
-    """Return degrees by the exact name that each pair bears (-1: none), shape (n2, n2): 1, ``implied`` by it, or 0."""
+    """Return crisp degrees by the exact relation of each pair (-1: none), shape (n2, n2): 1, ``implied``, or 0."""
     best = vocabulary.degrees[[relation.index for relation in relations]].max(axis=0)
     degree = np.where((best > 0) & (best < 1), implied, best) if positive else (best == 0).astype(np.float64)
     result: Array = np.where(names >= 0, degree[names], 0.0)
@@ -363,7 +401,7 @@ def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
 
 
 def hedged(evidence: Array, weight: float) -> Array:
-    """Return the evidence of a fact that holds with probability ``weight`` and otherwise says nothing.
+    """Return the evidence of a fact that holds with probability ``weight`` and is ignored otherwise.
 
     >>> hedged(np.array([3.0, -3.0]), 1.0).tolist(), hedged(np.array([3.0, -3.0]), 0.8).round(2).tolist()
     ([3.0, -3.0], [2.79, -1.43])
@@ -371,7 +409,7 @@ def hedged(evidence: Array, weight: float) -> Array:
     Raises SettingError for a weight that is not above 0 and at most 1.
     """
     if not 0 < weight <= 1:
-        raise SettingError(f"a fact weighs above 0 and at most 1, not {weight:g}")
+        raise SettingError(f"the weight of a fact must be above 0 and at most 1, got {weight:g}")
     if weight == 1:
         return evidence
     result: Array = np.logaddexp(evidence + np.log(weight), np.log1p(-weight))
@@ -379,10 +417,10 @@ def hedged(evidence: Array, weight: float) -> Array:
 
 
 def crisp_tables(description: RelationGraph, names: NDArray[np.integer]) -> FactTables:
-    """Return the crisp reading as the special case: 1, 0.5 or 0 by the pair's exact name, times the weight.
+    """Return tables of the crisp reading: 1, 0.5 or 0 by the pair's exact relation, times the weight of the fact.
 
-    ``names`` (n2, n2): relation indices, -1 on the diagonal, as
-    :class:`deixis.reasoning.geometry.rectangle.SceneRelations` has.
+    ``names`` (n2, n2) are indices of relations, -1 on the diagonal, as in
+    :class:`deixis.reasoning.geometry.rectangle.SceneRelations`.
     """
     vocabulary = description.vocabulary
     edges = np.flatnonzero(description.subjects != description.objects)

@@ -1,14 +1,14 @@
-"""Labels: which objects of a description the labels of perceived things name.
+"""Labels: find the objects of a description that the labels of perceived things name.
 
-The maximum matching is scipy's. The same with networkx (Hopcroft-Karp and a search along alternating paths) takes 2, 10
-and 20 times as long for 12, 100 and 500 rows, and importing it 0.14 s more.
-
-A label names the object that bears it as its name (``wine_glass`` names ``wine_glass_1``), else every object of a kind
-that the label stands for. A narrower label names the broader objects, too: a dinner fork is a fork. But who is called
-by name comes first: where a thing is called plain fork, the dinner fork beside it is not the one fork of a script, and
-where a script has a dinner fork, what is called so is no other fork of it. Only what names leave over is named so, on
-both sides: of two dinner forks, one can be the fork. What all that weighs:
+A label names the object that has it as its name (``wine_glass`` names ``wine_glass_1``), otherwise every object of the
+label's kind. A narrower label also names broader objects: a dinner fork is a fork. Exact names take precedence: where
+one thing has the label *fork*, a dinner fork beside it is not the only fork of a script; where a script has a dinner
+fork, a thing with that label is not another fork of the script. Broader objects get only what exact names leave over,
+on both sides: of two dinner forks, one can be the fork. The evidence of a name is computed by
 :func:`deixis.reasoning.grounding.evidence.unary.label_ratios`.
+
+The maximum matching is scipy's. With networkx (Hopcroft-Karp and a search along alternating paths) it takes 2, 10 and
+20 times as long for 12, 100 and 500 rows, and the import takes 0.14 s more.
 """
 
 from __future__ import annotations
@@ -26,10 +26,9 @@ from deixis.ontology.triples import category_iri
 
 
 def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which rows some largest matching leaves over, shape (n,), of the ``pairs`` that may be matched, shape (n,
-    m).
+    """Return the mask (n,) of rows that at least one maximum matching of the allowed ``pairs`` (n, m) leaves over.
 
-    From one largest matching, all others are reached by alternating paths from what it leaves over (Dulmage and
+    All maximum matchings are reached from one of them by alternating paths from its unmatched rows (Dulmage and
     Mendelsohn 1958).
 
     >>> spare_rows(np.array([[1, 0], [1, 0], [0, 1], [0, 0]], bool)).tolist()
@@ -52,7 +51,7 @@ def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A name that perception gives a thing, right with probability ``confidence`` (0 to 1; 1 is certain)."""
+    """Name that perception gives to a thing, with the probability ``confidence`` in [0, 1] that it is right."""
 
     text: str
     confidence: float = 1.0
@@ -60,10 +59,15 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class Naming:
-    """Which of n1 objects the labels of n2 things name, shape (n1, n2).
+    """Objects that labels name.
 
-    Of those that are ``named``, an object is ``fitted`` where whatever the label says is such an object: called by its
-    name, or of its kind or a narrower one. A broader label names objects (cutlery: the fork) that it does not fit.
+    Attributes
+    ----------
+    named
+        Mask (n1, n2) of the objects that the label of each thing names.
+    fitted
+        Mask (n1, n2) of the named objects that the label fits: it is the object's name, its kind or a narrower kind. A
+        broader label (*cutlery*) names objects (the fork) that it does not fit.
     """
 
     named: NDArray[np.bool_]
@@ -71,7 +75,7 @@ class Naming:
 
 
 def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Naming:
-    """Return what the labels of all things of a scene name, one label (or None) a thing."""
+    """Return the objects that the labels of all things of a scene name, with one label or None per thing."""
     said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
     nothing = np.zeros(len(description.nodes), dtype=bool)
     texts = {
@@ -95,8 +99,7 @@ def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Ki
 
 
 def _columns(description: RelationGraph, label: str, kinds: Kinds) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return which objects a label by itself names, by name or as the broader word; and which it fits; each of shape
-    (n1,)."""
+    """Return masks (n1,) of the objects that a single label names, by name or as a broader word, and that it fits."""
     called, kind = objects_called(description, label), kinds.of_word(label)
     bare, k = plain_name(label), kinds.of_word(plain_name(label))
     found = []
@@ -113,8 +116,7 @@ def _columns(description: RelationGraph, label: str, kinds: Kinds) -> tuple[NDAr
 
 
 def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
-    """Return which objects bear a name, or a number of it: ``wine_glass`` calls ``wine_glass_1`` and
-    ``wine_glass_2``."""
+    """Return the mask (n1,) of objects with a name, or else with it and a number: ``wine_glass``, ``wine_glass_1``."""
     plain = _plain(name)
     same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
@@ -123,8 +125,7 @@ def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
 
 
 def category_of(name: str) -> str:
-    """Return the class of things that bear a name, with whatever number: the category that is learned where it is no
-    kind's.
+    """Return the category, as a class IRI, of things with a name (without its number) that is not a known kind.
 
     >>> category_of("fish_knife_2") == category_of("Fish knife")
     True
@@ -133,7 +134,7 @@ def category_of(name: str) -> str:
 
 
 def classes(description: RelationGraph) -> tuple[str, ...]:
-    """Return the class of each object of a description, an IRI: its kind, else the category of its name."""
+    """Return the class IRI of each object of a description: its kind, else the category of its name."""
     return tuple(kind or category_of(node) for kind, node in zip(_kinds(description), description.nodes, strict=True))
 
 

@@ -1,10 +1,10 @@
-"""How literally a description is meant, judged from the description itself.
+"""Estimate how literally a description is meant, from the description itself.
 
-People say *left of* where a list of names would say *top left of*; a program, or somebody who copies names from a plan,
-says the name. Which of the two speaks is seen by how well the best map does for either (empirical Bayes, Robbins 1956):
-what facts weigh is a likelihood ratio against the same chance for both, so the values of their best maps can be
-compared, and the difference adds to the log-odds of a literal speaker. What nothing makes true literally is not meant
-so; a few facts that a scene happens to satisfy do not say much, and the answer stays near the prior.
+People say *left of* where the exact relation is *top left of*; a program, or a person who copies relations from a plan,
+states the exact relation. The best maps under both assumptions show which speaker is likelier (empirical Bayes, Robbins
+1956): the evidence of facts is a likelihood ratio against the same chance for both, so that the values of the best maps
+can be compared, and their difference is added to the log-odds of a literal speaker. If no map makes the facts literally
+true, they are not meant literally; a few facts that a scene satisfies by chance leave the estimate near the prior.
 """
 
 from __future__ import annotations
@@ -21,29 +21,37 @@ from deixis.reasoning.grounding.matching.problem import Problem
 Order = NDArray[np.int64]
 
 LITERAL = 0.9
-"""The share of facts that a literal speaker means literally; of all others none is."""
+"""Share of the facts of a literal speaker that are meant literally; a graded speaker means none literally."""
 
 LITERAL_PRIOR = 0.2
-"""How many speakers are taken to be literal before they are heard: one in five."""
+"""Prior probability that a speaker is literal."""
 
 SEARCH_EFFORT, FULL_EFFORT_OBJECTS = 0.05, 30
-"""The scalable search's effort for a judgement, up to so many objects; in larger descriptions, the less for each."""
+"""Effort of the scalable search up to this number of objects; larger descriptions get less effort per object."""
 
 MAX_PROVED_OBJECTS = 8
-"""Objects up to which proving the best map takes less time than a search."""
+"""Maximum number of objects for which proving the best map takes less time than the scalable search."""
 
 MAX_JUDGED_OBJECTS = 60
-"""Of larger descriptions a connected part of so many objects is judged."""
+"""Maximum number of objects for the estimate; of a larger description, a connected part is used."""
 
 
 def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline = Deadline.never()) -> float:
-    """Return the share of facts to be taken literally: that of a literal speaker times the probability that one speaks.
+    """Return the expected share of literal facts: ``LITERAL`` times the probability that the speaker is literal.
 
-    ``either`` are the same problem with the facts of a graded and of a literal speaker, one after the other, so that
-    both need not be held at once. ``objects`` (n1,) lists one side in an order that does not depend on how it was
-    given, and the problems' things stand in such an order: the search is one, and its result is then the same for the
-    same scene. Past the ``deadline`` it is what is taken before anybody is heard.
+    Parameters
+    ----------
+    either
+        The problem with the facts of a graded speaker, then that of a literal speaker; an iterator needs to hold only
+        one of them at a time. Their things must be in an order that does not depend on the input.
+    objects
+        Order of the objects that does not depend on the input, shape (n1,), so that the search always has the same
+        result.
+    deadline
+        Time after which the prior share is returned.
 
+    Examples
+    --------
     >>> there, order = np.array([[[0, 1], [0, 0]]], np.float32), np.arange(2)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), there, np.zeros((2, 2)), np.full(2, -9.0))
     >>> round(literal_share((problem, replace(problem, tables=3 * there)), order), 2)
@@ -60,7 +68,7 @@ def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline 
 
 
 def _part(problem: Problem, order: Order) -> Problem:
-    """Return the problem with its objects in that order, or a connected part of it, and its facts sorted."""
+    """Return the problem with its objects in ``order``, or a connected part of it, and its facts sorted."""
     chosen = _connected(problem.ends, order) if len(order) > MAX_JUDGED_OBJECTS else order
     place = np.full(len(order), -1)
     place[chosen] = np.arange(len(chosen))
@@ -79,8 +87,7 @@ def _part(problem: Problem, order: Order) -> Problem:
 
 
 def _connected(ends: NDArray[np.int64], order: Order) -> Order:
-    """Return the first ``MAX_JUDGED_OBJECTS`` objects that facts lead to, breadth first, from the one that has most
-    facts."""
+    """Return the first ``MAX_JUDGED_OBJECTS`` objects of a breadth-first search from the object with most facts."""
     near: dict[int, list[int]] = {i: [] for i in order.tolist()}
     for a, b in ends.tolist():
         near[a].append(b)
@@ -98,7 +105,7 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
 
 
 def _best_value(problem: Problem, deadline: Deadline) -> float:
-    """Return what the best map is worth; of many objects about, by a short search."""
+    """Return the value of the best map; for many objects, an estimate by a short search."""
     from deixis.reasoning.grounding.matching.exact import exact
     from deixis.reasoning.grounding.matching.scalable import scalable
 

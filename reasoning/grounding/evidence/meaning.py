@@ -1,10 +1,11 @@
-"""Meanings in force: graded models of relation words (shipped or learned), sizes of kinds, and weights of evidence.
+"""Meanings of words: graded models of relation words (shipped or learned), sizes of kinds, and weights of evidence.
 
-One rule makes every term: 1 at the prototype, a half at the border to the neighbouring word, a twentieth at the other
-extreme. Where the prototype and the border lie is said beside each term. Directions fall off by angle as a von Mises
-density does; the order of edges is that of semi-intervals (Freksa 1992): *clear* of the object is the prototype, the
-same order of starts and of ends the neighbourhood. Which of two things is the subject follows Talmy (1978): the
-reference object is the larger one; it is chosen by size (Luce's rule), so that a pair's degree is b / (a + b).
+All terms follow one rule: 1 at the prototype, one half at the border to the neighbouring word, one twentieth at the
+other extreme. A comment beside each term tells where the prototype and the border are. Directions fall off with the
+angle like a von Mises density. The order of edges is that of semi-intervals (Freksa 1992): the prototype is *clear* of
+the object, and its neighbourhood is the same order of starts and of ends. The choice of the subject of a pair follows
+Talmy (1978): the reference object is the larger one. It is chosen by size (Luce's rule), so that the degree of a pair
+of sizes a and b is b / (a + b).
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from deixis.reasoning.grounding.evidence.unary import UnaryWeights
 
 BORDER, EXTREME = float(np.log(0.5)), float(np.log(0.05))
 OUTLIERS = 0.01
-"""Share of facts that are said of a pair whatever it is like: no fact speaks more than ln 100 against its best pair."""
+"""Share of facts that are stated independently of the pair, which limits the evidence of a fact to ln 100 nats against
+any pair."""
 
 CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 0.028, SAYING: 0.303}
 """Mean degrees of ordered pairs of random boxes: :func:`deixis.reasoning.grounding.fitting.fit.random_scenes`, seed
@@ -29,43 +31,42 @@ CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 
 
 
 def falling_with_angle(half: float) -> Term:
-    """Return ``deviation``: exp(k (cos a - 1)), a half at ``half`` radians."""
+    """Return the term of ``deviation``: exp(k (cos a - 1)), one half at ``half`` radians."""
     angles = np.radians([0.0, 22.5, 45.0, 67.5, 90.0, 135.0, 180.0])
     values = BORDER * (1 - np.cos(angles)) / (1 - np.cos(half))
     return Term("deviation", tuple(angles.tolist()), tuple(np.maximum(values, 2 * EXTREME).tolist()), Trend.FALLING)
 
 
 def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
-    """Return the terms of a direction word whose neighbours' borders lie ``half`` radians off."""
+    """Return the terms of a direction word whose borders to its neighbours are ``half`` radians from its axis."""
     beside = (BORDER, 0.0) if abreast is Trend.RISING else (0.0, BORDER)
     return (
         falling_with_angle(half),
-        # clear of the object; half where they overlap by a mean size; wholly past it the wrong way
+        # prototype: clear of the object; one half: they overlap by a mean size; extreme: entirely on the other side
         Term("clear", (-1.0, -0.5, 0.0, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
-        # both ends farther along, by a quarter of the mean size; half where two starts or two ends are level
+        # prototype: both ends farther along, by a quarter of the mean size; one half: two starts or two ends are level
         Term("trail", (-1.0, 0.0, 0.2, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
-        # within the other's breadth, or (diagonals) beyond it
+        # prototype: within the breadth of the other, or (diagonals) beyond it
         Term("abreast", (0.0, 1.0), beside, abreast),
-        # touching; half at a gap of twice the mean size
+        # prototype: touching; one half: a gap of twice the mean size
         Term("gap", (0.0, 2 / 3, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING),
     )
 
 
 def support_terms() -> tuple[Term, ...]:
-    """Return the terms of ``on``: within the bearer's outline, its foot there, and higher where heights are known."""
+    """Return the terms of ``on``: within the object's outline, the foot on it, and higher where heights are known."""
     return (
         Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
-        # what reaches below its bearer is not borne: half at a quarter of the depth; what reaches above may stand on it
+        # a thing that extends below the object is not on it: one half at a quarter of the depth; above, it may stand
         Term("foot", (-0.5, -0.25, 0.0, 1.0, 1.5, 2.0), (EXTREME, BORDER, 0.0, 0.0, BORDER, EXTREME)),
-        # things in contact touch from wherever they are seen: half at a ninth of the mean size, the extreme at a third
+        # things in contact touch in every view: one half at a ninth of the mean size, the extreme at a third
         Term("gap", (0.0, 0.1, 0.25), (0.0, BORDER, EXTREME), Trend.FALLING),
         Term("rise", (-1.0, 0.0, 0.2, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
     )
 
 
 def saying_terms() -> tuple[Term, ...]:
-    """Return which pairs are spoken of: neighbours, three times as readily as the farthest; the larger as the
-    reference."""
+    """Return the terms of ``saying``: neighbours three times as often as the farthest, the larger as the reference."""
     sizes = np.linspace(-1.0, 1.0, 9)
     chosen = np.log(np.maximum((1 + sizes) / 2, 0.05))
     return (
@@ -76,7 +77,7 @@ def saying_terms() -> tuple[Term, ...]:
 
 @lru_cache(maxsize=1)
 def shipped_models() -> RelationModels:
-    """Return the models of all ten words, and of what is spoken of.
+    """Return the shipped models of all ten words, and of the pairs that people mention.
 
     >>> [term.feature for term in shipped_models()["support"].terms]
     ['across', 'foot', 'gap', 'rise']
@@ -94,10 +95,18 @@ def shipped_models() -> RelationModels:
 
 @dataclass(frozen=True, eq=False)
 class Meaning:
-    """What grounding goes by beside the script and the scene; the default is what is shipped.
+    """Models of words and sizes, and weights of evidence; by default, the shipped ones.
 
-    ``models`` are those of the relation words (None: the shipped ones); ``sizes``, by class IRI, take the place of the
-    usual sizes of the TBox. ``graded`` False takes words literally: a pair bears the word's name, implies it, or not.
+    Attributes
+    ----------
+    models
+        Models of the relation words; None for the shipped ones.
+    sizes
+        Learned sizes by class IRI, used instead of the usual sizes of the ontology.
+    graded
+        False to read words literally: the exact relation of a pair is the word, implies it, or neither.
+    weights
+        Factors of labels, sizes and colours.
     """
 
     models: RelationModels | None = None
@@ -107,6 +116,7 @@ class Meaning:
 
 
 LITERAL = Meaning(graded=False)
-"""Crisp words, and all the rest as shipped."""
+"""Literal words, with the shipped sizes and weights."""
 
 SHIPPED = Meaning()
+"""Shipped models, sizes and weights."""

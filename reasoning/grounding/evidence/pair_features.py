@@ -1,7 +1,7 @@
-"""A pair of boxes as a word looks at it: features in the word's own frame.
+"""Features of pairs of boxes in the frame of a relation word.
 
-*Left* looks along -x, *top left* along both -x and y; what is found is named the same for all, so that words that
-mirror each other share a model, and an inverse looks at the exchanged pair and sees the same.
+The axis of *left* is -x, those of *top left* are -x and y. The features have the same names for all words, so that
+words that mirror each other share a model, and an inverse has the features of the exchanged pair.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ HEADINGS = {
 }
 
 MIN_DIRECTION_OFFSET = 0.5
-"""Offset below which a direction counts for less and less: boxes with one centre lie in no direction (90 degrees)."""
+"""Offset of centres below which a direction is weakened: boxes with the same centre have a deviation of 90 degrees."""
 
 
 def view(pairs: PairGeometry, word: str) -> View:
-    """Return the features of every ordered pair for a word of the ten, or for ``saying``; arrays of shape (n, n).
+    """Return the features of every ordered pair for one of the ten words, or for ``saying``; arrays of shape (n, n).
 
-    Of a direction: ``deviation`` (radians from where the word points), ``clear`` (how far the near edges are apart),
-    ``trail`` and ``lead`` (which is less, which more far along: the starts or the ends of the boxes), ``forward`` and
-    ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the
-    other covers), ``gap``, ``alike`` (difference of sizes). Of support: see :func:`_support`. Of saying: ``crowd`` and
-    ``figure``.
+    Features of a direction: ``deviation`` (radians from the direction of the word), ``clear`` (distance of the near
+    edges), ``trail`` and ``lead`` (the lesser and the greater of the offsets of starts and ends), ``forward`` and
+    ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the other covers),
+    ``gap``, ``alike`` (difference of sizes). Features of support: see :func:`_support`. Features of saying: ``crowd``
+    and ``figure``.
     """
     if word == "saying":
         return {"crowd": pairs.crowd, "figure": pairs.smaller}
@@ -88,7 +88,7 @@ def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
 
 
 class _Features(Mapping[str, Array]):
-    """Features that are worked out when they are looked at; most models look at few of them."""
+    """Features that are computed on access; most models use few of them."""
 
     def __init__(self, features: Mapping[str, Callable[[], Array]]) -> None:
         self._features = features
@@ -107,7 +107,7 @@ class _Features(Mapping[str, Array]):
 
 
 def _clear(pairs: PairGeometry, axis: int, sign: int) -> Array:
-    """Return the features of near edges along one axis."""
+    """Return the distances of the near edges along one axis."""
     return _along(pairs, 0, axis, sign)
 
 
@@ -117,12 +117,12 @@ def _trail(pairs: PairGeometry, axis: int, sign: int) -> Array:
 
 
 def _lead(pairs: PairGeometry, axis: int, sign: int) -> Array:
-    """Return the greater of the two."""
+    """Return the greater of the offsets of starts and ends."""
     return np.maximum(_along(pairs, 1, axis, sign), _along(pairs, 2, axis, sign))
 
 
 def _along(pairs: PairGeometry, edge: int, axis: int, sign: int) -> Array:
-    """Return the distances of an edge along one axis, or, against it, those of the pairs the other way round."""
+    """Return the distances of an edge along one axis; against the axis, those of the reversed pairs."""
     if sign < 0:
         return pairs.reverse.edges[edge, :, :, axis].T
     distances: Array = pairs.edges[edge, :, :, axis]
@@ -130,12 +130,12 @@ def _along(pairs: PairGeometry, edge: int, axis: int, sign: int) -> Array:
 
 
 def _support(pairs: PairGeometry) -> View:
-    """Return how the subject lies on the object.
+    """Return the features of a subject that lies on an object.
 
-    ``across`` and ``along``: shares of its extents on x and y within the object's; ``bears`` and
-    ``spans``: shares of the object's within its own; ``foot`` and, with heights, ``rise``: see the geometry; ``rest``:
-    its lower edge less the object's upper one; ``upper`` and ``lower``: less the edge of the same side;
-    ``level``: offset on y; ``gap``.
+    ``across`` and ``along``: shares of the subject's extents on x and y within the object's; ``bears`` and
+    ``spans``: shares of the object's extents within the subject's. ``foot`` and, with heights, ``rise``: see the
+    geometry. ``rest``: the subject's lower edge minus the object's upper edge; ``upper`` and ``lower``: minus the
+    edge of the same side. ``level``: offset on y. ``gap``: distance of the boxes.
     """
     found = {
         "across": pairs.inside[:, :, 0],

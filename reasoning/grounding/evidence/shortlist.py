@@ -1,17 +1,17 @@
-"""The few things of a large scene that the objects of a short description may be, without comparing all pairs.
+"""Shortlist of the things of a large scene that the objects of a short description may be, without comparing all pairs.
 
-Facts are weighed for pairs of candidates only, a block for each fact, and what things are by themselves (labels, sizes,
-colours) says who is a candidate. Messages between facts, objects and things (belief propagation; see
-:mod:`deixis.reasoning.grounding.matching.belief_propagation`) then say about how probable each candidate is.
+Labels, sizes and colours select the candidates of each object. Each fact is compared with the pairs of its objects'
+candidates only, which are its block. Messages between facts, objects and things (belief propagation; see
+:mod:`deixis.reasoning.grounding.matching.belief_propagation`) then give approximate probabilities of the candidates.
 
-1. Facts are taken in the order of their blocks, the smallest first. After each few, candidates that have become all but
-   impossible are dropped, so that later blocks are smaller: an object of which nothing is known but that it lies beside
-   one with a label is compared with what that may be.
-2. By one message more from the likeliest candidates, every thing of the scene is weighed, whatever its label says: what
-   facts speak for comes back.
-3. The shortlist holds what is left by probability; how much of the beliefs is not on it is part of the answer.
+1. Facts are processed in the order of the size of their blocks, the smallest first. Between groups of facts, candidates
+   that have become almost impossible are dropped, so that later blocks are smaller: an object of which only its
+   position beside a labelled object is known is compared with the candidates of that object.
+2. One more message from the likeliest candidates is sent to every thing of the scene, whatever its label, so that
+   things that facts support return.
+3. The shortlist holds the most probable things; the probability of the other things is part of the answer.
 
-Memory grows with the sum of the blocks, time with that and with the things by facts.
+Memory grows with the sum of the blocks; time grows with that sum, and with the number of things times facts.
 """
 
 from __future__ import annotations
@@ -39,54 +39,55 @@ Array = NDArray[np.float64]
 Things = NDArray[np.int64]
 
 CANDIDATE_MARGIN = 6.0
-"""Nats by which a thing may speak less for itself than the best thing of an object and still be a candidate."""
+"""Maximum difference in nats between the unary evidence of a candidate and that of the object's best thing."""
 
 DROPPED, BEAM, HELD = 1e-4, 150, 0.5
-"""Belief of all candidates of an object together that are dropped at a time, on the way; how many are kept where they
-hold so much of it, the others being looked at again in the end."""
+"""Total belief of the candidates of an object that are dropped at a time; maximum number of candidates that are kept,
+if they have at least the third share of the belief (the others return in the last step)."""
 
 STAGE_CELLS, MAX_CELLS = 1_000_000, 8_000_000
-"""Pairs of the facts that are weighed before candidates are dropped again, unless one fact has more; and pairs of all
-facts at the most: those with most pairs, which tell least apart, are left for the end."""
+"""Number of pairs compared before candidates are dropped again, unless one fact has more; and the maximum number of
+pairs of all facts: the facts with most pairs, which discriminate least, are left for the end."""
 
 CELLS_PER_SECOND, FIRST_SHARE, SECOND_SHARE = 3e6, 0.3, 0.15
-"""Pairs of candidates that are weighed in a second, about, and the shares of the time left for the first round of
-messages, and for each of the steps that follow."""
+"""Approximate number of pairs of candidates compared per second; shares of the time left for the first round of
+messages, and for each of the later steps."""
 
 ROWS_AT_ONCE, CELLS_AT_ONCE = 256, 1 << 16
-"""Candidates of the subject, and pairs, that are weighed at a time: small enough for a processor's cache."""
+"""Number of the subject's candidates, and of pairs, compared at a time: small enough for a processor's cache."""
 
 MAX_SURROUNDED = 5000
-"""Things of which it is worked out how crowded they are; of more at a time, the other side of a pair tells it."""
+"""Maximum number of things whose surroundings are computed at a time; otherwise those of the other end of a pair are
+used."""
 
 BYTES_PER_CELL = 8
-"""Of a pair of candidates by fact: its ratio, and what is at work beside it."""
+"""Bytes per pair of candidates and fact: the ratio, and temporary arrays."""
 
 LIKELIEST, FEW = 12, 3
-"""Candidates of an object by which all its candidates are weighed anew, and every thing of the scene; and how many of
-each are on the shortlist at least."""
+"""Number of likeliest candidates of an object that send messages to all candidates of another object, and to every
+thing of the scene; the first is also the minimum number of each object's things on the shortlist."""
 
 TOLERANCES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
-"""Beliefs that an object's things that are not on the shortlist may have together: the first for which it fits."""
+"""Maximum total belief of an object's things that are not on the shortlist; the first value for which the list is
+short enough is used."""
 
 TELLING = 0.2
-"""Belief that the likeliest candidates of an object have together, at least, where facts tell of others by them."""
+"""Minimum total belief of the likeliest candidates of an object that send messages through a fact."""
 
 STEPS, SETTLED, DAMPING = 40, 1e-3, 0.3
-"""Steps of messages at most, the change at which they end, and the share of a message that stays as it was."""
+"""Maximum number of steps of messages, change of beliefs at convergence, and share of the old message that is kept."""
 
 MAX_ODDS = 1e8
+"""Maximum odds of a match in a message."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shortlist:
-    """``things`` (k,), rising: those worth a look; ``outside`` (n1,): about how probable it is that an object is none
-    of them and not absent either; ``unused`` facts were weighed only beside the likeliest candidates, for want of time
-    or memory."""
+    """The most likely things for n1 objects."""
 
-    things: Things
-    outside: Array
-    unused: int
+    things: Things  # (k,) indices in rising order
+    outside: Array  # (n1,) approximate probability that the object is another thing
+    unused: int  # facts compared with the likeliest candidates only, because of the limits of time and memory
 
 
 def shortlist(
@@ -99,29 +100,29 @@ def shortlist(
     gigabytes: float,
     deadline: Deadline = Deadline.never(),
 ) -> Shortlist:
-    """Return which of n2 things are worth a look for n1 objects, ``most`` of them at the most.
+    """Return the most likely things of n2 for n1 objects.
 
     Parameters
     ----------
     description
         The objects and the facts.
     boxes, ranks
-        All things (n2, 2, d), and the order of their names (n2,).
+        Boxes of all things, shape (n2, 2, d), and the ranks of their names, shape (n2,).
     alone
-        The problem without facts: what speaks for each thing by itself.
+        Matching problem without facts: labels, sizes and colours.
     meaning
-        How words are taken.
+        Models of words, and weights of evidence.
     most
-        Length of the list at the most.
+        Maximum length of the list.
     gigabytes
-        Memory that pairs of candidates may take.
+        Memory for the pairs of candidates, in units of 10^9 bytes.
     deadline
-        When it has to be done.
+        End of the time limit.
 
     Raises
     ------
     OutOfMemoryError, OutOfTimeError
-        Where what is known of things by themselves leaves too many pairs of candidates.
+        Labels, sizes and colours leave too many pairs of candidates.
     """
     weighing = _Weighing(description, boxes, ranks, meaning, deadline)
     close, everything = _candidates(alone), np.arange(len(boxes))
@@ -140,8 +141,7 @@ def shortlist(
 def _staged(
     weighing: _Weighing, candidates: list[Things], alone: Problem, gigabytes: float, deadline: Deadline
 ) -> tuple[_Messages, list[int]]:
-    """Return what facts make of the candidates, taken in the order of their pairs, and the facts left for want of time
-    or memory."""
+    """Return the messages after all affordable facts, those with the fewest pairs first, and the other facts."""
     messages, waiting, weighed = _Messages(candidates, alone), list(range(len(weighing.ends))), 0
     while waiting:
         now, in_memory = 0, gigabytes * 1e9 / BYTES_PER_CELL - messages.held_cells()
@@ -165,9 +165,9 @@ def _staged(
 
 
 def _with_rest(found: Array, before: Array, again: list[Things]) -> Array:
-    """Return beliefs (n1, n2 + 1) in which the candidates that were left out the second time have what they had.
+    """Return beliefs (n1, n2 + 1) in which candidates that the second round left out keep their earlier beliefs.
 
-    Where an object's likeliest candidates do not hold most of what was believed, the others are not to be forgotten.
+    They matter where the likeliest candidates of an object do not have most of its belief.
     """
     rest = before.copy()
     rest[:, -1] = 0.0
@@ -179,7 +179,7 @@ def _with_rest(found: Array, before: Array, again: list[Things]) -> Array:
 
 
 def _candidates(alone: Problem) -> list[Things]:
-    """Return the things of each object that speak for themselves about as well as the best."""
+    """Return the things of each object whose unary evidence is near that of the best thing."""
     found = []
     for row, allowed in zip(alone.unary, alone.allowed, strict=True):
         best = row.max(where=allowed, initial=-np.inf)
@@ -188,24 +188,24 @@ def _candidates(alone: Problem) -> list[Things]:
 
 
 def _refuse(weighing: _Weighing, messages: _Messages, things: int, gigabytes: float) -> None:
-    """Raise an error where not one fact can be used: nothing then tells which things are worth a look."""
+    """Raise an error where not one fact can be used, so that no thing is likelier than another."""
     if weighing.deadline.passed:
-        raise OutOfTimeError(f"the time limit passed before {things} things were compared; raise it, or look at fewer")
+        raise OutOfTimeError(f"time limit reached before {things} things were compared; raise it, or pass fewer things")
     cells = min(messages.cells(ends) for ends in weighing.ends)
-    known = f"what labels and sizes tell leaves {cells:,} pairs of {things} things to compare for each fact"
+    known = f"labels and sizes leave {cells:,} pairs of {things} things to compare for each fact"
     needed = BYTES_PER_CELL * cells / 1e9
     if needed > gigabytes:
         raise OutOfMemoryError(
-            f"{known}, which takes about {needed:.1f} GB: raise the memory limit (--memory-limit), or label more things"
+            f"{known}, which takes about {needed:.1f} GB; raise the memory limit (--memory-limit), or label more things"
         )
     raise OutOfTimeError(
-        f"{known}, which takes about {cells / weighing.cells_per_second:.0f} s: raise the time limit (--time-limit), "
+        f"{known}, which takes about {cells / weighing.cells_per_second:.0f} s; raise the time limit (--time-limit), "
         "or label more things"
     )
 
 
 class _Weighing:
-    """The likelihood ratios of facts for any pairs of things, worked out when they are asked for."""
+    """Likelihood ratios of facts for any pairs of things, computed on demand."""
 
     def __init__(
         self, description: RelationGraph, boxes: Array, ranks: Things, meaning: Meaning, deadline: Deadline
@@ -214,19 +214,19 @@ class _Weighing:
         self.boxes, self.ranks, self.vocabulary, self.deadline = boxes, ranks, description.vocabulary, deadline
         self.graded, self.distinct = meaning.graded, distinct
         self.facts = SaidFacts(meaning.models or shipped_models(), description.vocabulary, True, distinct)
-        self.distances = np.zeros((0, 0), np.float32)  # of things that are known, to others: see Surroundings
+        self.distances = np.zeros((0, 0), np.float32)  # of known things to others, as in Surroundings
         self.known = np.zeros(len(boxes), dtype=bool)
         self.weighed, self.seconds = 0, 0.0
         self.exact = [relation.index for relation in self.vocabulary.of_reading(Reading.EXACT)]
 
     def ratios(self, fact: int, rows: Things, columns: Things) -> NDArray[np.float32]:
-        """Return the likelihood ratio of a fact for each thing of the subject with each of the object, (r, c)."""
+        """Return the likelihood ratios (r, c) of a fact for things of its subject (rows) and its object (columns)."""
         found, started = np.empty((len(rows), len(columns)), np.float32), time.monotonic()
         near, far = self._surroundings(rows), self._surroundings(columns)
         for some, others in _blocks(len(rows), len(columns)):
             if self.deadline.passed:
                 raise OutOfTimeError(
-                    f"the time limit passed while {len(self.boxes)} things were compared; raise it, or look at fewer"
+                    f"time limit reached while {len(self.boxes)} things were compared; raise it, or pass fewer things"
                 )
             found[some, others] = self._block(
                 int(self.kinds[fact]), rows[some], columns[others], near, far, some, others
@@ -237,11 +237,11 @@ class _Weighing:
 
     @property
     def cells_per_second(self) -> float:
-        """How many pairs are weighed in a second: a guess, and what was seen so far, on a busy machine, too."""
+        """Number of pairs compared per second: a prior guess combined with the measurements so far."""
         return (self.weighed + CELLS_PER_SECOND) / (self.seconds + 1.0)
 
     def _surroundings(self, things: Things) -> Surroundings:
-        """Return the surroundings of some things, which are worked out once; of all things none are."""
+        """Return the surroundings of things, which are cached; empty ones for more than ``MAX_SURROUNDED`` things."""
         if not self.graded or len(things) > MAX_SURROUNDED:
             return Surroundings(self.boxes[things], np.zeros((len(things), 0), np.float32))
         if not len(self.distances):
@@ -283,17 +283,16 @@ def _blocks(rows: int, columns: int) -> Iterator[tuple[slice, slice]]:
 
 @dataclass
 class _Link:
-    """A fact: its two objects, the ratios of their candidates, and what it last told either of them, the last entry of
-    its being absent."""
+    """A fact between two objects, with its last messages."""
 
     fact: int
-    ends: tuple[int, int]
-    ratios: NDArray[np.float32]
-    told: list[Array]
+    ends: tuple[int, int]  # subject and object
+    ratios: NDArray[np.float32]  # (r, c) likelihood ratios of their candidates
+    told: list[Array]  # log messages to the two ends, for each candidate and, last, for absence
 
 
 class _Messages:
-    """Beliefs of n1 objects about their candidates, by what facts and things tell them."""
+    """Belief propagation between n1 objects, facts and things, over the objects' candidates."""
 
     def __init__(self, candidates: list[Things], alone: Problem) -> None:
         self.candidates = candidates
@@ -305,20 +304,20 @@ class _Messages:
         self.demand = [np.zeros(len(things) + 1) for things in candidates]
 
     def cells(self, ends: NDArray[np.int64]) -> int:
-        """Return how many pairs of candidates a fact has."""
+        """Return the number of pairs of candidates of a fact between two objects."""
         return len(self.candidates[int(ends[0])]) * len(self.candidates[int(ends[1])])
 
     def held_cells(self) -> int:
-        """Return how many pairs are held."""
+        """Return the number of pairs in memory."""
         return sum(link.ratios.size for link in self.links)
 
     def add(self, subject: int, object: int, ratios: NDArray[np.float32], fact: int) -> None:
-        """Take a fact into account from now on."""
+        """Add a fact with its likelihood ratios (r, c)."""
         told = [np.zeros(len(self.candidates[end]) + 1) for end in (subject, object)]
         self.links.append(_Link(fact, (subject, object), ratios, told))
 
     def known(self) -> list[Array]:
-        """Return what each object is told, by itself and by its facts."""
+        """Return the sum of unary evidence and messages of facts, for the candidates and absence of each object."""
         total = [alone.copy() for alone in self.alone]
         for link in self.links:
             for end, told in zip(link.ends, link.told, strict=True):
@@ -326,11 +325,11 @@ class _Messages:
         return total
 
     def beliefs(self) -> list[Array]:
-        """Return about how probable each candidate is; last, absence."""
+        """Return the approximate probability of each object's candidates and, last, of its absence."""
         return [_shares(known + demand) for known, demand in zip(self.known(), self.demand, strict=True)]
 
     def settle(self, deadline: Deadline) -> None:
-        """Exchange messages until beliefs change no more."""
+        """Exchange messages until the beliefs converge, or until the deadline."""
         before = self.beliefs()
         for _ in range(STEPS):
             self._ask_things()
@@ -348,7 +347,7 @@ class _Messages:
             before = after
 
     def _ask_things(self) -> None:
-        """Have every thing tell each object how much the others want it."""
+        """Update the message of every thing to each object: the odds that another object is this thing."""
         wanted, own = np.zeros(self.things), []
         for known, demand, things in zip(self.known(), self.demand, self.candidates, strict=True):
             share = _shares(known + demand)
@@ -361,7 +360,7 @@ class _Messages:
             demand[:-1] = DAMPING * demand[:-1] + (1 - DAMPING) * told
 
     def drop(self) -> None:
-        """Drop the least likely candidates of the objects whose likeliest ones hold most of what is believed."""
+        """Drop the least likely candidates of the objects that have facts."""
         linked = {end for link in self.links for end in link.ends}
         kept = [
             _likeliest(belief[:-1]) if i in linked else np.ones(len(belief) - 1, dtype=bool)
@@ -377,7 +376,7 @@ class _Messages:
 
 
 def _likeliest(belief: Array) -> NDArray[np.bool_]:
-    """Return which candidates are kept (c,): all but ``DROPPED``, and of these ``BEAM`` where they hold ``HELD``."""
+    """Return the mask (c,) of candidates to keep: all except ``DROPPED``; of these, ``BEAM`` if they have ``HELD``."""
     order = np.argsort(-belief, kind="stable")
     sums = np.cumsum(belief[order])
     kept = np.zeros(len(belief), dtype=bool)
@@ -402,7 +401,7 @@ def _shares(logs: Array) -> Array:
 
 
 def _tell(told: Array, by_thing: NDArray[np.float32], weights: NDArray[np.float32]) -> None:
-    """Change what a fact tells an object of its candidates, and of its absence, in place."""
+    """Update the message of a fact to an object, for its candidates and its absence, in place."""
     total = float(weights.sum())
     new = np.append(np.log(np.maximum(by_thing + weights[-1], 1e-30) / total), 0.0)
     told *= DAMPING
@@ -418,11 +417,10 @@ def _extended(
     most: int,
     deadline: Deadline,
 ) -> Array:
-    """Return about how probable it is that each object is each thing in its reach, or absent, shape (n1, n2 + 1).
+    """Return approximate probabilities (n1, n2 + 1) that each object is each thing in its ``reach``, or absent.
 
-    Facts tell of other things than the candidates by the likeliest candidates, ``most`` at the most, of the other
-    object; what the rest of those may be says nothing. So do facts that are ``waiting``, of which no candidates were
-    compared.
+    A fact sends messages to things that are not candidates from at most ``most`` of the likeliest candidates of its
+    other object. So do the facts that are ``waiting``, whose candidates were not compared.
     """
     n1, n2 = alone.unary.shape
     candidates = messages.candidates
@@ -460,7 +458,7 @@ def _extended(
 
 
 def _chosen(beliefs: Array, most: int, unused: int) -> Shortlist:
-    """Return the things that hold all beliefs but a tolerance, the least for which they are few enough."""
+    """Return the things that have all belief except for the least tolerance for which they are at most ``most``."""
     n1, n2 = beliefs.shape[0], beliefs.shape[1] - 1
     order = np.argsort(-beliefs[:, :-1], axis=1, kind="stable")
     sums = np.cumsum(np.take_along_axis(beliefs[:, :-1], order, axis=1), axis=1)

@@ -1,7 +1,7 @@
-"""How large the box around a thing of a kind looks: from above where scenes are measured, from any side in an image.
+"""Distributions of the size of a box around a thing of a kind: from above in measured scenes, from any side in images.
 
-A box is compared by the natural logarithms of its length, the longer side, and of its aspect: shorter by longer side,
-or in an image, where what is up stays up, height by width.
+A box is described by the natural logarithms of its length (the longer side) and its aspect: the shorter over the longer
+side, or in an image, where the vertical is known, height over width.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ TURNED_PRIOR = 0.2
 """Share of things that lie at any angle to the axes; the others lie along one of them."""
 
 ANGLES = np.radians(np.arange(5.0, 46.0, 5.0))
-"""Angles between a thing and the nearest axis, as likely each, by which a box is larger than what is in it."""
+"""Equally likely angles between a turned thing and the nearest axis, in radians."""
 
 HANDLE_SEEN_PRIOR = 0.8
-"""Share of things with a handle whose handle is seen: of the others the thing itself hides it."""
+"""Share of things with a handle whose handle is visible and not hidden by the thing itself."""
 
 MIN_SPREAD = 0.05
-"""Standard deviation of a logarithm below which no range falls: 5 per cent of a length."""
+"""Minimum standard deviation of a logarithm: 5 per cent of a length."""
 
 IMAGE_SPREAD = 0.5
-"""Standard deviation of the logarithm by which an image changes lengths and proportions: what is twice as far looks
-half as large, what is seen from aslant is foreshortened, and what stands behind another is seen in part."""
+"""Standard deviation of the logarithm by which an image changes lengths and proportions: distant things look smaller,
+oblique views are foreshortened, and things may hide parts of other things."""
 
 KINDS_SPREAD = 0.7
 """Standard deviation of the logarithm of usual lengths between kinds of tableware, by the TBox."""
@@ -40,24 +40,21 @@ KINDS_SPREAD = 0.7
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SizeMixture:
-    """A box looks one of k ways, each so often, and is normal around each with the same deviations.
-
-    ``relative``, as for an image: lengths are in units of the median of the scene, and the aspect is height by width.
-    """
+    """Mixture of k normal distributions of log length and log aspect, with common standard deviations."""
 
     centres: Array  # (k, 2): log length, log aspect
     shares: Array  # (k,), sum 1
     spread: Array  # (2,): standard deviations
-    relative: bool = False
+    relative: bool = False  # as for an image: length in units of the scene's median, aspect is height over width
 
     @property
     def length(self) -> float:
-        """The mean of the log length."""
+        """Mean of the log length."""
         return float(self.shares @ self.centres[:, 0])
 
 
 def size_model(usual: SizeRange) -> SizeModel:
-    """Return the model of a usual size: the typical length is the median, least and greatest lie two deviations off.
+    """Return the model of a usual size: its median is the typical length, and its range is two deviations either way.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> ontology = default_ontology()
@@ -74,22 +71,22 @@ def size_model(usual: SizeRange) -> SizeModel:
 
 
 def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:
-    """Return the usual size of a kind (class IRI), None where only that of all things is stated."""
+    """Return the usual size of a kind (class IRI); None where the ontology states only that of all things."""
     usual = sizes.of(kind)
     return None if usual.stated_of == DX.THING else size_model(usual)
 
 
 def from_above(model: SizeModel, reach: float = 0.0) -> SizeMixture:
-    """Return the look of a thing that lies or stands on a table, in the plan; of what images taught, as they showed it.
+    """Return the distribution of sizes in the plan for a thing on a table; a model learned from images is unchanged.
 
-    Of a thing l long and w wide that lies at an angle a, the box is l cos a + w sin a by l sin a + w cos a. A thing
-    about as wide as long is taken to be round, and looks the same however it lies, but for a handle: ``reach`` is how
-    far one stands out, as a share of the length.
+    The box of a thing of length l and width w at an angle a is l cos a + w sin a by l sin a + w cos a. A thing about as
+    wide as long is assumed to be round; its box is the same at every angle, except for a handle that stands out by
+    ``reach``, a share of the length.
     """
     straight = np.array([[model.length[0], model.aspect[0]]])
     spread = np.array([model.length[1], model.aspect[1]])
     if reach and not model.relative:
-        # a round thing whose handle points anywhere, or is not seen
+        # a round thing whose handle points in any direction, or is hidden
         angles = np.concatenate([[0.0], ANGLES])
         along, across = (np.maximum(0.5, (0.5 + reach) * side(angles)) + 0.5 for side in (np.cos, np.sin))
         centres = straight + np.log(np.stack([along, across / along], axis=1))
@@ -106,7 +103,7 @@ def from_above(model: SizeModel, reach: float = 0.0) -> SizeMixture:
 
 
 def in_image_from_above(model: SizeModel) -> SizeMixture:
-    """Return the same in an image, in which a thing lies as well across as along."""
+    """Return the distribution of sizes in an image from above, where things lie across and along equally often."""
     plan = from_above(model)
     if model.relative:
         return plan
@@ -115,10 +112,10 @@ def in_image_from_above(model: SizeModel) -> SizeMixture:
 
 
 def in_image_from_aside(kind: str, model: SizeModel, sizes: Sizes) -> SizeMixture:
-    """Return the look in an image from aside: one of the faces that length, width and height make, as likely each.
+    """Return the distribution of sizes in an image from the side.
 
-    The height is upright. Of a kind whose height is not stated the look is that from above, and of one that was learned
-    from images as they showed it.
+    The faces that length, width and height make are equally likely, and the height is upright. A kind without a
+    stated height, or with a size learned from images, has the distribution of :func:`in_image_from_above`.
     """
     plan, usual = in_image_from_above(model), sizes.of(kind)
     if model.relative or usual.stated_of == DX.THING:
@@ -131,10 +128,10 @@ def in_image_from_aside(kind: str, model: SizeModel, sizes: Sizes) -> SizeMixtur
 
 
 def beside_each_other(known: Mapping[str, SizeMixture], kinds: Sequence[str]) -> dict[str, SizeMixture]:
-    """Return the looks of the kinds of some objects, those in metres made relative to the scene.
+    """Return the size distributions of the objects' kinds, with those in metres made relative to the scene.
 
-    The median of the objects whose size is known stands for that of the scene, the less surely the fewer they are and
-    the more they differ.
+    The median length of the objects with a known size estimates that of the scene. The error of the estimate grows with
+    the spread of the lengths and falls with their number.
     """
     lengths = np.array([known[kind].length for kind in kinds if kind in known and not known[kind].relative])
     if not len(lengths):

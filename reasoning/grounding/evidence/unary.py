@@ -1,8 +1,7 @@
-"""What is known of the things themselves, as log-likelihood ratios against chance: labels, sizes and proportions.
+"""Unary evidence: log-likelihood ratios of labels and sizes against chance, for each object and thing.
 
-Each source of evidence weighs as stated in :class:`UnaryWeights`; all are added up. Densities are mixed with
-``OUTLIERS`` of chance, so that a size never rules a thing out; nor does a label, unless labels are taken to be free of
-error.
+The sources of evidence are multiplied by :class:`UnaryWeights` and added up. Densities are mixed with a share
+``OUTLIERS`` of chance, so that a size never rules a match out. Nor does a label, unless the error of labels is 0.
 """
 
 from __future__ import annotations
@@ -34,34 +33,33 @@ from deixis.reasoning.grounding.evidence.sizes import (
 Array = NDArray[np.float64]
 
 OUTLIERS = 0.05
-"""Share of things whose size says nothing of their kind."""
+"""Share of things whose size is independent of their kind."""
 
 LABEL_ERROR = 0.003
-"""Probability that a label said to be certain is wrong: three in a thousand."""
+"""Probability that a label of confidence 1 is wrong."""
 
 WORLD_COUNT = 20.0
-"""Things as which the world's share of a word counts beside the things of a scene that a description leaves out."""
+"""Number of things that the prior frequency of a word counts as, beside the undescribed things of the scene."""
 
 BROADER_WORD = 0.2
 """Probability that the right label of a thing is a broader word for it: *fork* of a dinner fork."""
 
 OTHER_WORDS = 10_000
-"""Words that label things of no known kind, each as likely: about the nouns that a speaker uses."""
+"""Number of equally likely words for things of no known kind: about the nouns that a speaker uses."""
 
 MAX_HEIGHT_RATIO, HEIGHT_ERROR = 2.0, 0.02
-"""A thing is plainly too high for a kind where it is so many times as high as the highest ones, and so many metres."""
-
+"""Ratio to the greatest usual height, and metres beyond that, from which a thing is too high for a kind."""
 
 MAX_COMPARED, PAIRS_AT_ONCE = 600, 1 << 20
-"""Things up to which all sizes are compared with each other, and pairs of sizes that are held at a time."""
+"""Maximum number of things whose sizes are all compared with each other, and the number of pairs held at a time."""
 
 GRID_STEP, MAX_GRID_SIDE = 0.125, 2000
-"""Step of the grid on which the sizes of more things are counted, in widths of a kernel, and its most points a side."""
+"""Step, in kernel widths, of the grid on which the sizes of more things are counted, and its maximum side in points."""
 
 
 @dataclass(frozen=True, slots=True)
 class UnaryWeights:
-    """By how much labels, sizes and colours are multiplied; 1 takes them at their word, 0 leaves them out."""
+    """Factors of the evidence of labels, sizes and colours: 1 leaves it unchanged, 0 ignores it."""
 
     labels: float = 1.0
     sizes: float = 1.0
@@ -69,15 +67,14 @@ class UnaryWeights:
 
     def __post_init__(self) -> None:
         if not all(0 <= weight < np.inf for weight in (self.labels, self.sizes, self.colours)):
-            raise SettingError("a weight of evidence is finite and at least 0")
+            raise SettingError(f"the weights of evidence must be finite and at least 0, got {self}")
 
 
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
-    """Return natural logarithms of length and aspect of n boxes, shape (n, 2); of nothing's length, a millionth is
-    taken.
+    """Return natural logarithms of length and aspect of n boxes (n, 2, d), shape (n, 2).
 
-    The aspect is the shorter by the longer side. ``relative``, as for an image: lengths are in units of their median,
-    and the aspect is height by width.
+    The aspect is the shorter over the longer side. With ``relative``, as for an image, lengths are in units of their
+    median, and the aspect is height over width. A side of length 0 is replaced by a millionth of the length.
     """
     boxes = np.asarray(boxes, dtype=np.float64)
     require_boxes(boxes)
@@ -98,13 +95,30 @@ def size_evidence(
     learned: Mapping[str, SizeModel] | None = None,
     metric: bool = True,
 ) -> Array:
-    """Return what sizes say of n1 objects of some kinds (class IRIs) being each of n2 boxes, shape (n1, n2), finite.
+    """Return log-likelihood ratios by size of n1 objects being each of n2 boxes.
 
-    A learned model takes the place of the usual size; a kind of which no size is known says nothing. Where units are
-    pixels (not ``metric``), sizes in metres say how large the objects are beside each other, seen from above or from
-    aside, whichever fits the whole scene. Chance is the scene itself: a thing weighs as much as it fits the kind better
-    than the things around do, log n2 at the most, and nothing where all are alike. Heights say only which things are
-    :func:`too_high`.
+    Parameters
+    ----------
+    kinds
+        Kind of each object, as class IRIs.
+    boxes
+        Boxes of the things, shape (n2, 2, d), in metres or pixels.
+    sizes
+        Usual sizes of kinds.
+    learned
+        Learned sizes by class IRI, used instead of the usual sizes.
+    metric
+        Whether the boxes are in metres. In pixels, sizes give the ratios between objects, seen from above or from the
+        side, whichever fits the whole scene.
+
+    Returns
+    -------
+    Array of shape (n1, n2), finite; 0 for a kind without a known size.
+
+    Notes
+    -----
+    Chance is the scene itself: the ratio compares the fit of a thing with that of the things around it. It is at most
+    log n2, and 0 where all things are alike. Heights are used only to find things that are :func:`too_high`.
     """
     known = _known(kinds, sizes, learned)
     if not known or not len(boxes):
@@ -112,7 +126,7 @@ def size_evidence(
     if metric:
         looks = {kind: from_above(model, _reach(kind, sizes, learned)) for kind, model in known.items()}
         return np.where(too_high(kinds, boxes, sizes, learned), np.log(OUTLIERS), _ratios(kinds, boxes, looks))
-    # the mixture of the views, each as likely as the whole scene fits it by its best assignment
+    # a mixture of the views, weighted by the best assignment of the whole scene under each
     views = [_ratios(kinds, boxes, looks) for looks in looks_in_image(kinds, sizes, learned)]
     from scipy.optimize import linear_sum_assignment
 
@@ -128,10 +142,10 @@ def too_high(
     sizes: Sizes,
     learned: Mapping[str, SizeModel] | None = None,
 ) -> NDArray[np.bool_]:
-    """Return which of n2 boxes in metres are plainly higher than things of n1 kinds (class IRIs) usually are, (n1, n2).
+    """Return the mask (n1, n2) of boxes in metres that are much higher than usual for n1 kinds (class IRIs).
 
-    Lower than usual is whatever something else hides in part. Of flat boxes no height is known, and of kinds whose size
-    was learned none is usual.
+    Things that are lower than usual are not excluded, because another thing may hide a part of them. The mask is false
+    for boxes without a height, and for kinds with a learned size.
     """
     if boxes.shape[2] < 3:
         return np.zeros((len(kinds), len(boxes)), dtype=bool)
@@ -147,8 +161,7 @@ def too_high(
 def looks_in_image(
     kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None = None
 ) -> tuple[dict[str, SizeMixture], dict[str, SizeMixture]]:
-    """Return how the known ones of some objects' kinds look beside each other: in an image from above, and from
-    aside."""
+    """Return the relative sizes of the known kinds of the objects in an image: seen from above, and from the side."""
     known = _known(kinds, sizes, learned)
     above = {kind: in_image_from_above(model) for kind, model in known.items()}
     aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}
@@ -161,13 +174,13 @@ def _known(kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] 
 
 
 def _reach(kind: str, sizes: Sizes, learned: Mapping[str, SizeModel] | None) -> float:
-    """Return how far a handle stands out that the kind's length leaves out; a learned length has it."""
+    """Return how far a handle stands out beyond the kind's stated length; 0 for a learned length, which includes it."""
     reach = None if kind in (learned or {}) else sizes.of(kind).reach
     return 0.0 if reach is None else reach.typical
 
 
 def _ratios(kinds: Sequence[str], boxes: NDArray[np.float64], looks: Mapping[str, SizeMixture]) -> Array:
-    """Return what looks say of n1 objects being each of n2 boxes, shape (n1, n2), nothing of a kind that has none."""
+    """Return log-likelihood ratios (n1, n2) of objects being boxes by the size mixtures; 0 for a kind without one."""
     measured = {relative: log_sizes(boxes, relative) for relative in {look.relative for look in looks.values()}}
     ratios = {kind: _density_ratio(measured[look.relative], look) for kind, look in looks.items()}
     silent = np.zeros(len(boxes))
@@ -175,10 +188,10 @@ def _ratios(kinds: Sequence[str], boxes: NDArray[np.float64], looks: Mapping[str
 
 
 def _density_ratio(measured: Array, look: SizeMixture) -> Array:
-    """Return log of (1 - outliers) * p(size | kind) / p(size) + outliers, for n boxes (n, 2), log n at the most.
+    """Return log((1 - outliers) * p(size | kind) / p(size) + outliers) of n log sizes (n, 2), at most log n.
 
-    p(size) is the mean of normal kernels at the things of the scene (Parzen 1962), their width by Scott's rule (1992),
-    but never narrower than the kind's spread.
+    p(size) is the mean of normal kernels at the things of the scene (Parzen 1962). Their width follows Scott's rule
+    (1992) and is at least the kind's spread.
     """
     n = len(measured)
     fits = np.logaddexp.reduce(np.log(look.shares) + _log_kernel(measured, look.centres, look.spread), axis=1)
@@ -189,12 +202,11 @@ def _density_ratio(measured: Array, look: SizeMixture) -> Array:
 
 
 def _log_mean_kernel(measured: Array, width: Array) -> Array:
-    """Return log of the mean density of normal kernels at n places (n, 2), of one ``width`` (2,), at those, up to a
-    constant.
+    """Return the log mean density at n points (n, 2) of normal kernels at these points, up to a constant, shape (n,).
 
-    Of many places on a grid of ``GRID_STEP`` widths, to which each is shared out among the corners of its cell
-    (linear binning; Wand 1994), so that the work grows with the places and not with their square; it is off by less
-    than a hundredth.
+    All kernels have the same ``width`` (2,). For many points, the density is computed on a grid of ``GRID_STEP`` widths
+    by linear binning (Wand 1994), so that the work grows with the number of points and not with its square; the error
+    is below 0.01.
     """
     n = len(measured)
     low, step = measured.min(axis=0), GRID_STEP * width
@@ -216,7 +228,7 @@ def _log_mean_kernel(measured: Array, width: Array) -> Array:
 
 
 def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
-    """Return log density of n places (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
+    """Return log densities of n points (n, 2) under k normal kernels (k, 2), up to a constant, shape (n, k)."""
     apart = (at[:, None] - centres[None]) / spread
     result: Array = -0.5 * (apart**2).sum(axis=2) - np.log(spread).sum()
     return result
@@ -224,48 +236,43 @@ def _log_kernel(at: Array, centres: Array, spread: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class LabelRatios:
-    """What labels say of n1 objects being each of n2 things.
+    """Evidence of labels for n1 objects being each of n2 things."""
 
-    ``ratios`` (n1, n2) are finite log-likelihood ratios. ``allowed`` (n1, n2) are all matches but those to which a
-    label leaves no probability, which are some only where labels are free of error. ``by_chance`` is the log-likelihood
-    of all labels of things that the description does not mention.
-    """
-
-    ratios: Array
-    allowed: NDArray[np.bool_]
-    by_chance: float
+    ratios: Array  # (n1, n2) log-likelihood ratios, finite
+    allowed: NDArray[np.bool_]  # (n1, n2) matches of probability above 0; all of them unless labels have no error
+    by_chance: float  # log-likelihood of all labels if the description mentions none of the things
 
 
 def label_ratios(
     description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds, error: float = LABEL_ERROR
 ) -> LabelRatios:
-    """Return what labels say of n1 objects being each of n2 things, and which of these matches they allow.
+    """Return log-likelihood ratios by label of n1 objects being each of n2 things, and the allowed matches.
 
     Parameters
     ----------
     description
         The objects that the labels may name.
     labels
-        One for each of the n2 things, None where perception gives it no name.
+        One label for each of the n2 things; None where perception gives it no name.
     kinds
-        The kinds of things that words stand for.
+        Known kinds of things.
     error
-        Probability that a label of confidence 1 is wrong; of confidence c, a label is right with probability
+        Probability that a label of confidence 1 is wrong. A label of confidence c is right with probability
         c (1 - error).
 
     Returns
     -------
     LabelRatios
-        How much likelier each label is of a thing that is the object than of one that the description does not mention.
+        Likelihood of each label for a thing that is the object, against a thing that the description does not mention.
 
     Notes
     -----
     A right label of an object is a word that fits it, or with probability ``BROADER_WORD`` a broader word for it. A
-    right label of anything else in the world is a word for any of the known kinds, each as likely, or one of
-    ``OTHER_WORDS`` words for all the rest. A wrong label is a word of the description as often as any word of the
-    world. Naming follows :func:`deixis.reasoning.grounding.evidence.labels.naming`. Where things bear a word that are
-    more than the objects that it fits, a scene has more of them than the world: how often a word labels what is not
-    mentioned is the mean of the world's share, which counts as ``WORLD_COUNT`` things, and of those counted.
+    right label of any other thing is a word for one of the known kinds, all equally likely, or one of ``OTHER_WORDS``
+    words for other kinds. A wrong label is a word of the description in half of the cases, and any word otherwise.
+    Naming follows :func:`deixis.reasoning.grounding.evidence.labels.naming`. Where a word labels more things than
+    objects that it fits, such things are frequent in this scene: the probability of the word for a thing that is not
+    mentioned is the mean of its prior, which counts as ``WORLD_COUNT`` things, and of the things counted in the scene.
 
     Examples
     --------
@@ -291,7 +298,7 @@ def label_ratios(
 
 
 def _shares_elsewhere(labels: Sequence[Label | None], fitted: NDArray[np.int64], kinds: Kinds) -> Array:
-    """Return how probable the word of each label (n2,) is for a thing that the description does not mention."""
+    """Return the probability (n2,) of each label's word for a thing that the description does not mention."""
     words = [None if label is None else label.text for label in labels]
     borne, objects = Counter(words), dict(zip(words, fitted.tolist(), strict=True))
     more = {word: max(0, count - objects[word]) for word, count in borne.items() if word is not None}
@@ -301,7 +308,7 @@ def _shares_elsewhere(labels: Sequence[Label | None], fitted: NDArray[np.int64],
 
 
 def _share_of_world(word: str, kinds: Kinds) -> float:
-    """Return how probable a word is as the right label of anything in the world."""
+    """Return the probability of a word as the right label of an arbitrary thing."""
     kind = kinds.of_word(word) or kinds.of_word(plain_name(word))
     if kind is None:
         return 1 / OTHER_WORDS

@@ -1,1 +1,1 @@
-"""Fits graded models of relation words and sizes to examples."""
+"""Fit graded models of relation words and sizes to examples."""

@@ -1,11 +1,11 @@
-"""Fits graded models of relation words to scenes in which words and boxes are both known.
+"""Fit graded models of relation words to scenes with known words and boxes.
 
-The unknowns are the values of every term at its knots. What is maximised is the probability that, of all ordered pairs
-of a scene, the word was said of the pair of which it was (a conditional logit, McFadden 1974, over the saying model):
-that is what grounding has to tell apart. A second contrast, to the other words that might have been said of the same
-pair, counts as much as ``word_contrast`` says. A Gaussian prior holds the values at those of the prior models: their
-differences from knot to knot to ``1 / strength`` in variance, the values themselves more loosely. Without data the
-prior comes back. Terms with a trend keep it.
+The unknowns are the values of every term at its knots. The fit maximises the probability that, of all ordered pairs of
+a scene, the word was stated of the annotated pair (a conditional logit, McFadden 1974, over the saying model): this is
+the decision of grounding. A second contrast, with the other words that could have been stated of the same pair, has the
+weight ``word_contrast``. A Gaussian prior has its mean at the prior models: the variance of differences from knot to
+knot is ``1 / strength``, that of the values is larger. Without data, the result is the prior. Terms with a trend keep
+it.
 """
 
 from __future__ import annotations
@@ -35,24 +35,22 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
 
 
 def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float:
-    """Return mean degree of a model over all ordered pairs of scenes and the words that share it; 1 where there is
-    none."""
+    """Return the mean degree of a model over all ordered pairs of scenes and words of the model; 1 without pairs."""
     found = degree_sum(model, scenes)
     return found.total / found.count if found.count else 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class DegreeSum:
-    """The degrees that :func:`chance_degree` averages: how many, their sum, and its slope by the values of all terms,
-    shape (k,)."""
+    """Sum of the degrees that :func:`chance_degree` averages."""
 
     count: int
     total: float
-    slope: NDArray[np.float64]
+    slope: NDArray[np.float64]  # (k,) derivative of the sum by the values of all terms
 
 
 def degree_sum(model: RelationModel, scenes: Iterable[PairGeometry]) -> DegreeSum:
-    """Return the degrees of a model over all ordered pairs of scenes and the words that share it."""
+    """Return the sum of degrees of a model over all ordered pairs of scenes and words of the model."""
     words = [word for word, family in FAMILIES.items() if family == model.name] or [SAYING]
     count, total, slope = 0, 0.0, np.zeros(sum(len(term.knots) for term in model.terms))
     for pairs in scenes:
@@ -68,49 +66,46 @@ def degree_sum(model: RelationModel, scenes: Iterable[PairGeometry]) -> DegreeSu
 Array = NDArray[np.float64]
 
 OUTLIER_BOUNDS = (0.001, 0.2)
-"""Between these the share of outliers is kept, so that a learned fact weighs against a pair ln 1000 at the most."""
+"""Bounds of the share of outliers, so that the evidence of a learned fact against a pair is at most ln 1000 nats."""
 
 
 @dataclass(frozen=True, slots=True)
 class FitSettings:
-    """``strength`` of the prior (1: a difference of 1 between knots costs half a nat), and ``word_contrast``."""
+    """Settings of a fit."""
 
-    strength: float = 3.0
-    word_contrast: float = 0.0
-    iterations: int = 100
+    strength: float = 3.0  # of the prior; at 1, a difference of 1 between knots costs half a nat
+    word_contrast: float = 0.0  # weight of the contrast with other words, at least 0
+    iterations: int = 100  # maximum number of iterations
 
     def __post_init__(self) -> None:
         if not 0 < self.strength < np.inf:
-            raise SettingError(f"the strength of what is shipped is a number above 0, not {self.strength:g}")
+            raise SettingError(f"the strength of the shipped models must be above 0, got {self.strength:g}")
         if not self.word_contrast >= 0 or self.iterations < 1:
-            raise SettingError("word_contrast is at least 0, iterations at least 1")
+            raise SettingError(
+                "`word_contrast` must be at least 0 and `iterations` at least 1, "
+                f"got {self.word_contrast:g} and {self.iterations}"
+            )
 
 
 @dataclass(frozen=True, eq=False)
 class FitStatistics:
-    """What a fit was made of, as sums over its scenes: scenes can be taken out without looking at the others.
+    """Sums over the scenes of a fit, from which a scene can be removed without the other scenes."""
 
-    ``values`` (k,) are those of all terms of the models ``names``, as fitted; ``gradient`` (k,) and ``information``
-    (k, k) are the first derivative of the scenes' log-likelihood there, and its second one negated. ``examples`` is
-    the weight of the words said of each family, ``degrees`` the sums behind each model's chance degree. ``scenes``
-    are still in the sums, of ``fitted`` that the values were fitted to.
-    """
-
-    names: tuple[str, ...]
-    values: Array
-    gradient: Array
-    information: Array
-    examples: dict[str, float]
-    degrees: dict[str, DegreeSum]
-    scenes: int
-    fitted: int
+    names: tuple[str, ...]  # models
+    values: Array  # (k,) fitted values of all terms of the models
+    gradient: Array  # (k,) derivative of the scenes' log-likelihood at the values
+    information: Array  # (k, k) negated second derivative
+    examples: dict[str, float]  # weight of the stated words of each family
+    degrees: dict[str, DegreeSum]  # sums of each model's chance degree
+    scenes: int  # number of scenes in the sums
+    fitted: int  # number of scenes of the last complete fit
 
 
 @dataclass(frozen=True, eq=False)
 class RelationFit:
     """Models after a fit, and its statistics.
 
-    There are none where no scene said a word, so that the models are the prior's, nor of a fit with ``word_contrast``.
+    The statistics are None where no scene states a word, so that the models are the prior, and with ``word_contrast``.
     """
 
     models: RelationModels
@@ -124,9 +119,9 @@ def learn_relations(
     sources: Sequence[str] = (),
     version: str = "",
 ) -> RelationModels:
-    """Return the models that fit the scenes and the prior best together, with their provenance.
+    """Return the models that best fit the scenes and the prior, with their provenance.
 
-    Models of which no word was said come back as they were. Raises SettingError for settings that cannot be.
+    Models of words that no scene states are returned unchanged. Raises SettingError for invalid settings.
     """
     return fit_relations(scenes, prior, settings or FitSettings(), sources, version).models
 
@@ -138,7 +133,7 @@ def fit_relations(
     sources: Sequence[str] = (),
     version: str = "",
 ) -> RelationFit:
-    """Return what :func:`learn_relations` does, with the statistics for :func:`take_out`."""
+    """Fit models like :func:`learn_relations`, and return them with the statistics for :func:`take_out`."""
     examples = _examples(scenes)
     if not examples:
         return RelationFit(prior, None)
@@ -156,18 +151,18 @@ def fit_relations(
 
 
 FEW_SCENES = 20
-"""At most this many scenes are always fitted from nothing: it takes no longer than a constant, and nothing is lost."""
+"""Maximum number of scenes that are always fitted again completely, which takes a bounded time and is exact."""
 
 
 def take_out(
     statistics: FitStatistics, scene: SaidPairs, prior: RelationModels, settings: FitSettings, version: str = ""
 ) -> RelationFit | None:
-    """Return the fit without one of its scenes, in a time that does not depend on how many there are.
+    """Return the fit without one of its scenes, in a time that does not depend on the number of scenes.
 
-    The sums of the others are expanded to second order about the fitted values, and what is expanded is maximised
-    under the same prior and the same bounds: a Newton step, which for one scene of many differs from a new fit by
-    the square of that scene's share. Returns None where only a new fit will do: few scenes or fewer than half of
-    those fitted remain, or a family of words loses its last example.
+    The log-likelihood of the other scenes is expanded to second order about the fitted values, and maximised under the
+    same prior and bounds: a Newton step, whose difference from a new fit is of the order of the square of the scene's
+    share. Returns None where a new fit is needed: few scenes, or fewer than half of the fitted ones, remain, or a
+    family of words loses its last example.
 
     Notes
     -----
@@ -204,7 +199,7 @@ def take_out(
 
 
 def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
-    """Return the weight of the words that were said of each family, for those of which one was said."""
+    """Return the weight of the stated words of each family with at least one."""
     weights: dict[str, float] = {}
     for scene in scenes:
         for word, weight in zip(scene.words, scene.weights.tolist(), strict=True):
@@ -228,8 +223,8 @@ def _finished(
 ) -> tuple[RelationModels, dict[str, DegreeSum]]:
     """Return the prior with the models of a layout fitted, and the degrees behind their chance degrees.
 
-    Each term's best is shifted to 0. What the shifts of a word and of the saying model take from the degrees, the
-    outliers take over, so that their likelihood ratio stays what was fitted.
+    The maximum of each term is shifted to 0. The share of outliers is adjusted to the shifts of a word and of the
+    saying model, so that the likelihood ratio stays as fitted.
     """
     made, found, sums = datetime.now(UTC), [], {}
     for model in layout.models:
@@ -268,7 +263,7 @@ _KNOTS = {
 
 
 def extended(model: RelationModel) -> RelationModel:
-    """Return the same model with more knots, and with the features that the prior is blind to as terms of 0."""
+    """Return the model with more knots, and with terms of value 0 for the features that the prior does not use."""
     finer = _KNOTS[model.name if model.name in _KNOTS else "direction"]
     known = {term.feature: term for term in model.terms}
     terms = []
@@ -299,6 +294,6 @@ def _maximise(likelihood: Callable[[Array], tuple[float, Array]], layout: Layout
 
 
 def _term(term: Term, values: Array) -> Term:
-    """Return the term with new values, shifted so that its best is 0."""
+    """Return the term with new values, shifted so that their maximum is 0."""
     shifted = values - values.max()
     return Term(term.feature, term.knots, tuple(np.minimum(shifted, 0.0).tolist()), term.trend)

@@ -1,11 +1,11 @@
-"""Fits what tells whether a description is of a scene: three powers, by right and wrong pairs of the two.
+"""Fit the three powers of the evidence that a description is of a scene to right and wrong pairs of the two.
 
-:func:`likeliest_powers` is a logistic regression (Platt 1999) without an intercept, since no evidence leaves the prior
-as it is. It takes right and wrong pairs as equally likely, which they are not: a wrong one is to be noticed against a
-prior of one in a hundred, and a right one must not be accused. So what is shipped is fitted in three steps, each for
-what it does (:func:`fit_powers`): the power of facts as likely as pairs on generated tables make it; what another scene
-is granted, as much as leaves at most ``ACCUSED`` of the right tables accused under that prior (the criterion of Neyman
-and Pearson 1933); and the power of kinds, which tell nothing on such tables, as likely as photographs make it.
+:func:`likeliest_powers` is a logistic regression (Platt 1999) without an intercept, because no evidence leaves the
+prior unchanged. It treats right and wrong pairs as equally likely. In use, a wrong pair has a prior of one in a
+hundred, and right pairs must not be rejected. So the shipped powers are fitted in three steps (:func:`fit_powers`): the
+power of facts by maximum likelihood on generated tables; the share of another scene, so that at most ``ACCUSED`` of the
+right tables are rejected under that prior (the criterion of Neyman and Pearson 1933); and the power of kinds, which do
+not matter on such tables, by maximum likelihood on photographs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.hypotheses import ANOTHER_PRIOR, FitEvidence
 Array = NDArray[np.float64]
 
 ACCUSED = 0.02
-"""Share of right tables that may be taken for descriptions of another scene: one in fifty."""
+"""Maximum share of right tables that are taken for descriptions of another scene."""
 
 
 def fit_powers(
@@ -32,14 +32,14 @@ def fit_powers(
     own: NDArray[np.bool_],
     another: float = ANOTHER_PRIOR,
 ) -> Array:
-    """Return the powers by which facts, what they could say, and kinds weigh, shape (3,), in the steps of the module.
+    """Fit the powers of facts, of their upper bound, and of kinds, shape (3,), in the three steps of this module.
 
     Parameters
     ----------
     tables, right
-        The evidence of pairs of a description and a table, and whether they belong together.
+        Evidence of pairs of a description and a table, and whether they belong together.
     photographs, own
-        The same of photographs.
+        Evidence of pairs of a description and a photograph, and whether they belong together.
     another
         Prior probability of another scene.
 
@@ -69,18 +69,18 @@ def likeliest_powers(
     weights: Array | None = None,
     held: tuple[float, ...] = (),
 ) -> Array:
-    """Return the powers under which pairs are as likely to be what they are as can be, shape (3,), each 0 to 5.
+    """Return the powers of maximum likelihood for right and wrong pairs, shape (3,), each in [0, 5].
 
     Parameters
     ----------
     pairs
-        The evidence of n pairs of a description and a scene.
+        Evidence of n pairs of a description and a scene.
     right
         Whether the description is of the scene, shape (n,).
     weights
-        How much each pair counts, shape (n,); by default right and wrong ones count as much in all.
+        Weight of each pair, shape (n,); by default, right and wrong pairs have the same total weight.
     held
-        The first of the powers, where they are known.
+        Known values of the first powers.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def likeliest_powers(
     from scipy.optimize import minimize
 
     if right.all() or not right.any():
-        raise SettingError("powers are fitted to right and wrong pairs: give both")
+        raise SettingError("`right` must have right and wrong pairs; give both")
     design = np.array([(one.facts, -one.most, one.kinds) for one in pairs])
     share = np.where(right, 0.5 / right.sum(), 0.5 / (~right).sum()) if weights is None else weights / weights.sum()
 
@@ -109,5 +109,5 @@ def likeliest_powers(
     bounds = [(power, power) for power in held] + [(0.0, 5.0)] * (3 - len(held))
     start = np.array([*held, *[0.1] * (3 - len(held))])
     found = minimize(loss, start, jac=True, method="L-BFGS-B", bounds=bounds)
-    powers: Array = np.where(design.any(axis=0), found.x, 0.0)  # of what is never told, nothing is known
+    powers: Array = np.where(design.any(axis=0), found.x, 0.0)  # 0 for evidence that is 0 in all pairs
     return powers

@@ -1,4 +1,4 @@
-"""The likelihood of graded models: examples of words said of pairs, and its gradient by the parameters."""
+"""Likelihood of graded models for examples of words stated of pairs, with its derivatives by the parameters."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from deixis.reasoning.grounding.fitting.parameters import MAX_STEP, Layout
 
 @dataclass(frozen=True, eq=False)
 class SaidPairs:
-    """One scene whose words and boxes are both known: the word ``words[i]`` was said of the pair ``ends[i]``.
+    """Examples of one scene: the word ``words[i]`` was stated of the pair ``ends[i]``.
 
-    ``weights`` count: 1 for what somebody annotated, less for what a grounding takes to be so.
+    The weight of an annotated example is 1; that of an example from a grounding is less.
     """
 
     pairs: PairGeometry
@@ -36,12 +36,26 @@ def said_pairs(
     things: Sequence[int | None],
     confidence: Sequence[float] | Mapping[int, float] | None = None,
 ) -> SaidPairs:
-    """Return the pairs that a grounded description teaches.
+    """Return the examples of a grounded description.
 
-    ``boxes`` (n2, 2, d); ``things[i]`` is the box of the description's i-th object, or None where it has none, and
-    ``confidence`` how sure that is (0 to 1; 1 where none is given), so that a posterior of grounding can teach: a fact
-    counts with its own weight times the confidences of both ends. Choices, denials and optional facts teach nothing.
-    Raises GraphError for a box that is not there, SettingError for a confidence beyond 0 to 1.
+    Parameters
+    ----------
+    description
+        The objects and the facts. Choices, denials and optional facts give no examples.
+    boxes
+        Boxes of the scene, shape (n2, 2, d).
+    things
+        Index of each object's box; None where it has none.
+    confidence
+        Probability of each object's match, 1 by default. The weight of an example is that of the fact times the
+        confidences of both objects.
+
+    Raises
+    ------
+    GraphError
+        A box does not exist.
+    SettingError
+        A confidence is outside 0 to 1.
     """
     pairs = pair_geometry(boxes)
     if len(things) != len(description.nodes):
@@ -51,13 +65,13 @@ def said_pairs(
         raise GraphError(f"there is no box {outside[0]}; the scene has {len(pairs)}")
     sure = [1.0 if confidence is None else float(confidence[i]) for i in range(len(things))]
     if not all(0 <= value <= 1 for value in sure):
-        raise SettingError("a confidence lies between 0 and 1")
+        raise SettingError("`confidence` must be between 0 and 1")
     words, ends, weights = [], [], []
     index = {name: i for i, name in enumerate(description.nodes)}
     for fact in description.facts():
         subject, obj = index[fact.subject], index[fact.object]
         first, second = things[subject], things[obj]
-        said = fact.plain and not fact.optional  # what is rarely so, not plain either, shows what is not meant
+        said = fact.plain and not fact.optional  # a fact with *rarely* is not plain: it is an example of the opposite
         if said and first is not None and second is not None and first != second:
             words.append(fact.relations[0].word)
             ends.append((first, second))
@@ -69,13 +83,14 @@ Array = NDArray[np.float64]
 
 
 class Likelihood:
-    """The log-likelihood of all scenes and its gradient by the values."""
+    """Log-likelihood of all scenes, with its gradient by the values."""
 
     def __init__(self, scenes: Sequence[SaidPairs], layout: Layout, word_contrast: float) -> None:
         self.layout, self.word_contrast = layout, word_contrast
         self.scenes = [_Designed(scene, layout, word_contrast > 0) for scene in scenes if len(scene.words)]
 
     def __call__(self, values: Array) -> tuple[float, Array]:
+        """Return the log-likelihood at ``values`` (k,), and its gradient (k,)."""
         total, gradient = 0.0, np.zeros_like(values)
         for scene in self.scenes:
             scores, slopes = scene.scores(values)
@@ -90,8 +105,7 @@ class Likelihood:
         return total, gradient
 
     def information(self, values: Array) -> Array:
-        """Return the second derivative of the log-likelihood by the values, negated, shape (k, k); of the contrast
-        between pairs alone."""
+        """Return the negated second derivative of the log-likelihood of the contrast between pairs, shape (k, k)."""
         total = np.zeros((len(values), len(values)))
         for scene in self.scenes:
             scores, slopes = scene.scores(values)
@@ -108,19 +122,20 @@ class Likelihood:
 
 
 class Expansion:
-    """A log-likelihood expanded to second order about some values, called as :class:`Likelihood` is."""
+    """Second-order expansion of a log-likelihood, with the interface of :class:`Likelihood`."""
 
     def __init__(self, centre: Array, gradient: Array, information: Array) -> None:
         self.centre, self.gradient, self.information = centre, gradient, information
 
     def __call__(self, values: Array) -> tuple[float, Array]:
+        """Return the log-likelihood at ``values`` (k,), and its gradient (k,)."""
         step = values - self.centre
         bent = self.information @ step
         return float(self.gradient @ step - 0.5 * step @ bent), self.gradient - bent
 
 
 class _Designed:
-    """One scene with the hat functions of every word that is needed, for all ordered pairs (p of them)."""
+    """Design matrices of one scene: hat functions of every needed word for all p ordered pairs."""
 
     def __init__(self, scene: SaidPairs, layout: Layout, all_words: bool) -> None:
         apart = ~np.eye(len(scene.pairs), dtype=bool)
@@ -150,7 +165,7 @@ class _Designed:
         return scores, slopes
 
     def weights(self) -> dict[str, float]:
-        """Return the weight with which each word was said in all."""
+        """Return the total weight of each word's examples."""
         said = dict.fromkeys(self.designs, 0.0)
         for word, _, weight in self.said:
             said[word] += weight

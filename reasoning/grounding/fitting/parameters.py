@@ -1,4 +1,4 @@
-"""The values of several models in one vector, the prior over them, and what keeps a trend."""
+"""Parameters of several models in one vector, with their prior and the bounds that keep trends."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from deixis.ontology.models.relations import RelationModel, Term, Trend
 Array = NDArray[np.float64]
 
 RIDGE = 0.1
-"""How much the prior holds a value itself, relative to how much it holds differences."""
+"""Prior precision of a value relative to that of differences between knots."""
 
 MAX_STEP = 20.0
-"""No log degree is farther from the next one."""
+"""Maximum difference between log degrees of neighbouring knots."""
 
 
 class Layout:
-    """Where the values of each term stand in one vector."""
+    """Positions of the values of each term in one vector."""
 
     def __init__(self, models: Sequence[RelationModel]) -> None:
         self.models = tuple(models)
@@ -34,6 +34,7 @@ class Layout:
         self.prior = np.concatenate([term.values for term in self.terms])
 
     def model(self, name: str) -> RelationModel:
+        """Return the model with a name."""
         return next(model for model in self.models if model.name == name)
 
     def columns(self, name: str) -> NDArray[np.int64]:
@@ -49,7 +50,7 @@ class Layout:
         return matrix
 
     def precision(self) -> Array:
-        """Return the prior's precision of all values: differences from knot to knot, and, more loosely, values."""
+        """Return the prior's precision matrix: of differences from knot to knot and, with a small weight, of values."""
         from scipy.linalg import block_diag
 
         blocks = []
@@ -60,7 +61,7 @@ class Layout:
         return matrix
 
     def bounds(self) -> list[tuple[float, float]]:
-        """Return what first values and increments may be: increments of a term with a trend have its sign."""
+        """Return the bounds of first values and increments; increments of a term with a trend have its sign."""
         found = []
         for term in self.terms:
             low = 0.0 if term.trend is Trend.RISING else -MAX_STEP

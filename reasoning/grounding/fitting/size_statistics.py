@@ -1,9 +1,9 @@
-"""What sizes are learned from, in whole numbers: counts and sums that views are added to and taken out of again.
+"""Statistics of sizes as integers: counts and sums to which views can be added and from which they can be removed.
 
-A logarithm is kept in steps of 2**-24, and counted in one of 64 buckets a unit: a bucket is 1.6 per cent of a length
-wide. In it every view stands for the bucket's mean, so that few views are exact, and medians of many are off by less
-than a bucket. How much is kept does not grow with the number of views; and since nothing is rounded along the way, any
-order of adding and removing comes to the same.
+A logarithm is stored in steps of 2**-24 and counted in one of 64 buckets per unit; the width of a bucket is 1.6 per
+cent of a length. All views of a bucket count as its mean, so that medians of few views are exact, and the error of
+medians of many views is less than a bucket. The storage does not grow with the number of views. The result does not
+depend on the order of additions and removals, because nothing is rounded.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 SCALE = 2**24
-"""Steps of a logarithm that are told apart, a unit."""
+"""Number of steps per unit of a logarithm."""
 
 BUCKET = 2**18
-"""Steps in a bucket."""
+"""Number of steps per bucket."""
 
 Buckets = Mapping[int, tuple[int, int]]
-"""By bucket, how many views it has, and the sum of their steps."""
+"""Number of views, and sum of their steps, by bucket."""
 
 
 def steps(logarithm: float) -> int:
@@ -29,7 +29,7 @@ def steps(logarithm: float) -> int:
 
 
 class Distribution:
-    """The values that some buckets stand for, with how often each; empty ones have no median."""
+    """Distribution of the mean values of buckets by their counts; an empty one has no median."""
 
     def __init__(self, buckets: Buckets) -> None:
         filled = [pair for _, pair in sorted(buckets.items()) if pair[0]]
@@ -53,7 +53,7 @@ class Distribution:
 
 
 def _median(values: NDArray[np.float64], counts: NDArray[np.int64]) -> float:
-    """Return the median of sorted values, each so often."""
+    """Return the median of sorted values with counts."""
     upto = np.cumsum(counts)
     low, high = np.searchsorted(upto, [(upto[-1] - 1) // 2, upto[-1] // 2], side="right")
     return float(values[low] + values[high]) / 2

@@ -1,8 +1,8 @@
-"""The best partial assignment of rows to columns, with prices that prove it; compiled.
+"""Best partial assignment of rows to columns, with prices that prove it; compiled.
 
-Successive shortest augmenting paths (Jonker and Volgenant 1987), for rows that may also stay without a column: a path
-then ends at the worth of that. The prices v >= 0 of the columns and the profits of the rows, the largest of gain less
-price, are the dual solution: their sum is the value, and any v >= 0 gives an upper bound.
+The method is that of successive shortest augmenting paths (Jonker and Volgenant 1987), for rows that may also stay
+unassigned: a path may end at that option. The dual solution is the prices v >= 0 of the columns and the profits of the
+rows, each the maximum of gain minus price: their sum is the value, and any v >= 0 gives an upper bound.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from deixis.reasoning.kernel import njit
 
 @njit(cache=True, nogil=True)
 def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped-def]
-    """Fills in each row's column, the prices (c,) and the profits (r,), and returns the value.
+    """Fill in each row's column (r,), the prices (c,) and the profits (r,), and return the value.
 
-    ``gain`` (r, c + 1): its last column is the worth of staying without; -inf rules a pair out. Where no assignment is
-    left the value is -inf, and what was filled in says nothing.
+    The last column of ``gain`` (r, c + 1) is the gain of staying unassigned; -inf rules a pair out. Where there is
+    no assignment the value is -inf, and the filled-in arrays have no meaning.
     """
     rows, columns = gain.shape[0], gain.shape[1] - 1
     row_of = np.full(columns + 1, -1)
@@ -36,7 +36,7 @@ def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped
 
 @njit(cache=True)
 def _take_the_best(gain, column_of, row_of, profit):  # type: ignore[no-untyped-def]
-    """Gives every row its best column where nobody has it yet; returns the rows that wait."""
+    """Give every row its best column unless another row has it; return the other rows."""
     rows, columns = gain.shape[0], gain.shape[1] - 1
     waiting = np.empty(rows, np.int64)
     count = 0
@@ -61,7 +61,7 @@ def _take_the_best(gain, column_of, row_of, profit):  # type: ignore[no-untyped-
 
 @njit(cache=True)
 def _augment(start, gain, column_of, row_of, price, profit, distance, before, done):  # type: ignore[no-untyped-def]
-    """Moves along the cheapest path from a waiting row to a free column or to staying without; false without one."""
+    """Augment along the cheapest path from a row to a free column or an unassigned row; return false without one."""
     columns = gain.shape[1] - 1
     distance[:] = np.inf
     done[:] = False
@@ -102,7 +102,7 @@ def _reprice(start, length, row_of, price, profit, distance, done):  # type: ign
 
 @njit(cache=True)
 def _move(start, leaver, column, columns, column_of, row_of, before):  # type: ignore[no-untyped-def]
-    """Shifts the rows on the path by one; ``leaver`` ends without a column, where it is none the path ends in one."""
+    """Shift the rows on the path by one; the path ends in ``column``, or where ``leaver`` >= 0, unassigns that row."""
     if leaver >= 0:
         column = column_of[leaver]
         column_of[leaver] = columns

@@ -1,10 +1,10 @@
 """Two node similarities from the literature: Blondel et al. (2004), and Heymans and Singh (2003).
 
-Both see graphs with weights: the description has an edge for every fact, the scene one for every pair that a fact's
-table says something for (the table over its largest entry; what speaks against a pair counts as nothing). Facts of
-several kinds are several such pairs of graphs, whose updates are added. Neither knows of unary terms but those that
-rule a match out. An iteration ends at a deadline where there is one. As engines, with the Hungarian method:
-:class:`deixis.reasoning.grounding.map_engines.BaselineEngine`.
+Both compare weighted graphs: the description has an edge for every fact, the scene one for every pair with a positive
+entry in the fact's table (divided by the largest entry). Facts of several kinds give several such pairs of graphs,
+whose updates are added. Of the unary evidence, both use only the matches that are ruled out. The iteration ends at the
+deadline. :class:`deixis.reasoning.grounding.map_engines.BaselineEngine` makes engines of them with the Hungarian
+method.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ TOLERANCE = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class NodeSimilarity:
-    """How alike every object and every thing are (n1, n2), and whether the iteration came to its end."""
+    """Similarity of every object and every thing."""
 
-    matrix: Matrix
-    finished: bool
+    matrix: Matrix  # (n1, n2), Frobenius norm 1
+    finished: bool  # whether the iteration ended before the deadline
 
 
 def blondel_similarity(problem: Problem, deadline: Deadline = Deadline.never()) -> NodeSimilarity:
-    """Frobenius norm 1: the limit of the even iterates of S <- B S A' + B' S A from ones.
+    """Compute the similarity of Blondel et al.: the limit of the even iterates of S <- B S A' + B' S A from ones.
 
     Blondel, Gajardo, Heymans, Senellart and Van Dooren, "A measure of similarity between graph vertices", SIAM Review
     46 (2004); here summed over the kinds of facts.
@@ -49,7 +49,7 @@ def blondel_similarity(problem: Problem, deadline: Deadline = Deadline.never()) 
 
 
 def heymans_singh_similarity(problem: Problem, deadline: Deadline = Deadline.never()) -> NodeSimilarity:
-    """Frobenius norm 1: what neighbours have in common, less what sets them apart.
+    """Compute the similarity of Heymans and Singh: agreement of neighbours minus their disagreement.
 
     Heymans and Singh, "Deriving phylogenetic trees from the similarity analysis of metabolic pathways",
     Bioinformatics 19 (2003): S <- (A1 + A2 + A3 + A4 - D1 - D2 - D3 - D4) / 4. A1 and A2 are the mean similarity of
@@ -71,7 +71,7 @@ def heymans_singh_similarity(problem: Problem, deadline: Deadline = Deadline.nev
 
 
 def _graphs(problem: Problem) -> Iterator[tuple[Matrix, Matrix]]:
-    """Of each kind of facts the adjacency of the description (n1, n1) and of the scene (n2, n2), 0 to 1."""
+    """Yield the adjacency of the description (n1, n1) and of the scene (n2, n2), in [0, 1], for each kind of fact."""
     n1 = len(problem.absent)
     for kind in np.unique(problem.kinds):
         described = np.zeros((n1, n1))
@@ -88,21 +88,21 @@ def _complement(graph: Matrix) -> Matrix:
 
 
 def _mean(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
-    """The weighted mean of ``s`` over the neighbours of each node of either graph (n1, n2), 0 where one has none."""
+    """Return the weighted mean of ``s`` over pairs of neighbours, shape (n1, n2); 0 for a node without neighbours."""
     weight = one.sum(axis=1)[:, None] * two.sum(axis=1)[None, :]
     mean: Matrix = np.divide(one @ s @ two.T, weight, out=np.zeros_like(s), where=weight > 0)
     return mean
 
 
 def _alike(one: Matrix, s: Matrix, two: Matrix) -> Matrix:
-    """The same; two nodes that have no neighbours are alike in that, and get the mean of all."""
+    """Return the weighted mean over pairs of neighbours; two nodes without neighbours get the mean of ``s``."""
     neither = (one.sum(axis=1)[:, None] == 0) & (two.sum(axis=1)[None, :] == 0)
     alike: Matrix = np.where(neither, s.mean(), _mean(one, s, two))
     return alike
 
 
 def _iterate(step: Callable[[Matrix], Matrix], problem: Problem, deadline: Deadline) -> NodeSimilarity:
-    """Repeats a step from a matrix of ones, where nothing is ruled out, until nothing changes, or it is too late."""
+    """Repeat a step from a matrix of ones, 0 where ruled out, until convergence or the deadline."""
     s = _normalised(problem.allowed.astype(np.float64))
     for _ in range(ITERATIONS):
         if deadline.passed:

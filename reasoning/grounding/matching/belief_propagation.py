@@ -1,12 +1,12 @@
-"""A map by belief propagation: messages between facts, objects and things, while the model is slowly cooled.
+"""Belief propagation: messages between facts, objects and things, for a map by slow cooling or for marginals.
 
-Every fact tells each of its two objects what it makes of each thing, given what the other object is by all else that is
-known of it; every thing tells the objects how much in demand it is, since it can be only one of them. On a tree such
-messages end at the exact marginals; on the graph of a long description, in which a cycle takes many facts, they come
-near. Cooled step by step they settle on one of the best maps ("cavity approach" to aligning graphs: Bradde et al. 2010,
-EPL 89, 37009; the messages of one-to-one maps: Huang and Jebara 2009, arXiv:0908.1769).
+Every fact sends each of its two objects a message about each thing, given the other evidence for the other object.
+Every thing sends the objects a message about its demand, because it can be only one of them. On a tree, such messages
+converge to the exact marginals; on the graph of a long description, whose cycles have many facts, they come near. Under
+slow cooling, they converge to one of the best maps ("cavity approach" to aligning graphs: Bradde et al. 2010, EPL 89,
+37009; messages of one-to-one maps: Huang and Jebara 2009, arXiv:0908.1769).
 
-All messages of facts that read one table go by one product of matrices, so that it is dense linear algebra throughout.
+All messages of facts with the same table are computed by one matrix product, so that the work is dense linear algebra.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from deixis.reasoning.grounding.matching.problem import Compiled
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-FIRST_COLDNESS, LAST_COLDNESS = 4.0, 20.0  # coldness, times the mean range of a table
-LEVELS = 80  # steps of coldness, fewer where all of them would multiply more cells than MAX_CELLS
+FIRST_COLDNESS, LAST_COLDNESS = 4.0, 20.0  # inverse temperatures, times the mean range of a table
+LEVELS = 80  # steps of cooling, fewer where all of them would multiply more cells than MAX_CELLS
 MAX_CELLS = 1.2e11
-MIN_LEVELS = 12  # with fewer, the map is no better than that of a short annealing
-CELLS_PER_SECOND = 3e10  # what a core multiplies, about
-DAMPING = 0.3  # the share of a message that stays as it was
-MIN_LOG_MESSAGE = -69.0  # of a message's logarithms; their products stay within single precision
+MIN_LEVELS = 12  # with fewer steps, a short annealing gives as good a map
+CELLS_PER_SECOND = 3e10  # approximate multiplications per second and core
+DAMPING = 0.3  # share of the old message that is kept
+MIN_LOG_MESSAGE = -69.0  # minimum log message; products of messages stay within single precision
 RULED_OUT = -1e4  # log-likelihood of a match that is not allowed, and of one thing for two objects
-STEPS, SETTLED = 30, 1e-2  # of messages that are not cooled: steps at most, and the change at which they end
-TIE_NOISE = 1e-3  # random numbers that set equal things apart
+STEPS, SETTLED = 30, 1e-2  # without cooling: maximum number of steps, and change of beliefs at convergence
+TIE_NOISE = 1e-3  # amplitude of random numbers that break ties between equal things
 
 Messages = NDArray[np.float32]
 
@@ -51,10 +51,11 @@ class _Wiring(NamedTuple):
 def propagate(
     problem: Compiled, scale: float, deadline: Deadline = Deadline.never(), *, effort: float = 1.0, seed: int = 0
 ) -> NDArray[np.int64] | None:
-    """Each object's thing (n1,), n2 for what is left out; None where ``deadline`` or ``effort`` leave too few steps.
+    """Find a map by cooled belief propagation; return None where ``deadline`` or ``effort`` leave too few steps.
 
-    ``scale`` is the unit of temperature, what a fact's table ranges over (``scalable.mean_range``); ``effort``
-    multiplies the steps. Where time is short, it cools faster.
+    The map has shape (n1,), with n2 for objects that are left out. ``scale`` is the unit of temperature, the mean range
+    of a fact's table (``scalable.mean_range``); ``effort`` multiplies the number of steps. Where the time is short,
+    cooling is faster.
     """
     slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
     cells = 1.0 + slots * width**2
@@ -82,11 +83,11 @@ def propagate(
 
 
 def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: int = STEPS) -> Messages:
-    """What messages that are not cooled say of each match, (n1, n2 + 1): probabilities, near the marginals or not.
+    """Return the marginals of belief propagation without cooling, shape (n1, n2 + 1), with an unknown error.
 
-    They are exact where the facts form no cycle and nothing competes for a thing; on a long description they claim
-    too much, and serve to guide what is drawn by chance. It ends after so many ``steps``, at the ``deadline``, or where
-    no object's probabilities change by more than ``SETTLED`` in total.
+    They are exact where the facts form no cycle and objects do not compete for things. On a long description they are
+    overconfident, and serve to guide sampling. The iteration ends after ``steps``, at the ``deadline``, or when no
+    object's probabilities change by more than ``SETTLED`` in total.
     """
     wiring, weights = _wire(problem), _costs(problem)
     np.exp(weights, out=weights)
@@ -106,7 +107,7 @@ def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: 
 
 
 def belief_seconds(problem: Compiled) -> float:
-    """Return about how long a step of :func:`beliefs` takes, and what comes before the first."""
+    """Estimate the seconds of a step of :func:`beliefs`, with the preparation."""
     width = problem.unary.shape[1]
     return float((len(problem.kind) + 20 * len(problem.tables)) * width**2 / CELLS_PER_SECOND)
 
@@ -130,7 +131,7 @@ def _wire(problem: Compiled) -> _Wiring:
 
 
 def _costs(problem: Compiled) -> Messages:
-    """What a pair of things has less than the best pair of its table, (k, n2 + 1, n2 + 1); no thing is two objects."""
+    """Return each table minus its largest entry, (k, n2 + 1, n2 + 1), with one thing for two objects ruled out."""
     tables = problem.tables[: len(problem.tables) // 2]  # each comes again transposed
     costs: Messages = tables - tables.max(axis=(1, 2), keepdims=True)
     things = np.arange(tables.shape[1] - 1)
@@ -139,10 +140,10 @@ def _costs(problem: Compiled) -> Messages:
 
 
 def _update_demand(demand: Messages, known: Messages) -> None:
-    """What each thing tells each object, the logarithm of (n1, n2 + 1), in place: that no other object is it.
+    """Update in place the log messages of things to objects (n1, n2 + 1): that no other object is this thing.
 
-    The odds of each object's being the thing, by all but the thing's own word, add up; 1 over 1 more than those of the
-    others is the message. Leaving an object out takes nothing from anybody.
+    The message is 1 / (1 + s), where s is the sum of the odds that each other object is the thing, without the thing's
+    own message. Leaving objects out is not exclusive.
     """
     belief = _normalised(known + demand)
     share = np.exp(belief)
@@ -155,7 +156,7 @@ def _update_demand(demand: Messages, known: Messages) -> None:
 
 
 def _update_facts(facts: Messages, belief: Messages, weights: Messages, wiring: _Wiring) -> None:
-    """What each fact tells the owner of each slot, the logarithm of (2m, n2 + 1), in place."""
+    """Update in place the log messages (2m, n2 + 1) of each fact to the object of each slot."""
     said = belief[wiring.other]
     said -= facts[wiring.twin]  # what the other object is by all but the fact itself
     np.exp(said, out=said)
@@ -171,13 +172,13 @@ def _update_facts(facts: Messages, belief: Messages, weights: Messages, wiring: 
 
 
 def _normalised(messages: Messages) -> Messages:
-    """The largest logarithm of each row made 0, in place."""
+    """Shift each row in place so that its largest logarithm is 0."""
     messages -= messages.max(axis=1, keepdims=True)
     return messages
 
 
 def _one_to_one(belief: Messages, problem: Compiled) -> NDArray[np.int64]:
-    """The map with the largest product of beliefs."""
+    """Return the map with the largest product of beliefs."""
     gain = np.where(problem.allowed, belief.astype(np.float64), -np.inf)
     labels, price, profit = np.empty(len(gain), np.int64), np.empty(gain.shape[1] - 1), np.empty(len(gain))
     solve_assignment(gain, labels, price, profit)

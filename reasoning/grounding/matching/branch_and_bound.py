@@ -1,15 +1,15 @@
 """Depth-first branch and bound over partial one-to-one maps, with upper bounds by dual ascent; compiled.
 
-Every fact's table can hand part of what it says to the unary terms of its two ends (a *message*), without changing the
-value of any map. For any messages the value is at most that of the best assignment by the unary terms alone, plus each
+A *message* moves part of the evidence in a fact's table to the unary terms of one of its ends, without changing the
+value of any map. For any messages, the value is at most that of the best assignment by the unary terms alone, plus each
 table's largest remaining entry. Messages are improved object by object, as in sequential reweighted message passing
-(Kolmogorov 2015; for graph matching Swoboda et al. 2017): an object pulls in all that its facts can still say, then
-hands them an equal share of it. Prices of the things, from the linear assignment, hold the one-to-one constraint in.
-What a table has left is never above 0 then, so that the assignment's value by itself is the bound.
+(Kolmogorov 2015; for graph matching Swoboda et al. 2017): an object pulls the evidence from all its facts, then returns
+an equal share to each of them. Prices of the things, from the linear assignment, enforce the one-to-one constraint. The
+remaining entries of the tables are then never above 0, so that the value of the assignment is the bound.
 
-A node of the search is a set of candidates for every object, with the messages and prices that bound it. It is
-tightened, which also drops candidates; then the object with the fewest candidates is given each of them in turn, the
-most promising first. The stack is an array, so that a search can be stopped, looked at, and resumed.
+A node of the search is a set of candidates for every object, with the messages and prices that bound it. Tightening a
+node also drops candidates. The search then branches on the object with the fewest candidates, the most promising
+candidate first. The stack is an array, so that a search can be stopped, inspected and resumed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from deixis.reasoning.kernel import njit
 
 @njit(cache=True)
 def pull(i, problem, unary, messages, candidates, counts):  # type: ignore[no-untyped-def]
-    """Takes into object i's unary terms the most that each of its facts can still say."""
+    """Move the maximum remaining evidence of object i's facts to its unary terms."""
     out = unary.shape[1] - 1
     for slot in range(problem.first[i], problem.first[i + 1]):
         j, twin = problem.other[slot], problem.twin[slot]
@@ -46,7 +46,7 @@ def pull(i, problem, unary, messages, candidates, counts):  # type: ignore[no-un
 
 @njit(cache=True)
 def hand_out(i, share, problem, unary, messages, price, candidates, counts):  # type: ignore[no-untyped-def]
-    """Hands each fact of object i a share of what its candidates lack against the best one; returns the best."""
+    """Move a share of each candidate's deficit to the best one from object i to each of its facts; return the best."""
     best = -np.inf
     for a in range(counts[i]):
         p = candidates[i, a]
@@ -64,7 +64,7 @@ def hand_out(i, share, problem, unary, messages, price, candidates, counts):  # 
 
 @njit(cache=True)
 def drop_candidates(i, loss, unary, price, candidates, counts):  # type: ignore[no-untyped-def]
-    """Rules out what lacks more than ``loss`` against object i's best candidate."""
+    """Drop the candidates of object i that are more than ``loss`` below its best one; return how many."""
     best = -np.inf
     for a in range(counts[i]):
         best = max(best, unary[i, candidates[i, a]] - price[candidates[i, a]])
@@ -83,9 +83,9 @@ def drop_candidates(i, loss, unary, price, candidates, counts):  # type: ignore[
 
 @njit(cache=True)
 def one_pass(forward, node, problem, loss):  # type: ignore[no-untyped-def]
-    """Every object once, in order or against it; false where that shows that the node is worth less than is sought.
+    """Pass messages for every object once, forward or backward; return false where the node is closed.
 
-    ``loss`` is the bound less what is sought: a candidate that lacks more against the best one is dropped.
+    ``loss`` is the bound minus the sought value: a candidate that is more below the best one is dropped.
     """
     n1 = len(node.counts)
     for step in range(n1):
@@ -113,9 +113,9 @@ def _best(i, unary, price, candidates, counts):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def tighten(node, problem, sought, bound, passes, patience, column_of):  # type: ignore[no-untyped-def]
-    """Lowers the bound of a node until it is below what is sought, or ``patience`` more such passes would not do it.
+    """Lower the bound of a node until it is below the sought value, or ``patience`` more passes would not suffice.
 
-    Fills in the map that the last assignment gives, and returns the bound, which may be what came in.
+    Fills in the map ``column_of`` of the last assignment, and returns the bound.
     """
     for turn in range(passes):
         if not one_pass(turn % 2 == 0, node, problem, bound - sought):
@@ -131,21 +131,21 @@ def tighten(node, problem, sought, bound, passes, patience, column_of):  # type:
     return bound
 
 
-PASSES, PATIENCE = 30, 10  # over a node, and how many more like the last one must promise to close it
-LEAF_PASSES = 2  # where all maps are wanted, and few nodes can be closed
+PASSES, PATIENCE = 30, 10  # maximum passes over a node, and number of further passes that must promise to close it
+LEAF_PASSES = 2  # passes when listing all maps, where few nodes can be closed
 DONE, BUDGET, FULL, DEEP = 0, 1, 2, 3
 CLOSED, LEAF, OPEN = 0, 1, 2
 
 
 class Node(NamedTuple):
-    """What is still possible below a node, and what proves how good it can be."""
+    """Candidates of every object below a node, and the messages and prices that bound the value of its maps."""
 
-    unary: NDArray[np.float64]  # (n1, n2 + 1): with what the facts handed over; -inf for what is no candidate (more)
-    messages: NDArray[np.float64]  # (2m, n2 + 1): what each slot handed to its owner
+    unary: NDArray[np.float64]  # (n1, n2 + 1): with the messages of the facts; -inf where dropped or not allowed
+    messages: NDArray[np.float64]  # (2m, n2 + 1): message of each slot to its object
     candidates: NDArray[np.int32]  # (n1, n2 + 1): the first counts[i] of row i
     counts: NDArray[np.int64]  # (n1,)
-    price: NDArray[np.float64]  # (n2 + 1,): of the things; that of staying without is 0
-    profit: NDArray[np.float64]  # (n1,): of the objects
+    price: NDArray[np.float64]  # (n2 + 1,): prices of the things; that of absence is 0
+    profit: NDArray[np.float64]  # (n1,): profits of the objects
 
 
 class Stack(NamedTuple):
@@ -159,25 +159,25 @@ class Stack(NamedTuple):
     profit: NDArray[np.float64]
     bound: NDArray[np.float64]  # (depth,)
     branch: NDArray[np.int64]  # (depth,): the object that the node branches on
-    position: NDArray[np.int64]  # (depth,): how many of its candidates have been tried
-    depth: NDArray[np.int64]  # (1,): of the node at work; -1 when the search is over
+    position: NDArray[np.int64]  # (depth,): number of its candidates that were tried
+    depth: NDArray[np.int64]  # (1,): depth of the current node; -1 after the end of the search
 
 
 class Record(NamedTuple):
-    """What the search found: the best map, or all maps that reach what is sought."""
+    """Maps found by the search: the best map, or all maps of at least the sought value."""
 
-    labels: NDArray[np.int64]  # (limit, n1): the best one first where one is looked for
+    labels: NDArray[np.int64]  # (limit, n1): maps; only the first when searching the best one
     values: NDArray[np.float64]  # (limit,)
-    found: NDArray[np.int64]  # (1,): how many
-    sought: NDArray[np.float64]  # (1,): what a map has to reach
-    step: NDArray[np.float64]  # (1,): by how much a map has to be better than the best so far; inf: all are kept
+    found: NDArray[np.int64]  # (1,): number of maps
+    sought: NDArray[np.float64]  # (1,): minimum value of a map
+    step: NDArray[np.float64]  # (1,): minimum improvement over the best map so far; inf: all maps are kept
     nodes: NDArray[np.int64]  # (1,)
 
 
 def new_stack(problem: Compiled, cells: float) -> Stack:
-    """A stack with the root on it: every object with every candidate, nothing handed over.
+    """Return a stack with the root: every object with every allowed candidate, and no messages.
 
-    It is as deep as the search can get, or as so many cells allow.
+    It is as deep as the search needs, or as deep as ``cells`` numbers allow.
     """
     n1, width = problem.unary.shape
     slots = len(problem.kind)
@@ -203,7 +203,7 @@ def new_stack(problem: Compiled, cells: float) -> Stack:
 
 @njit(cache=True)
 def search(problem, stack, record, budget):  # type: ignore[no-untyped-def]
-    """Searches on for ``budget`` nodes; says whether it is over, stopped there, or lacks room for maps or depth."""
+    """Continue the search for ``budget`` nodes; return DONE, BUDGET, FULL (no room for maps) or DEEP (for depth)."""
     column_of = np.empty(len(problem.unary), np.int64)
     while stack.depth[0] >= 0:
         d = stack.depth[0]
@@ -228,6 +228,7 @@ def search(problem, stack, record, budget):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def node_at(d, stack):  # type: ignore[no-untyped-def]
+    """Return a view of the node at depth d."""
     return Node(
         stack.unary[d], stack.messages[d], stack.candidates[d], stack.counts[d], stack.price[d], stack.profit[d]
     )
@@ -235,7 +236,7 @@ def node_at(d, stack):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _look_at(d, problem, stack, record, column_of):  # type: ignore[no-untyped-def]
-    """Tightens a new node and chooses what it branches on; says whether it is closed, one map, or open."""
+    """Tighten a new node and choose the object to branch on; return CLOSED, LEAF or OPEN."""
     node = node_at(d, stack)
     all_maps = record.step[0] == np.inf
     passes = LEAF_PASSES if all_maps else PASSES
@@ -259,7 +260,7 @@ def _look_at(d, problem, stack, record, column_of):  # type: ignore[no-untyped-d
 
 @njit(cache=True)
 def _before(j, i, node, problem):  # type: ignore[no-untyped-def]
-    """Whether to branch on j rather than on i: fewer candidates, then more facts."""
+    """Return whether to branch on j rather than on i: fewer candidates, then more facts."""
     if node.counts[j] != node.counts[i]:
         return node.counts[j] < node.counts[i]
     return problem.first[j + 1] - problem.first[j] > problem.first[i + 1] - problem.first[i]
@@ -267,7 +268,7 @@ def _before(j, i, node, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _sort(candidates, unary, price):  # type: ignore[no-untyped-def]
-    """Best first, by insertion: there are few."""
+    """Sort the candidates, best first, by insertion, because there are few."""
     for a in range(1, len(candidates)):
         p = candidates[a]
         k = a
@@ -279,7 +280,7 @@ def _sort(candidates, unary, price):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _keep(labels, problem, record):  # type: ignore[no-untyped-def]
-    """Records a map that reaches what is sought; where one is looked for, more is sought from then on."""
+    """Record a map of at least the sought value; when searching the best map, raise the sought value."""
     value = evaluate(labels, problem)
     if value < record.sought[0]:
         return
@@ -292,7 +293,7 @@ def _keep(labels, problem, record):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def evaluate(labels, problem):  # type: ignore[no-untyped-def]
-    """The value of a map with n2 for what is left out."""
+    """Return the value of a map (n1,) with n2 for objects that are left out."""
     value = 0.0
     for i in range(len(labels)):
         value += problem.unary[i, labels[i]]
@@ -304,7 +305,7 @@ def evaluate(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def child_bound(d, stack):  # type: ignore[no-untyped-def]
-    """What the next child of a node can be worth at most."""
+    """Return an upper bound on the value of the next child of a node."""
     i, at = stack.branch[d], stack.position[d]
     if at >= stack.counts[d, i]:
         return -np.inf
@@ -314,7 +315,7 @@ def child_bound(d, stack):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _descend(d, stack, record):  # type: ignore[no-untyped-def]
-    """Puts the next child of a node on the stack, or takes the node off where none is left that could do."""
+    """Push the next child of a node on the stack, or pop the node where no child can reach the sought value."""
     bound = child_bound(d, stack)
     if bound < record.sought[0]:
         stack.branch[d] = -1
@@ -333,7 +334,7 @@ def _descend(d, stack, record):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _give(i, p, node):  # type: ignore[no-untyped-def]
-    """Leaves object i only p, and p to no other object; false where another has nothing left."""
+    """Restrict object i to thing p, and exclude p for other objects; return false where one has no candidate left."""
     node.candidates[i, 0], node.counts[i] = p, 1
     kept = node.unary[i, p]
     node.unary[i] = -np.inf

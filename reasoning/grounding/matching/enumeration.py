@@ -1,9 +1,9 @@
-"""The probabilities of matches by adding up maps one by one, with a proof of how much is missing; compiled.
+"""Sum of the weights of maps by depth-first search over partial maps, with a bound on the missing mass; compiled.
 
-A depth-first search over partial maps. Each fact is first bounded by what its two ends say by themselves (the messages
-of ``bounds.py``), so that what it then still says of a pair is at most 0. The sum over all maps below a partial one is
-hence at most the product, over the objects that are left, of the sums over what each may still be. Where that is below
-a threshold the search turns back, and counts the bound as missing.
+Messages (as in ``branch_and_bound.py``) first move evidence of each fact to its two ends, so that the remaining entries
+of its table are at most 0. The sum over all maps below a partial map is then at most the product, over the remaining
+objects, of the sums over their candidates. Where that is below a threshold, the search turns back and adds the bound to
+the missing mass.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from deixis.reasoning.grounding.matching.problem import Compiled
 from deixis.reasoning.kernel import njit
 
 PASSES = 30  # of messages
-LOWEST_VALUE = -1e12  # a value that every map has: no match is dropped for being worth less
+LOWEST_VALUE = -1e12  # lower bound of the value of every map, so that no match is dropped
 
 
 class Factors(NamedTuple):
-    """The posterior as a product: of an odds for every match, and of a number up to 1 for every fact's pair."""
+    """Posterior as a product of odds for every match and a factor of at most 1 for every fact's pair."""
 
     weights: NDArray[np.float64]  # (n1, n2 + 1)
-    idle: NDArray[np.float64]  # (n2 + 1,): for every thing that nobody is, up to 1
-    facts: NDArray[np.float64]  # (2m, n2 + 1, n2 + 1): at each slot, the owner's thing the row
-    log_scale: float  # the logarithm of what all products are to be multiplied by
+    idle: NDArray[np.float64]  # (n2 + 1,): factor of at most 1 for every unmatched thing
+    facts: NDArray[np.float64]  # (2m, n2 + 1, n2 + 1): at each slot, with the things of its object as rows
+    log_scale: float  # logarithm of the common factor of all products
 
 
 def factors(problem: Compiled) -> Factors:
-    """The problem's messages, and what they leave."""
+    """Return the posterior of a problem as factors, after moving evidence by messages."""
     stack, column_of = new_stack(problem, 1.0), np.empty(len(problem.unary), dtype=np.int64)
     node = node_at(0, stack)
     tighten(node, problem, LOWEST_VALUE, np.inf, PASSES, 10**18, column_of)
@@ -49,10 +49,10 @@ def factors(problem: Compiled) -> Factors:
 def add_up(
     problem: Compiled, parts: Factors, threshold: float, nodes: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Searches until ``nodes`` partial maps were looked at, turning back where less than ``threshold`` is below.
+    """Sum the weights of maps, visiting at most ``nodes`` partial maps with a bound above ``threshold``.
 
-    Returns the weights of the maps found, by match (n1, n2 + 1), and (3,): the sum of them all, a bound on what is
-    missing (inf where the nodes did not suffice), and the number of nodes.
+    Returns the sums by match (n1, n2 + 1), and an array (3,): the total sum, a bound on the missing mass (inf where the
+    nodes did not suffice), and the number of nodes.
     """
     marginals, counts = np.zeros_like(parts.weights), np.zeros(3)
     _search(parts.weights, parts.idle, parts.facts, problem.first, problem.other, threshold, nodes, marginals, counts)
@@ -116,7 +116,7 @@ def _search(root, idle, facts, first, other, threshold, nodes, marginals, counts
 
 @njit(cache=True)
 def _idle(last, used, idle):  # type: ignore[no-untyped-def]
-    """The factor for the things that nobody is, the last object being ``last``."""
+    """Return the product of the factors of unmatched things, if the last object is the thing ``last``."""
     product = 1.0
     for p in range(len(idle)):
         if not used[p] and p != last:
@@ -126,7 +126,7 @@ def _idle(last, used, idle):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _open(depth, labels, sums, most, chosen, rest):  # type: ignore[no-untyped-def]
-    """Branches on the object left with the fewest things in effect: the least sum over the largest weight."""
+    """Choose the object to branch on: that with the fewest effective candidates, the sum over the largest weight."""
     fewest = np.inf
     for i in range(len(labels)):
         if labels[i] < 0:
@@ -138,7 +138,7 @@ def _open(depth, labels, sums, most, chosen, rest):  # type: ignore[no-untyped-d
 
 @njit(cache=True)
 def _product(sums, but):  # type: ignore[no-untyped-def]
-    """Of the sums of the objects that are left, but one."""
+    """Return the product of the sums of all remaining objects except ``but``."""
     product = 1.0
     for i in range(len(sums)):
         if i != but:
@@ -148,7 +148,7 @@ def _product(sums, but):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _assign(depth, i, p, labels, weights, sums, most, facts, first, other):  # type: ignore[no-untyped-def]
-    """The node one deeper, in which object i is p: others may not be p, and its facts weigh on their ends."""
+    """Fill in the child node in which object i is thing p: exclude p for other objects, and apply i's facts."""
     n1, width = weights.shape[1], weights.shape[2]
     for j in range(n1):
         if labels[j] < 0:

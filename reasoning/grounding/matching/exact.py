@@ -1,4 +1,4 @@
-"""The exact engine: the best map with its proof, or how far from the best it may be; and all maps within a margin."""
+"""Exact search: the best map with a proof or a bound of its gap, and all maps within a margin of the best."""
 
 from __future__ import annotations
 
@@ -25,54 +25,53 @@ from deixis.reasoning.grounding.matching.problem import Compiled, MatchingError,
 from deixis.reasoning.grounding.matching.scalable import search_from
 
 SLACK = 1e-7
-"""Values nearer than this count as equal."""
+"""Difference in nats below which values count as equal."""
 
 MAX_STACK_CELLS = 6e7
-"""What the search may hold at once, in numbers of 8 bytes."""
+"""Maximum size of the search's stack, in numbers of 8 bytes."""
 
 MAX_PASS_CELLS = 1e9
-"""Cells of tables that one pass over the facts may read; beyond, only a loose bound is given."""
+"""Maximum number of table cells of one pass over the facts; beyond it, only a loose bound is given."""
 
 ROOT_PASSES, ROOT_PATIENCE = 200, 100
+"""Maximum number of passes over the root, and of further passes that must promise to close it."""
+
 START_EFFORT_PER_SQUARE = 3e-4
-"""Effort of the scalable search before the proof, by the square of the objects: proofs get that much harder."""
+"""Effort of the scalable search before the proof, per square of the number of objects, as proofs get harder."""
 
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """The best map found (n1,), its value, an upper bound on the value of any map, and nodes of the search."""
+    """Result of an exact search."""
 
-    assignment: NDArray[np.int64]
+    assignment: NDArray[np.int64]  # (n1,) the best map found
     value: float
-    bound: float
-    nodes: int
+    bound: float  # upper bound on the value of any map
+    nodes: int  # nodes of the search
 
     @property
     def proved(self) -> bool:
-        """Whether no map is better (by more than SLACK)."""
+        """True where no map is better by more than SLACK."""
         return self.bound <= self.value + 2 * SLACK
 
     @property
     def gap(self) -> float:
-        """By how much another map could be better at most."""
+        """Upper bound, in nats, on how much better another map may be."""
         return max(0.0, self.bound - self.value)
 
 
 @dataclass(frozen=True, eq=False)
 class Maps:
-    """Different maps (c, n1) and their values (c,), best first.
+    """Different maps within a margin of the best, best first."""
 
-    ``complete``: no other map is within the margin. If not, it was the limit (``limited``) or the deadline.
-    """
-
-    assignments: NDArray[np.int64]
-    values: NDArray[np.float64]
-    complete: bool
-    limited: bool
+    assignments: NDArray[np.int64]  # (c, n1)
+    values: NDArray[np.float64]  # (c,)
+    complete: bool  # whether these are all maps within the margin
+    limited: bool  # if not complete: the limit on the number of maps was reached, and not the deadline
 
 
 def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> Optimum:
-    """The best map, proved as far as the time until ``deadline`` allows.
+    """Find the best map by branch and bound, and prove it as far as the time until ``deadline`` allows.
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
@@ -101,7 +100,7 @@ def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int 
 def maps_within(
     problem: Problem, margin: float = 0.0, deadline: Deadline = Deadline.never(), *, limit: int = 10_000
 ) -> Maps:
-    """All maps worth at most ``margin`` less than the best, up to a limit and a deadline.
+    """Find all maps whose value is at most ``margin`` nats below the best, up to a limit and a deadline.
 
     A margin of 0 gives all optima. Raises MatchingError for a margin below 0 or a limit below 1.
 
@@ -111,7 +110,7 @@ def maps_within(
     ([[0], [1]], [1.0, 1.0, 0.0])
     """
     if not margin >= 0 or limit < 1:
-        raise MatchingError(f"a margin is 0 or more and a limit 1 or more, not {margin} and {limit}")
+        raise MatchingError(f"`margin` must be at least 0 and `limit` at least 1, got {margin} and {limit}")
     best = exact(problem, deadline)
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0 or not best.proved:
@@ -127,14 +126,14 @@ def maps_within(
 
 
 def warm() -> None:
-    """Compiles the engine, or loads it compiled, so that a time limit is spent on searching."""
+    """Compile the engine, or load its compiled code, so that a time limit is spent on searching."""
     tables = np.array([[[0, 1], [0, 0]]], np.float32)
     problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
     maps_within(problem, 5.0)
 
 
 def loose_bound(problem: Problem) -> float:
-    """What no map is worth more than, at sight: the best of every object and of every fact by itself."""
+    """Return an upper bound on the value of any map: the sum of the best value of each object and of each fact."""
     alone = np.maximum(problem.unary.max(axis=1, where=problem.allowed, initial=-np.inf), problem.absent)
     facts = np.maximum(problem.tables.max(axis=(1, 2), initial=0.0), 0.0)[problem.kinds]
     return float(alone.sum() + facts.sum(dtype=np.float64))
@@ -152,7 +151,7 @@ def _record(limit: int, n1: int, sought: float, step: float) -> Record:
 
 
 def _run(compiled: Compiled, record: Record, deadline: Deadline, bound: float) -> tuple[float, int]:
-    """Searches until it is over or has to stop; returns an upper bound on what was not found, and how it ended."""
+    """Search until the end or the deadline; return an upper bound on the maps not found, and the final state."""
     work = len(compiled.kind) * compiled.unary.shape[1] ** 2
     if work > MAX_PASS_CELLS or deadline.passed:
         return bound, BUDGET
@@ -165,7 +164,7 @@ def _run(compiled: Compiled, record: Record, deadline: Deadline, bound: float) -
 
 
 def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: Deadline) -> None:
-    """More passes than a node gets: what they drop at the root is dropped everywhere."""
+    """Tighten the root by more passes than other nodes get: candidates dropped there are dropped everywhere."""
     root, column_of = node_at(0, stack), np.empty(len(compiled.unary), dtype=np.int64)
     for _ in range(ROOT_PASSES):
         before = stack.bound[0]
@@ -176,7 +175,7 @@ def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: De
 
 
 def _open_bound(stack: Stack) -> float:
-    """An upper bound on what a stopped search has not looked at: that of the open nodes on its stack."""
+    """Return an upper bound on the maps that a stopped search has not visited: that of its open nodes."""
     bound = -np.inf
     for d in range(int(stack.depth[0]) + 1):
         bound = max(bound, child_bound(d, stack) if stack.branch[d] >= 0 else stack.bound[d])
@@ -184,7 +183,7 @@ def _open_bound(stack: Stack) -> float:
 
 
 def _grid(problem: Problem) -> float:
-    """The coarsest of a few steps of which all numbers are multiples, or 0: values that differ do so by a step."""
+    """Return the coarsest of a few steps of which all numbers are multiples, or 0; values then differ by a step."""
     for step in (1.0, 0.5, 0.25, 0.2, 0.1, 0.05):
         parts = (problem.absent, *(row for table in problem.tables for row in table), problem.unary[problem.allowed])
         if all(np.abs(part / step - np.round(part / step)).max(initial=0.0) < 1e-6 for part in parts):

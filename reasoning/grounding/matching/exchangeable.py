@@ -1,4 +1,4 @@
-"""Which objects of a matching problem may change places without changing the value of any map."""
+"""Find the objects of a matching problem that are exchangeable: swapping them preserves the value of every map."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ Facts = list[Counter[tuple[int, bool, int]]]  # of each object: kind, whether it
 
 
 def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
-    """The groups of objects any two of which could change places without changing the value of any map.
+    """Return the groups of objects any two of which can be swapped without changing the value of any map.
 
-    Two objects are such where they have the same unary evidence and the same facts with every third object, and what
-    is said of the two is said both ways round. That is an equivalence, so that all orders of a group are as good.
+    Two objects are exchangeable where they have the same unary evidence and the same facts with every third object,
+    and facts between the two hold in both directions. This is an equivalence relation, so that all orders of a group
+    have the same value.
 
     >>> alike = Problem(np.array([[0, 2], [1, 2]]), np.zeros(2, np.int64), np.zeros((1, 3, 3), np.float32),
     ...                 np.zeros((3, 3)), np.zeros(3))
@@ -40,7 +41,7 @@ def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
 
 
 def averaged(marginals: NDArray[Number], groups: tuple[tuple[int, ...], ...]) -> NDArray[Number]:
-    """Marginals (…, n1, n2 + 1) with the same row, their mean, for all members of a group: what the posterior's have.
+    """Return marginals (…, n1, n2 + 1) with the rows of each group replaced by their mean, which is exact.
 
     >>> averaged(np.array([[1.0, 0.0], [0.0, 1.0]]), ((0, 1),)).tolist()
     [[0.5, 0.5], [0.5, 0.5]]
@@ -53,7 +54,7 @@ def averaged(marginals: NDArray[Number], groups: tuple[tuple[int, ...], ...]) ->
 
 
 def _signature(i: int, problem: Problem, facts: Facts) -> tuple[object, ...]:
-    """What exchangeable objects have in common, whatever the others are called; few others have it."""
+    """Return a key that exchangeable objects have in common and that few other objects share."""
     said = tuple(sorted((kind, first, n) for (kind, first, _), n in facts[i].items()))
     alone = np.where(problem.allowed[i], problem.unary[i], 0.0).tobytes(), problem.allowed[i].tobytes()
     return float(problem.absent[i]), alone, said

@@ -1,9 +1,9 @@
-"""Marginals and evidence of large problems: ladders of Markov chains that are run until they agree.
+"""Marginals and evidence of large problems: ladders of Markov chains that run until they agree.
 
 A ladder is a set of chains from the posterior's own temperature to one at which chains mix within a few sweeps
-(``sampling.py``). Several ladders begin at maps of their own, drawn by belief propagation, and are cooled. What they
-differ by is the error of each object's marginals: where some chain is stuck, or had no time to mix, the ladders differ
-and the error says so (between-chain variance; Gelman and Rubin 1992).
+(``sampling.py``). Several ladders begin at different maps, drawn by belief propagation, and are cooled. Their
+difference is the error of each object's marginals: where a chain is stuck, or had no time to mix, the ladders differ
+and the error is large (between-chain variance; Gelman and Rubin 1992).
 """
 
 from __future__ import annotations
@@ -38,27 +38,27 @@ Array = NDArray[np.float64]
 LADDERS = 8
 
 RUNGS_PER_ROOT, MIN_RUNGS, MAX_CHAIN_OBJECTS = 1.6, 3, 1600
-"""Temperatures that take a ladder to the hottest one, by the square root of the objects, the fewest, and the most that
-there are by the objects of all chains of a ladder; where they are fewer, the ladder ends before the hottest one."""
+"""Number of temperatures of a full ladder per square root of the number of objects; minimum number; and maximum number
+of objects in all chains of a ladder, which may end a ladder before the hottest temperature."""
 
 MIN_COLDNESS = 0.3
-"""Coldness at which chains mix within a few sweeps: of the hottest chain of a ladder, and where all begin."""
+"""Coldness at which chains mix within a few sweeps: that of the hottest chain, and of all chains at the start."""
 
 COOLING_TURNS, COOLING_SWEEPS, COOLING_SHARE = 200, 5, 0.5
-"""Turns in which every chain is first cooled to its own coldness, sweeps in each, and the share of the time for all: in
-a hurry, turns are left out evenly."""
+"""Number of turns that cool every chain to its own coldness, sweeps per turn, and share of the time; where the time is
+short, turns are skipped evenly."""
 
 FIRST_SWEEPS = 50
 """Sweeps of the first two parts of a run; the next two parts are twice as long, and so on."""
 
 TOLERANCE = 0.007
-"""Error of the marginals that is good enough."""
+"""Error of the marginals at which sampling stops."""
 
 PROPOSALS, MAX_PROPOSALS = 2e5, 4e8
-"""Proposals for each object in all chains, and for all objects, at the most."""
+"""Maximum number of proposals for each object in all chains, and for all objects."""
 
 BELIEF_DRAWS = 8.0
-"""Independent draws that the beliefs by which chains are guided count as."""
+"""Number of independent draws that the beliefs count as when marginals are estimated."""
 
 PROPOSALS_PER_CLOCK_CHECK = 5e4
 
@@ -69,17 +69,18 @@ CHAINS_SHARE = 0.9
 """Share of the time after the guide that the chains may take; the rest is for comparing them."""
 
 EVIDENCE_TOLERANCE = 0.2
-"""Error of a log evidence that is good enough, in nats."""
+"""Error of a log evidence, in nats, at which sampling stops."""
 
 
 def sampled_marginals(
     problem: Compiled, groups: tuple[tuple[int, ...], ...], deadline: Deadline, seed: int
 ) -> tuple[Array, Array]:
-    """Return the marginals (n1, n2 + 1), and for each object by how much they may be off (n1,).
+    """Return the marginals (n1, n2 + 1), and the error of each object's marginals (n1,).
 
-    Ladders run part by part, each two parts twice as long as the two before, until the last two parts of all ladders
-    agree within ``TOLERANCE``; what comes before is left out, as being on the way. ``groups`` of objects have one
-    marginal each. Where the ``deadline`` leaves no two parts, the marginals are beliefs, and their errors infinite.
+    Ladders run in parts, each two parts twice as long as the two before, until the last two parts of all ladders agree
+    within ``TOLERANCE``; earlier parts are discarded as burn-in. All objects of a group in ``groups`` have the same
+    marginals. Where the ``deadline`` leaves time for less than two parts, the marginals are those of belief
+    propagation, and their errors are infinite.
     """
     n1 = len(problem.unary)
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
@@ -100,11 +101,11 @@ def sampled_marginals(
 
 
 def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> tuple[float, float]:
-    """Return by how much likelier, in nats, the evidence is than by chance over all allowed maps, and its error.
+    """Return the log-likelihood ratio in nats of the evidence against chance over all allowed maps, and its error.
 
-    It is the logarithm of the sum over all maps of the exponential of their values, less that of the sum of what they
-    pay for what they leave out alone. The error is what ladders and a coarser rule differ by, infinite where the
-    ``deadline`` left no time.
+    It is the logarithm of the sum over all maps of the exponential of their values, minus the same with the costs of
+    absence alone. The error is estimated from the differences of ladders and from a coarser integration rule; it is
+    infinite where the ``deadline`` left no time.
 
     >>> ends, nothing = np.zeros((0, 2), np.int64), np.zeros((0, 1, 1), np.float32)
     >>> alone = Problem(ends, ends[:, 0], nothing, np.array([[-2.0]]), np.array([-9.0]))
@@ -130,21 +131,21 @@ def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, see
 
 
 def warm() -> None:
-    """Compiles the chains, or loads them compiled, so that a time limit is spent on running them."""
+    """Compile the chains, or load their compiled code, so that a time limit is spent on running them."""
     tables, ends = np.zeros((1, 2, 2), np.float32), np.array([[0, 1]])
     tiny = Problem(ends, np.array([0]), tables, np.zeros((2, 2)), np.zeros(2))
     next(_begun(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
 
 
 def believed_marginals(problem: Compiled, deadline: Deadline) -> Array:
-    """Return what belief propagation makes of the marginals (n1, n2 + 1) until the deadline."""
+    """Return the marginals (n1, n2 + 1) of belief propagation until the deadline."""
     with threadpool_limits(1, "blas"):
         return beliefs(problem, deadline).astype(np.float64)
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """What ladders came to in so many sweeps."""
+    """Counts and values of all ladders over a number of sweeps."""
 
     sweeps: int
     counts: NDArray[np.float32]  # (LADDERS, n1, n2 + 1): how often, or in which share, each object was each thing
@@ -153,7 +154,7 @@ class _Part:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """Ladders under way, side by side in as many threads as there are processors."""
+    """Running ladders, in as many threads as there are processors."""
 
     problem: Compiled
     guide: Guide
@@ -163,6 +164,7 @@ class _Run:
 
     @property
     def rungs(self) -> int:
+        """Number of chains of a ladder."""
         return len(self.ladders[0].coldness)
 
     def parts(self, most: float) -> Iterator[_Part]:
@@ -183,7 +185,7 @@ class _Run:
                     return
 
     def _cool(self, pool: ThreadPoolExecutor) -> bool:
-        """Begin the ladders and cool their chains, the faster the less time there is; False where there is none."""
+        """Begin the ladders and cool their chains, faster where time is short; return False where there is no time."""
         seeds = np.random.default_rng([self.seed, 0])
         for chains in self.ladders:
             if self.deadline.passed:
@@ -206,7 +208,7 @@ class _Run:
         cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
 
     def _sampled(self, pool: ThreadPoolExecutor, number: int, sweeps: int) -> _Part:
-        """Run all ladders for so many sweeps, or until the deadline."""
+        """Run all ladders for a number of sweeps, or until the deadline."""
         seeds = np.random.default_rng([self.seed, 1 + number])
         counts = np.zeros((LADDERS, *self.problem.unary.shape), np.float32)
         values, done = np.zeros((LADDERS, self.rungs)), 0
@@ -234,11 +236,11 @@ def _begun(problem: Compiled, coldness: Array, deadline: Deadline, seed: int) ->
 def _agreement(parts: list[_Part], known: Array) -> tuple[Array, Array]:
     """Return the marginals (n1, n2 + 1) by the last parts, and the largest standard error of each object's (n1,).
 
-    The error is the larger of what the ladders differ by, and of what their parts do. An object's effective sample size
-    is that of independent draws with its error (Gelman and Rubin 1992), and the beliefs ``known`` (n1, n2 + 1) count as
-    ``BELIEF_DRAWS`` more: where chains mix, they decide; where each is stuck at a map of its own, they are a few draws
-    from which no probability near 0 or 1 can be told. An object that is the same thing in all draws has the effective
-    sample size of those that are not; of the quarter that mix worst.
+    The error is the larger of the standard errors between ladders and between their parts. An object's effective sample
+    size is that of independent draws with its error (Gelman and Rubin 1992), and the beliefs ``known`` (n1, n2 + 1)
+    count as ``BELIEF_DRAWS`` more draws. Where chains mix, they determine the result; where each is stuck at a map,
+    they are a few draws, which show no probability near 0 or 1. An object that is the same thing in all draws gets the
+    lower quartile of the effective sample sizes of the others.
     """
     sweeps = sum(part.sweeps for part in parts)
     mean, squared = np.zeros_like(known), np.zeros_like(known)

@@ -1,19 +1,19 @@
 """Local search over maps: incremental gains, annealing, hill climbing, reassignment and recombination; compiled.
 
-Most exchanges that a search looks at are not made. With the gains kept, looking takes a few numbers, whatever the
-facts; only an exchange that is made costs a row of a table for each fact of the two objects.
+Most exchanges that a search evaluates are not made. With cached gains, evaluating an exchange takes a few numbers,
+whatever the number of facts; only making one costs a row of a table for each fact of the two objects.
 
-For an object, all exchanges are looked at: each thing, or none, and to whoever has it what the object had. One is drawn
-with a probability that grows exponentially with what it gains over the temperature, as the largest of the gains with
-Gumbel noise on them (perturb and maximise, Papandreou and Yuille 2011).
+Annealing considers all exchanges of an object: it gets another thing or none, and the object that had the thing gets
+the old one. One exchange is drawn with a probability proportional to the exponential of its gain over the temperature,
+as the largest of the gains with Gumbel noise (perturb and maximise, Papandreou and Yuille 2011).
 
-What such objects are worth as each thing does not depend on one another while all others stay as they are, so that the
-best way to deal out their things, and those that nobody has, is a linear assignment: the best of exponentially many
-neighbours of a map (very large-scale neighbourhood search; Ahuja, Ergun, Orlin and Punnen 2002).
+Reassignment takes objects that share no facts. Their gains do not depend on each other while all other objects stay, so
+that the best way to distribute their things and the unmatched things is a linear assignment: the best of exponentially
+many neighbours of a map (very large-scale neighbourhood search; Ahuja, Ergun, Orlin and Punnen 2002).
 
-Where two maps differ, the objects that differ fall into parts with no fact and no thing in common. Each part may be
-taken from either map, whatever is taken elsewhere, so that the best of all such combinations is found part by part
-(partition crossover; Whitley, Hains and Howe 2009 for tours, Tinos, Whitley and Chicano 2015 for sums of terms).
+Recombination divides the objects in which two maps differ into parts with no fact and no thing in common. Each part can
+be taken from either map independently, so that the best combination is found part by part (partition crossover;
+Whitley, Hains and Howe 2009 for tours, Tinos, Whitley and Chicano 2015 for sums of terms).
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ from deixis.reasoning.kernel import njit
 
 
 class KeptMap(NamedTuple):
-    """A map and its gains, in single precision: :func:`refresh` now and then keeps the error of sums small."""
+    """A map and its gains in single precision; regular calls of :func:`refresh` keep the rounding error small."""
 
-    labels: NDArray[np.int64]  # (n1,): n2 for what is left out
-    holder: NDArray[np.int64]  # (n2 + 1,): who has the thing, -1 where nobody has; -1 for n2
+    labels: NDArray[np.int64]  # (n1,): n2 for objects that are left out
+    holder: NDArray[np.int64]  # (n2 + 1,): object that has the thing, -1 for none; -1 for n2
     gains: NDArray[np.float32]  # (n1, n2 + 1): value of object i as thing p, the others as they are; -inf: not allowed
 
 
 def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
-    """A copy of a map (n1,), with its gains."""
+    """Return a copy of a map (n1,) with its gains."""
     n1, width = problem.unary.shape
     state = KeptMap(labels.copy(), np.empty(width, dtype=np.int64), np.empty((n1, width), dtype=np.float32))
     refresh(state, problem)
@@ -46,7 +46,7 @@ def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
 
 @njit(cache=True, nogil=True)
 def refresh(state, problem):  # type: ignore[no-untyped-def]
-    """Computes all but the labels anew."""
+    """Recompute holders and gains from the labels."""
     labels, gains, holder = state.labels, state.gains, state.holder
     holder[:] = -1
     for i in range(len(labels)):
@@ -60,7 +60,7 @@ def refresh(state, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
-    """Gives object i thing p (n2: leaves it out), and whoever had it what i had."""
+    """Give object i thing p (n2: leave it out), and the object that had p the thing of i."""
     old, j = state.labels[i], state.holder[p]
     out = len(state.holder) - 1
     _give(i, p, state, problem)
@@ -84,7 +84,7 @@ def _give(i, p, state, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def climb(labels, problem):  # type: ignore[no-untyped-def]
-    """Moves and swaps of one object after another, each the best there is, until none helps."""
+    """Apply the best move or swap of one object after another, until none improves the map."""
     out = problem.unary.shape[1] - 1
     holder = np.full(out + 1, -1)
     for i in range(len(labels)):
@@ -109,7 +109,7 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
-    """What object i is worth as each thing, with the others as they are, into ``gain`` (n2 + 1,)."""
+    """Fill ``gain`` (n2 + 1,) with the value of object i as each thing, with the other objects unchanged."""
     gain[:] = problem.unary[i]
     for slot in range(problem.first[i], problem.first[i + 1]):
         kind, q = problem.kind[problem.twin[slot]], labels[problem.other[slot]]
@@ -119,7 +119,7 @@ def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _exchange_gain(i, p, j, gain, labels, problem):  # type: ignore[no-untyped-def]
-    """What it gains to give object i thing p, and i's thing to j, who had p (or had nobody, -1)."""
+    """Return the gain of giving object i thing p, and i's thing to object j, which had p (-1: none had it)."""
     old = labels[i]
     gained = gain[p] - gain[old]
     if j < 0:
@@ -146,15 +146,15 @@ def _exchange(i, p, labels, holder, out):  # type: ignore[no-untyped-def]
         holder[old] = j
 
 
-NOISE_TABLE_SIZE = 1 << 13  # Gumbel numbers in a table, read from random places on
-MIN_GAIN_SINGLE = 1e-4  # what a map has to be better by: more than the error of gains in single precision
+NOISE_TABLE_SIZE = 1 << 13  # Gumbel numbers in a table, read from random positions
+MIN_GAIN_SINGLE = 1e-4  # minimum improvement of a map: above the error of gains in single precision
 
 
 @njit(cache=True, nogil=True)
 def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
-    """So many sweeps over all objects, from a map that is worth ``ahead`` more than ``best`` (n1,).
+    """Anneal for a number of sweeps over all objects, from a map whose value is ``ahead`` above that of ``best`` (n1,).
 
-    ``best`` takes every map that is better. Returns by how much the last map is. ``noise`` holds
+    Every better map is stored in ``best``. Returns the lead of the last map over it. ``noise`` holds
     NOISE_TABLE_SIZE + n2 + 1 Gumbel numbers in single precision.
     """
     np.random.seed(seed)
@@ -177,11 +177,11 @@ def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # ty
 
 @njit(cache=True)
 def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-untyped-def]
-    """A thing for object i, and what the exchange gains; ``facts`` (n2 + 1,) is all 0 before and after."""
+    """Draw a thing for object i; return it and the gain. The buffer ``facts`` (n2 + 1,) is all 0 before and after."""
     old, out = state.labels[i], len(state.holder) - 1
     for slot in range(problem.first[i], problem.first[i + 1]):
         q, kind = state.labels[problem.other[slot]], problem.kind[slot]
-        if q < out:  # a fact with whoever has q is in both gains, as if the other one stayed
+        if q < out:  # a fact with the object that has q is in both gains, as if the other object stayed
             facts[q] += problem.tables[kind, q, old] + problem.tables[kind, old, q]
     holder, gains, own = state.holder, state.gains, state.gains[i]
     base = own[old]
@@ -198,12 +198,12 @@ def _draw(i, state, problem, temperature, noise, at, facts):  # type: ignore[no-
     return chosen, gained
 
 
-MIN_GAIN = 1e-6  # what a map has to be better by
+MIN_GAIN = 1e-6  # minimum improvement of a map
 
 
 @njit(cache=True, nogil=True)
 def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
-    """One random set of objects after another, until ``patience`` in a row do not help; returns what that gained."""
+    """Reassign random sets of objects until ``patience`` sets in a row do not help; return the total gain."""
     np.random.seed(seed)
     n1, width = problem.unary.shape
     cells, row, things = np.empty(n1 * width), np.empty(width), np.empty(width, np.int64)
@@ -230,7 +230,7 @@ def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _without_facts_between(problem):  # type: ignore[no-untyped-def]
-    """Objects of which no two share a fact, as many as a random order gives."""
+    """Return a random maximal set of objects of which no two share a fact."""
     n1 = len(problem.unary)
     order, taken = np.random.permutation(n1), np.zeros(n1, np.bool_)
     chosen, count = np.empty(n1, np.int64), 0
@@ -245,7 +245,7 @@ def _without_facts_between(problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _free(labels, chosen, things):  # type: ignore[no-untyped-def]
-    """Lists what the chosen objects may be: what no other object is, and last of all nothing. Returns how many."""
+    """List in ``things`` those that no other object has, and last the absence n2; return the number of things."""
     out = len(things) - 1
     held = np.zeros(out + 1, np.bool_)
     held[labels] = True
@@ -261,7 +261,7 @@ def _free(labels, chosen, things):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def combine(labels, other, problem):  # type: ignore[no-untyped-def]
-    """Takes into ``labels`` (n1,) each part of the other map that is worth more there; returns what that gained."""
+    """Copy into ``labels`` (n1,) each part of the other map with a higher value; return the total gain."""
     part = _parts(labels, other, problem)
     gain = np.zeros(len(labels))
     for i in range(len(labels)):
@@ -284,7 +284,7 @@ def combine(labels, other, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _parts(labels, other, problem):  # type: ignore[no-untyped-def]
-    """A forest of the objects (n1,): those that differ are in one tree with what shares a fact or a thing with them."""
+    """Return a forest (n1,) whose trees join differing objects that share a fact or a thing."""
     part, out = np.arange(len(labels)), problem.unary.shape[1] - 1
     wanted_by = np.full(out + 1, -1)
     for i in range(len(labels)):

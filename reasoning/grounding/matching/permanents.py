@@ -1,10 +1,9 @@
-"""The sum over all maps of what speaks for their matches one by one, without facts: a permanent of partial maps.
+"""Sum over all maps of the unary evidence without facts: a permanent of partial maps.
 
-It is what the evidence of kinds, sizes, colours and labels comes to before anything is said of pairs. Up to
-``MAX_EXACT`` objects or things, the other side not being very many, it is exact, by subsets of the smaller side
-(Ryser's problem by dynamic programming, Held and Karp 1962). Beyond, belief propagation gives the Bethe approximation
-of the permanent (Huang and Jebara 2009, arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its
-error where nothing speaks for a match.
+It is the total evidence of kinds, sizes, colours and labels. Up to ``MAX_EXACT`` objects or things, with not too many
+on the other side, it is exact, by dynamic programming over subsets of the smaller side (Ryser's problem; Held and Karp
+1962). Beyond, belief propagation gives the Bethe approximation of the permanent (Huang and Jebara 2009,
+arXiv:0908.1769; Vontobel 2013, IEEE Trans. Inf. Theory 59), corrected by its error for matches without evidence.
 """
 
 from __future__ import annotations
@@ -20,20 +19,20 @@ from deixis.reasoning.grounding.matching.problem import Problem
 Array = NDArray[np.float64]
 
 MAX_EXACT, MAX_STEPS = 12, 3e7
-"""Objects or things up to which the sum is exact, and terms that it may have."""
+"""Maximum size of the smaller side, and maximum number of terms, of an exact sum."""
 
 ITERATIONS, TOLERANCE, MAX_CELLS = 200, 1e-5, 1e7
-"""Rounds of messages at most, the change of a logarithm below which they have settled, and messages of all rounds."""
+"""Maximum number of rounds of messages, change of log messages at convergence, and maximum number of messages."""
 
 STEP = 1e-3
-"""Step in the power by which the slope is taken."""
+"""Step of the power for the numerical derivative."""
 
 LOWEST = -700.0
-"""Logarithm that stands for what is not allowed."""
+"""Logarithm used for matches that are not allowed."""
 
 
 def log_prior(problem: Problem) -> float:
-    """Return the logarithm of the sum over all maps of what is left out alone.
+    """Return the log sum over all maps of the exponential of the values of absent objects alone.
 
     >>> none = np.zeros((0, 2), np.int64)
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 2, 2), np.float32), np.ones((2, 2)), np.zeros(2))
@@ -66,9 +65,9 @@ def log_sum_without_facts(problem: Problem) -> float:
 
 
 def entropy_without_facts(problem: Problem) -> float:
-    """Return the entropy, in nats, of the maps where no fact is known: the logarithm of how many of them are open.
+    """Return the entropy in nats of the maps without facts: the logarithm of the effective number of maps.
 
-    It is the logarithm of their sum less its slope by the power to which all of it is raised.
+    It is the log sum minus its derivative by the power to which all weights are raised.
 
     >>> none = np.zeros((0, 2), np.int64)
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 3, 3), np.float32), np.zeros((3, 3)), np.full(3, -30.0))
@@ -111,8 +110,8 @@ def _by_subsets(gains: Array) -> float:
 
 
 def _bethe(gains: Array) -> float:
-    """Return the Bethe approximation of the same, of any size: minus the free energy where messages have settled."""
-    wanted = np.zeros_like(gains)  # what each thing tells each object: the logarithm of how free it is
+    """Return the Bethe approximation of the log sum over partial matchings: minus the free energy at convergence."""
+    wanted = np.zeros_like(gains)  # log message of each thing to each object: how free it is
     for _ in range(int(np.clip(MAX_CELLS / max(gains.size, 1), 1, ITERATIONS))):
         offers = gains - _sum_of_others(gains + wanted)
         following = -_sum_of_others(offers.T).T

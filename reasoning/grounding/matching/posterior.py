@@ -1,9 +1,10 @@
-"""The posterior of matches: by enumeration where few maps count, else by sampling.
+"""Posterior of matches: by enumeration where few maps matter, else by sampling.
 
-The probability of a map is proportional to the exponential of its value. The sum over all maps but a stated mass is
-exact (``enumeration.py``). Whether it can be had is judged from sums that leave out more, which cost little. Else maps
-are drawn by ladders of Markov chains (``ladders.py``), and what independent ladders differ by is the stated error,
-object by object. Objects that are exchangeable have one marginal, so that no chain has to visit all of their orders.
+The probability of a map is proportional to the exponential of its value. The sum over all maps is exact up to a stated
+missing mass (``enumeration.py``). Cheap sums with a larger missing mass show whether the exact sum is feasible.
+Otherwise, maps are drawn by ladders of Markov chains (``ladders.py``), and the difference of independent ladders is the
+error of each object's marginals. Exchangeable objects have the same marginals, so that no chain has to visit all of
+their orders.
 """
 
 from __future__ import annotations
@@ -24,32 +25,44 @@ from deixis.reasoning.grounding.matching.scalable import search_from
 
 Marginals = NDArray[np.float64]
 
-THRESHOLDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # of the best map's weight: less is left out of a sum
-NODE_GROWTH, ERROR_FALL = 5.0, 15.0  # of the nodes, and of the error, from one threshold to the next, about
-SMALL_SEARCH_RATIO = 100  # a search of so much fewer nodes than there may be is no sign of one that takes too long
-SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # work for sums, and room for facts; beyond, maps are sampled
+THRESHOLDS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12)  # share of the best map's weight below which maps are left out
+NODE_GROWTH, ERROR_FALL = 5.0, 15.0  # approximate factors of nodes and error from one threshold to the next
+SMALL_SEARCH_RATIO = 100  # a search with fewer nodes than the maximum over this ratio is not extrapolated
+SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # maximum work of sums, and cells of facts; beyond, maps are sampled
 
-START_EFFORT = 0.1
+START_EFFORT = 0.1  # effort of the search for a first map
 
-BOUND_CELLS, BOUND_WORK = 4e5, 1e6  # room for facts, and work at each share, that a bound of the sum may take
-BOUND_SHARES = (3e-3, 1e-4)  # of what is enough: partial maps below which less is are not followed
-LOWEST_LOG = -600.0  # of numbers that are told from 0 with room to spare
+BOUND_CELLS, BOUND_WORK = 4e5, 1e6  # maximum cells of facts, and work per share, of a bound of the sum
+BOUND_SHARES = (3e-3, 1e-4)  # shares of the sufficient bound below which partial maps are not extended
+LOWEST_LOG = -600.0  # logarithm above which numbers are safely distinct from 0
 
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """``marginals`` (n1, n2 + 1): the probability of each thing for each object; last, of its being left out.
+    """Posterior of the matches of n1 objects and n2 things.
 
-    ``error``: at most so much mass is missing where ``exact``; otherwise the largest of ``errors`` (n1,), by how much
-    the marginals of each object may be off as far as independent ladders tell, which is no guarantee. It is infinite
-    where nothing was compared. ``believed``: it is belief propagation alone, near the marginals or not. ``log_total``
-    is the logarithm of the sum of the exponentials of all maps' values; nan where it is not known.
+    Attributes
+    ----------
+    marginals
+        Probability of each thing for each object and, in the last column, of its absence, shape (n1, n2 + 1).
+    exact
+        Whether the marginals are exact up to ``error``.
+    error
+        Upper bound of the missing mass where ``exact``; otherwise the largest of ``errors``, infinite where ladders
+        were not compared.
+    errors
+        Error of each object's marginals, shape (n1,), estimated from independent ladders without a guarantee; by
+        default, ``error`` for all.
+    believed
+        Whether the marginals are from belief propagation alone, so that their error is unknown.
+    log_total
+        Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
     """
 
     marginals: Marginals
     exact: bool
     error: float
-    errors: NDArray[np.float64] = field(default_factory=lambda: np.array(math.nan))  # left out: ``error`` for all
+    errors: NDArray[np.float64] = field(default_factory=lambda: np.array(math.nan))
     believed: bool = False
     log_total: float = math.nan
 
@@ -59,7 +72,7 @@ class Posterior:
 
     @property
     def entropy(self) -> Marginals:
-        """Of each object's marginal, in nats, shape (n1,): 0 where it is certain."""
+        """Entropy of each object's marginal in nats, shape (n1,): 0 where it is certain."""
         p = self.marginals
         logs = np.log(p, out=np.zeros_like(p), where=p > 0)
         entropy: Marginals = np.maximum(0.0, -(p * logs).sum(axis=1))
@@ -75,13 +88,30 @@ def posterior(
     start: NDArray[np.int64] | None = None,
     chains: bool = True,
 ) -> Posterior:
-    """The posterior over maps by its marginals, until ``deadline``.
+    """Return the marginals of the posterior over maps.
 
-    It is exact but for ``mass`` where that can be shown by adding up maps in little time, and sampled otherwise, or
-    believed where no ``chains`` are to be run, which take memory. Past the deadline ``start`` (n1,), a map of high
-    value, or nobody's being anything, is all the answer. Raises MatchingError for a mass that is not between 0 and 1,
-    and where ``start`` is no map of the problem.
+    Parameters
+    ----------
+    problem
+        Matching problem of n1 objects and n2 things.
+    deadline
+        End of the time limit. Past it, the answer is ``start`` with infinite error.
+    mass
+        Maximum missing mass of an exact sum, between 0 and 1. Where the sum takes too long, maps are sampled.
+    seed
+        Seed of the sampling.
+    start
+        Map of high value, shape (n1,); by default, all objects are absent.
+    chains
+        False to use belief propagation instead of sampling, which needs less memory.
 
+    Raises
+    ------
+    MatchingError
+        ``mass`` is not between 0 and 1, or ``start`` is not a map of the problem.
+
+    Examples
+    --------
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))
     >>> found = posterior(problem)
@@ -112,13 +142,13 @@ def exact_posterior(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Posterior | None:
-    """The exact posterior but for ``mass``, or None where that would take long, or longer than until the deadline.
+    """Return the posterior, exact up to the missing ``mass``; None where that takes too long.
 
-    ``start`` (n1,) is a map of high value; where there is none, a short search finds one. Raises MatchingError for a
+    ``start`` (n1,) is a map of high value; by default, a short search finds one. Raises MatchingError for a
     mass that is not between 0 and 1.
     """
     if not 0 < mass < 1:
-        raise MatchingError(f"the mass that may be missing lies between 0 and 1, not at {mass}")
+        raise MatchingError(f"`mass` must be between 0 and 1, got {mass}")
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
         nobody = np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1))
@@ -151,8 +181,7 @@ def exact_posterior(
 
 
 def log_sum_bound(problem: Problem, enough: float) -> float:
-    """Return a number that the logarithm of the sum over all maps is not above: at most ``enough`` where little work
-    shows that.
+    """Return an upper bound of the log sum over all maps; stop at a bound of at most ``enough``.
 
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))

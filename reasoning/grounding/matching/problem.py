@@ -1,9 +1,9 @@
-"""The matching problem on plain arrays: what every fact and every object says for being which perceived thing.
+"""The matching problem as arrays: unary evidence of matches, evidence of facts for pairs, and costs of absence.
 
-A partial one-to-one map gives each of n1 objects one of n2 perceived things, or none. Its value is the sum of what
-speaks for each match by itself, of what every fact with two matched ends says of the pair that they are matched to, and
-of what it costs to leave an object out. All are log-likelihood ratios against chance (natural logarithm), so that they
-add up to the logarithm of a posterior, up to a constant.
+A partial one-to-one map gives each of n1 objects one of n2 perceived things, or none. Its value is the sum of the unary
+evidence of each match, of the table entry of every fact whose two objects are matched, and of the cost of each object
+that is left out. All are log-likelihood ratios against chance in nats, so that they add up to the logarithm of a
+posterior, up to a constant.
 """
 
 from __future__ import annotations
@@ -19,25 +19,44 @@ from numpy.typing import NDArray
 from deixis.errors import DeixisError
 
 UNMATCHED = -1
+"""Thing of an object that is left out, in an assignment."""
 
 
 class MatchingError(DeixisError, ValueError):
-    """Arrays that state no matching problem, or a map that is none of its maps."""
+    """Error for arrays that are not a valid matching problem, or not a valid map of it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """m facts between n1 objects, and n2 perceived things. Facts that say the same share a row of ``tables``.
+    """Matching problem of m facts between n1 objects, and n2 things, with k tables that facts share.
 
-    Raises MatchingError where a shape does not fit, an index leads nowhere, or a number is not what it has to be.
+    Attributes
+    ----------
+    ends
+        Subject and object of each fact, two different objects, shape (m, 2).
+    kinds
+        Table of each fact, shape (m,).
+    tables
+        Evidence of a fact for each pair (subject's thing, object's thing), shape (k, n2, n2), finite.
+    unary
+        Evidence of each match without facts, shape (n1, n2), finite; ignored where not allowed.
+    absent
+        Value of leaving each object out, shape (n1,), finite, usually negative.
+    allowed
+        Matches that a map may make, shape (n1, n2), or one value for all; by default, all.
+
+    Raises
+    ------
+    MatchingError
+        A shape does not fit, an index is out of range, or a number is not finite.
     """
 
-    ends: NDArray[np.int64]  # (m, 2): subject and object, different ones
-    kinds: NDArray[np.int64]  # (m,): which table a fact reads
-    tables: NDArray[np.float32]  # (k, n2, n2): what a fact says of the pair (subject's thing, object's thing); finite
-    unary: NDArray[np.float64]  # (n1, n2): what speaks for a match by itself, finite; not read where not allowed
-    absent: NDArray[np.float64]  # (n1,): what leaving the object out is worth, finite, usually negative
-    allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))  # (n1, n2): which matches a map may make
+    ends: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+    tables: NDArray[np.float32]
+    unary: NDArray[np.float64]
+    absent: NDArray[np.float64]
+    allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
 
     def __post_init__(self) -> None:
         if self.allowed.ndim == 0:  # one value for all matches
@@ -45,15 +64,15 @@ class Problem:
         self._check_shapes()
         n1 = len(self.absent)
         if ((self.ends < 0) | (self.ends >= n1)).any() or (self.ends[:, 0] == self.ends[:, 1]).any():
-            raise MatchingError(f"a fact holds between two different objects, counted from 0 to {n1 - 1}")
+            raise MatchingError(f"`ends` must be two different objects from 0 to {n1 - 1} for each fact")
         if ((self.kinds < 0) | (self.kinds >= len(self.tables))).any():
-            raise MatchingError(f"a fact reads one of the tables, counted from 0 to {len(self.tables) - 1}")
+            raise MatchingError(f"`kinds` must be tables from 0 to {len(self.tables) - 1}")
         if not all(np.isfinite(table).all() for table in self.tables):
-            raise MatchingError("what a fact says of a pair has to be a finite number")
+            raise MatchingError("`tables` must be finite numbers")
         if not np.isfinite(self.absent).all():
-            raise MatchingError("what leaving an object out is worth has to be a finite number")
+            raise MatchingError("`absent` must be finite numbers")
         if not np.isfinite(self.unary).all():
-            raise MatchingError("what speaks for a match has to be a finite number; rule matches out by 'allowed'")
+            raise MatchingError("`unary` must be finite numbers; rule matches out with `allowed`")
 
     def _check_shapes(self) -> None:
         m, (n1, n2) = len(self.ends), self.unary.shape if self.unary.ndim == 2 else (-1, -1)
@@ -67,16 +86,15 @@ class Problem:
         }
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
-                raise MatchingError(f"the array '{name}' has to have shape {shape}, not {getattr(self, name).shape}")
+                raise MatchingError(f"`{name}` must have shape {shape}, got {getattr(self, name).shape}")
 
     @cached_property
     def compiled(self) -> Compiled:
-        """The problem as compiled loops read it: laid out once for all that look at it."""
-
+        """Problem in the layout of compiled loops, computed once."""
         return compile_problem(self)
 
     def value(self, assignment: NDArray[np.int64]) -> float:
-        """The value of one map, shape (n1,), ``UNMATCHED`` for what is left out; -inf for one that is not allowed.
+        """Return the value of a map (n1,), with ``UNMATCHED`` for objects left out; -inf if a match is not allowed.
 
         >>> none = np.zeros((0, 2), np.int64)
         >>> problem = Problem(none, none[:, 0], np.zeros((0, 1, 1), np.float32), np.array([[2.0]]), np.array([-1.0]))
@@ -93,41 +111,44 @@ class Problem:
         return float(facts + self.unary[objects, assignment[objects]].sum() + self.absent[~matched].sum())
 
     def require_map(self, assignment: NDArray[np.int64]) -> None:
-        """Raises MatchingError unless the array is a partial one-to-one map that nothing rules out."""
+        """Raise MatchingError unless the array is a partial one-to-one map with allowed matches."""
         n1, n2 = self.unary.shape
         if assignment.shape != (n1,) or ((assignment < UNMATCHED) | (assignment >= n2)).any():
-            raise MatchingError(f"a map gives each of {n1} objects a thing from 0 to {n2 - 1}, or {UNMATCHED}")
+            raise MatchingError(f"a map must give each of {n1} objects a thing from 0 to {n2 - 1}, or {UNMATCHED}")
         objects = np.flatnonzero(assignment != UNMATCHED)
         if len(np.unique(assignment[objects])) != len(objects):
-            raise MatchingError("a map gives no thing to two objects")
+            raise MatchingError("a map must not give one thing to two objects")
         if not self.allowed[objects, assignment[objects]].all():
-            raise MatchingError("a map makes no match that is ruled out")
+            raise MatchingError("a map must not make a match that `allowed` rules out")
 
 
 def empty_tables(kinds: int, things: int) -> NDArray[np.float32]:
-    """Return room for the tables of a problem (k, n2, n2), to be filled in, that compiling it does not copy.
+    """Allocate the tables of a problem (k, n2, n2), filled with 0, in a way that compiling it does not copy them.
 
-    It is part of what :class:`Compiled` holds, which takes two thirds of the memory of tables and a copy.
+    They are a view of the array that :class:`Compiled` holds; tables and a copy would take half as much memory again.
     """
     return np.zeros((2 * kinds, things + 1, things + 1), np.float32)[:kinds, :things, :things]
 
 
 class Compiled(NamedTuple):
-    """Slots of object i: ``first[i]`` to ``first[i + 1]``. The diagonals of the tables, which no map reads, are 0."""
+    """Problem in the layout of compiled loops. Each fact has two slots, one for each end.
+
+    The slots of object i are ``first[i]`` to ``first[i + 1]``. The diagonals of the tables, which no map reads, are 0.
+    """
 
     tables: NDArray[np.float32]  # (2k, n2 + 1, n2 + 1): each table as it is, then each transposed
-    unary: NDArray[np.float64]  # (n1, n2 + 1): finite; the last column is what leaving the object out is worth
-    allowed: NDArray[np.bool_]  # (n1, n2 + 1): which matches a map may make; the last column is true
+    unary: NDArray[np.float64]  # (n1, n2 + 1): finite; the last column is the value of leaving the object out
+    allowed: NDArray[np.bool_]  # (n1, n2 + 1): allowed matches; the last column is true
     first: NDArray[np.int64]  # (n1 + 1,)
     other: NDArray[np.int64]  # (2m,): the object at the other end
-    kind: NDArray[np.int64]  # (2m,): which table, the owner's thing its row
+    kind: NDArray[np.int64]  # (2m,): the table, whose rows are the things of the slot's object
     twin: NDArray[np.int64]  # (2m,): the same fact's slot at the other end
 
 
 def compile_problem(problem: Problem) -> Compiled:
-    """Return the problem as compiled loops read it.
+    """Return the problem in the layout of compiled loops.
 
-    All arrays are in C order, whatever the order of the problem's: loops are compiled anew for another one.
+    All arrays are in C order, because loops would be compiled again for another order.
     """
     k, n2, _ = problem.tables.shape
     m, n1 = len(problem.ends), len(problem.absent)
@@ -154,7 +175,7 @@ def compile_problem(problem: Problem) -> Compiled:
 
 
 def _room_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
-    """Return what :func:`empty_tables` made for tables (k, n2, n2), or None for others."""
+    """Return the array that :func:`empty_tables` allocated for tables (k, n2, n2); None for other tables."""
     room, (k, n2, _) = tables.base, tables.shape
     if not isinstance(room, np.ndarray) or room.shape != (2 * k, n2 + 1, n2 + 1) or room.dtype != np.float32:
         return None
@@ -162,10 +183,10 @@ def _room_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
 
 
 def to_labels(assignment: NDArray[np.int64], n2: int) -> NDArray[np.int64]:
-    """A map with n2 for what is left out."""
+    """Return the map (n1,) with n2 for objects that are left out."""
     return np.where(assignment == UNMATCHED, n2, assignment).astype(np.int64)
 
 
 def to_assignment(labels: NDArray[np.int64], n2: int) -> NDArray[np.int64]:
-    """A map with ``UNMATCHED`` for what is left out."""
+    """Return the map (n1,) with ``UNMATCHED`` for objects that are left out."""
     return np.where(labels == n2, UNMATCHED, labels).astype(np.int64)

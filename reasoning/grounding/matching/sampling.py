@@ -1,14 +1,14 @@
 """Random maps by their probability: Markov chains at several temperatures that exchange maps; compiled.
 
-A step proposes an exchange: a thing, or being left out, for an object, and whoever had the thing gets what the object
-had (Metropolis et al. 1953, Hastings 1970). Objects and things are drawn by a *guide*, fixed probabilities that come
-near the marginals, so that few proposals are wasted on what cannot be; Hastings' ratio makes up for it, and a share
-that is drawn evenly reaches every map. Hot chains cross valleys that the cold one would not, and hand it what they find
+A step proposes an exchange: an object gets another thing or absence, and the object that had the thing gets the old one
+(Metropolis et al. 1953, Hastings 1970). Objects and things are drawn by a *guide*, fixed probabilities near the
+marginals, so that few proposals are wasted on impossible matches. Hastings' ratio corrects for the guide, and a uniform
+share of proposals reaches every map. Hot chains cross valleys that the cold chain would not, and pass their maps to it
 (replica exchange; Geyer 1991, Hukushima and Nemoto 1996).
 
-A chain at coldness b has the density exp(r + b (v - r)), with v the value of a map and r what it pays for what it
-leaves out: at 0 nothing but that counts, at 1 it is the posterior. The mean of v - r over b from 0 to 1 is therefore
-the logarithm of by how much likelier the evidence is than by chance (thermodynamic integration; Gelman and Meng 1998).
+A chain at coldness b has the density exp(r + b (v - r)), where v is the value of a map and r the cost of the objects
+that it leaves out: at b = 0 only that cost counts, at b = 1 it is the posterior. The mean of v - r over b from 0 to 1
+is therefore the log-likelihood ratio of the evidence against chance (thermodynamic integration; Gelman and Meng 1998).
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from deixis.reasoning.grounding.matching.problem import Compiled
 from deixis.reasoning.kernel import njit
 
 EVEN_SHARE = 0.05
-"""Share of the proposals for an object that are drawn evenly from all things that it may be."""
+"""Share of the proposals for an object that are drawn uniformly from its allowed things."""
 
 FLATTENING = 0.5
-"""Power of the beliefs by which the other proposals are drawn: chains need to leave what they believe in."""
+"""Power of the beliefs by which the other proposals are drawn, so that chains can leave likely things."""
 
 SETTLED_WEIGHT = 0.25
-"""How often a proposal is for an object of which the beliefs are certain, relative to one of which they say nothing."""
+"""Frequency of proposals for an object with certain beliefs, relative to one with uninformative beliefs."""
 
 START_DRAWS = 20
-"""Things that are drawn for an object of a first map, before it is left out because all of them are taken."""
+"""Number of things drawn for an object of a first map before it is left out, if all of them are taken."""
 
 
 class Guide(NamedTuple):
-    """How often an exchange is proposed, and Walker's alias tables to draw objects and things in constant time."""
+    """Probabilities of proposals, with Walker's alias tables to draw objects and things in constant time."""
 
-    weight: NDArray[np.float32]  # (n1, n2 + 1): how often the object is drawn, times how often the thing is for it
-    keep: NDArray[np.float32]  # (n1, n2 + 1): probability that the thing drawn evenly is taken, else its alias
+    weight: NDArray[np.float32]  # (n1, n2 + 1): probability of the object times that of the thing given the object
+    keep: NDArray[np.float32]  # (n1, n2 + 1): probability of keeping a uniformly drawn thing, else its alias is used
     alias: NDArray[np.int32]  # (n1, n2 + 1)
-    keep_object: NDArray[np.float32]  # (1, n1): the same for objects
+    keep_object: NDArray[np.float32]  # (1, n1): as ``keep``, for objects
     alias_object: NDArray[np.int32]  # (1, n1)
 
 
@@ -48,20 +48,20 @@ class Chains(NamedTuple):
     """K chains of one ladder, each a map: the first is at the posterior's own coldness, the others are hotter."""
 
     labels: NDArray[np.int64]  # (K, n1)
-    holder: NDArray[np.int64]  # (K, n2 + 1): who has the thing, -1 where nobody has; -1 for n2
+    holder: NDArray[np.int64]  # (K, n2 + 1): object that has the thing, -1 for none; -1 for n2
     values: NDArray[np.float64]  # (K,): v - r
     coldness: NDArray[np.float64]  # (K,): falling from 1
 
 
 def new_chains(problem: Compiled, coldness: NDArray[np.float64]) -> Chains:
-    """Return chains at these temperatures (K,), their maps still to be drawn (:func:`begin`)."""
+    """Return chains at these coldnesses (K,); :func:`begin` draws their maps."""
     rungs, (n1, width) = len(coldness), problem.unary.shape
     labels, holder = np.zeros((rungs, n1), np.int64), np.full((rungs, width), -1, np.int64)
     return Chains(labels, holder, np.zeros(rungs), coldness)
 
 
 def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide:
-    """Return the guide that beliefs (n1, n2 + 1) make; what is not ``allowed`` (n1, n2 + 1) is never proposed."""
+    """Return the guide by beliefs (n1, n2 + 1); matches that are not ``allowed`` (n1, n2 + 1) are never proposed."""
     chance = np.where(allowed, np.maximum(beliefs, 0.0).astype(np.float32) ** np.float32(FLATTENING), np.float32(0.0))
     chance /= np.maximum(chance.sum(axis=1, keepdims=True), np.float32(1e-30))
     chance *= np.float32(1.0 - EVEN_SHARE)
@@ -75,7 +75,7 @@ def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide
 
 @njit(cache=True)
 def _alias_tables(chance):  # type: ignore[no-untyped-def]
-    """Walker's alias method (1977; Vose 1991): for each row of probabilities what to keep, and what to take instead."""
+    """Build the tables of Walker's alias method (1977; Vose 1991) for each row of probabilities."""
     rows, width = chance.shape
     keep, alias = np.ones((rows, width), np.float32), np.empty((rows, width), np.int32)
     small, large, scaled = np.empty(width, np.int64), np.empty(width, np.int64), np.empty(width)
@@ -106,7 +106,7 @@ def _alias_tables(chance):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def begin(chains, problem, guide, seed):  # type: ignore[no-untyped-def]
-    """Gives every chain a map of its own, drawn by the guide."""
+    """Draw a map by the guide for every chain."""
     np.random.seed(seed)
     n1, width = guide.weight.shape
     for k in range(len(chains.coldness)):
@@ -130,7 +130,7 @@ def _drawn(row, keep, alias):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _worth(labels, problem):  # type: ignore[no-untyped-def]
-    """The value of a map less what it pays for what it leaves out."""
+    """Return the value of a map minus the cost of the objects that it leaves out."""
     total, out = 0.0, problem.unary.shape[1] - 1
     for i in range(len(labels)):
         if labels[i] < out:
@@ -143,7 +143,7 @@ def _worth(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def cool(chains, problem, guide, coldness, sweeps, seed):  # type: ignore[no-untyped-def]
-    """So many sweeps of all chains, at other temperatures (K,) than their own, on the way to them."""
+    """Run all chains for a number of sweeps at other coldnesses (K,) than their own, while cooling."""
     np.random.seed(seed)
     steps = sweeps * chains.labels.shape[1]
     for k in range(len(coldness)):
@@ -152,9 +152,9 @@ def cool(chains, problem, guide, coldness, sweeps, seed):  # type: ignore[no-unt
 
 @njit(cache=True, nogil=True)
 def sample(chains, counts, sums, problem, guide, sweeps, seed):  # type: ignore[no-untyped-def]
-    """So many sweeps over all objects in every chain, after each of them exchanges between temperatures.
+    """Run every chain for a number of sweeps over all objects, with exchanges between temperatures after each.
 
-    After each, what every object is in the coldest chain is counted, (n1, n2 + 1), and the values of all chains are
+    After each sweep, ``counts`` (n1, n2 + 1) counts the things of the coldest chain, and the values of all chains are
     added to ``sums`` (K,). Returns the number of exchanges made.
     """
     np.random.seed(seed)
@@ -175,7 +175,7 @@ def sample(chains, counts, sums, problem, guide, sweeps, seed):  # type: ignore[
 
 @njit(cache=True)
 def _swap(k, chains):  # type: ignore[no-untyped-def]
-    """Exchanges the maps at two neighbouring temperatures, or not, as their values say."""
+    """Exchange the maps at two neighbouring temperatures with the Metropolis probability; return whether done."""
     gained = (chains.coldness[k] - chains.coldness[k + 1]) * (chains.values[k + 1] - chains.values[k])
     if gained < 0.0 and np.random.random() >= np.exp(gained):
         return False
@@ -189,7 +189,7 @@ def _swap(k, chains):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _walk(labels, holder, problem, guide, coldness, steps):  # type: ignore[no-untyped-def]
-    """So many proposals; returns what the exchanges that were made gained of v - r."""
+    """Make a number of proposals; return the total gain of v - r."""
     out, total = guide.weight.shape[1] - 1, 0.0
     for _ in range(steps):
         i = _drawn(0, guide.keep_object, guide.alias_object)
@@ -221,7 +221,7 @@ def _walk(labels, holder, problem, guide, coldness, steps):  # type: ignore[no-u
 
 @njit(cache=True)
 def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
-    """What it changes to give object i thing p, and i's thing to j, who had p (nobody: -1): of v - r, and of r."""
+    """Return the changes of v - r and r if object i gets thing p, and j, which had p (-1: none), gets i's thing."""
     old, out = labels[i], problem.unary.shape[1] - 1
     gained, paid = 0.0, 0.0
     if p == out:

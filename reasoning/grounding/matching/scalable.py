@@ -1,9 +1,9 @@
-"""The scalable engine: annealing from several starts, the best reheated, then moves and swaps until none helps.
+"""Scalable search: annealing from several starts, reheating of the best map, then moves and swaps until none helps.
 
-Of many objects, a second search anneals what belief propagation finds, and the best parts of both are taken. It proves
-nothing, and is for any size: its work for a step grows with the things and the facts of an object, and it holds little
-more than the tables. What it finds does not depend on the clock, unless the deadline cuts it short, nor in quality on
-the order of the objects.
+For many objects, a second search anneals the map of belief propagation, and the best parts of both maps are combined.
+The search is for problems of any size and proves nothing: the work of a step grows with the number of things and of an
+object's facts, and the memory is little more than the tables. The result does not depend on the clock, unless the
+deadline cuts the search short, and its quality does not depend on the order of the objects.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ QUICK_TEMPERATURE = 0.35  # the first temperature where sweeps are few: what coo
 SWEEPS = 3600  # over all objects, in all; small problems and large ones get more, those of many cells get fewer
 SMALL_PROBLEM_SWEEPS, MAX_SWEEPS, MANY_OBJECTS, MAX_CELLS = 180_000, 6_000, 100, 8e8
 MAX_TURNS, TURN_CELLS = 13, 11_700  # many short turns for few objects, one long one for many
-FRESH_SHARE = 0.3  # the share of turns that start anew; the others reheat the best map
-PATIENCE = 20  # reassignments in a row that do not help, at the end
-LAST_SWEEPS = 3  # without noise, where the deadline struck
+FRESH_SHARE = 0.3  # share of turns that start from an empty map; the others reheat the best map
+PATIENCE = 20  # reassignments in a row without a gain that end the search
+LAST_SWEEPS = 3  # sweeps without noise after the deadline
 MIN_PROPAGATED_OBJECTS, MAX_ANNEALED_OBJECTS = (
     50,
     400,
@@ -48,11 +48,11 @@ CELLS_PER_CLOCK_CHECK = 2e6  # cells of the sweeps between two looks at the cloc
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The best map found (n1,), its value, and whether the deadline left time for the whole search."""
+    """Result of a scalable search."""
 
-    assignment: NDArray[np.int64]
+    assignment: NDArray[np.int64]  # (n1,) the best map found
     value: float
-    finished: bool
+    finished: bool  # whether the search ended before the deadline
 
 
 def scalable(
@@ -63,9 +63,9 @@ def scalable(
     effort: float = 1.0,
     start: NDArray[np.int64] | None = None,
 ) -> Found:
-    """A map of high value until ``deadline``, never worse than ``start`` (default: nobody).
+    """Search a map of high value until ``deadline``, at least as good as ``start`` (default: all objects absent).
 
-    ``effort`` multiplies the steps. Raises MatchingError where ``start`` is no map of the problem.
+    ``effort`` multiplies the number of steps. Raises MatchingError where ``start`` is not a map of the problem.
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
@@ -87,10 +87,10 @@ def scalable(
 def search_from(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """The best map found from ``labels`` (n1,) on, and whether the search came to its end.
+    """Search from ``labels`` (n1,); return the best map found, and whether the search ended before the deadline.
 
-    There are at most ``most`` turns of annealing. Of many objects, it and belief propagation have a thread each; of
-    very many it is of little use beside it.
+    There are at most ``most`` turns of annealing. For many objects, annealing and belief propagation have a thread
+    each; for very many objects, only belief propagation is followed by annealing.
     """
     if len(labels) < MIN_PROPAGATED_OBJECTS or effort < MIN_PROPAGATION_EFFORT:
         return _annealed(labels, compiled, deadline, seed, effort, most)
@@ -112,7 +112,7 @@ def search_from(
 def _annealed(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """At most ``most`` turns, the first from ``labels`` (n1,)."""
+    """Anneal in at most ``most`` turns, the first one from ``labels`` (n1,)."""
     rng = np.random.default_rng(seed)
     n1, width = compiled.unary.shape
     noise = rng.gumbel(size=NOISE_TABLE_SIZE + width).astype(np.float32)
@@ -136,7 +136,7 @@ def _annealed(
 def _propagated(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """A shorter annealing of what belief propagation finds, where there is time for it, else a whole one."""
+    """Anneal the map of belief propagation briefly, or where the time does not suffice for it, anneal in full."""
     found = propagate(compiled, mean_range(compiled), deadline.share(0.5), effort=effort, seed=seed)
     if found is None:
         return _annealed(labels, compiled, deadline, seed + 1, effort, most)
@@ -147,7 +147,7 @@ def _propagated(
 
 
 def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:
-    """For each turn its first temperature and how many, and how many sweeps at each, at an effort of 1."""
+    """Return the first temperature and number of temperatures of each turn, and the sweeps per temperature."""
     turns = int(np.clip(TURN_CELLS / objects**2, 1, MAX_TURNS))
     fresh = math.ceil(FRESH_SHARE * turns)
     enough = max(SWEEPS, SWEEPS * (objects / MANY_OBJECTS) ** 0.2, min(SMALL_PROBLEM_SWEEPS / objects, MAX_SWEEPS))
@@ -167,10 +167,10 @@ def _cool(
     noise: NDArray[np.float32],
     rng: np.random.Generator,
 ) -> bool:
-    """One annealing from ``best`` (n1,), which takes the best map on the way; false where the deadline cut it short.
+    """Anneal once from ``best`` (n1,), which receives the best map; return false where the deadline cut it short.
 
-    No temperature gets more than ``MAX_TIME_SHARE`` times its share of the time that is left: a search in a hurry cools
-    faster, and is not stopped while it is hot.
+    Each temperature gets at most ``MAX_TIME_SHARE`` times its share of the time left: a search with little time cools
+    faster, and does not stop while it is hot.
     """
     state, ahead, finished = keep(best, compiled), 0.0, True
     part = max(1, int(CELLS_PER_CLOCK_CHECK / state.gains.size))
@@ -188,7 +188,7 @@ def _cool(
 
 
 def mean_range(compiled: Compiled) -> float:
-    """The mean over all facts of largest less least entry, or 1 where there is no fact that distinguishes."""
+    """Return the mean range of the facts' tables (largest minus least entry), or 1 where all of them are constant."""
     if len(compiled.kind) == 0:
         return 1.0
     tables = compiled.tables[: len(compiled.tables) // 2]  # each comes again transposed

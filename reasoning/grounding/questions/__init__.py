@@ -1,1 +1,1 @@
-"""Which question to ask where a description leaves several groundings, and what an answer rules out."""
+"""Questions that distinguish the groundings of an ambiguous description, and the effect of their answers."""

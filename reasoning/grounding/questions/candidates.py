@@ -1,8 +1,8 @@
 """Candidate groundings: the maps that the evidence leaves, each with its probability.
 
-Objects that the description treats alike could be exchanged at will, so that k of them stand for k! maps. Such a
-*group* is kept as one: a row gives its members things in some order, and stands for every order, all as probable. A
-question about a member takes it out of its group (:meth:`Candidates.pinned`), which multiplies rows by k, never by k!.
+Objects that the description treats alike can be exchanged, so that k of them have k! maps. Such a *group* is stored
+once: a row gives its members things in one order, and represents every order, all equally probable. A question about a
+member takes it out of its group (:meth:`Candidates.pinned`), which multiplies the rows by k, not by k!.
 """
 
 from __future__ import annotations
@@ -25,20 +25,32 @@ if TYPE_CHECKING:
     from deixis.reasoning.grounding.matching.exact import Maps
 
 MAX_LISTED_MAPS = 5_000
-"""Maps that are listed one by one; beyond, interchangeable objects are held as groups."""
+"""Maximum number of maps that are listed one by one; beyond it, interchangeable objects are stored as groups."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """k maps of n1 objects to things, ``UNMATCHED`` for what is left out, and their probabilities; equal ones are one.
+    """Possible maps of n1 objects to things, with their probabilities. Equal maps are merged.
 
-    ``groups`` are disjoint sets of two and more objects whose things may be permuted in every row. ``complete``: no
-    other map is as good. Weights need not be normalised: they are. Raises SettingError for arrays that do not fit, no
-    candidate, or weights of which one is below 0 or all are 0.
+    Attributes
+    ----------
+    assignments
+        k maps, shape (k, n1), with ``UNMATCHED`` for objects that are left out.
+    weights
+        Probabilities, shape (k,); they are normalised.
+    groups
+        Disjoint sets of two or more objects whose things can be permuted in every row.
+    complete
+        Whether all maps within the margin are listed.
+
+    Raises
+    ------
+    SettingError
+        The shapes do not fit, there is no candidate, or the weights are negative or all 0.
     """
 
-    assignments: NDArray[np.int64]  # (k, n1)
-    weights: NDArray[np.float64]  # (k,)
+    assignments: NDArray[np.int64]
+    weights: NDArray[np.float64]
     groups: tuple[tuple[int, ...], ...] = ()
     complete: bool = True
 
@@ -56,7 +68,7 @@ class Candidates:
         object.__setattr__(self, "weights", weights / weights.sum())
 
     def _in_order(self) -> NDArray[np.int64]:
-        """Return the rows with the things of every group sorted, so that no two of them stand for the same maps."""
+        """Return the rows with the things of every group sorted, so that different rows represent different maps."""
         rows = self.assignments.copy()
         for group in self.groups:
             rows[:, list(group)] = np.sort(rows[:, list(group)], axis=1)
@@ -68,7 +80,7 @@ class Candidates:
 
     @cached_property
     def bits(self) -> float:
-        """The entropy of the candidates, permutations included.
+        """Entropy of the candidates in bits, including permutations.
 
         >>> Candidates(np.array([[0, 1, 2]]), np.ones(1), groups=((0, 1, 2),)).bits == math.log2(6)
         True
@@ -79,7 +91,7 @@ class Candidates:
 
     @cached_property
     def count(self) -> int:
-        """How many maps there are, permutations included."""
+        """Number of maps, including permutations."""
         return sum(self._orders(row) for row in self.assignments)
 
     @cached_property
@@ -87,7 +99,7 @@ class Candidates:
         return np.array([math.log(self._orders(row)) for row in self.assignments])
 
     def _orders(self, row: NDArray[np.int64]) -> int:
-        """Return different ways to give the things of a row to the members of each group."""
+        """Return the number of different ways to give the things of a row to the members of each group."""
         total = 1
         for members in self.groups:
             total *= math.factorial(len(members)) // math.factorial(int((row[list(members)] == UNMATCHED).sum()))
@@ -95,13 +107,13 @@ class Candidates:
 
     @property
     def best(self) -> NDArray[np.int64]:
-        """The most probable map, shape (n1,); the first among equals."""
+        """Most probable map, shape (n1,); the first of equally probable ones."""
         found: NDArray[np.int64] = self.assignments[np.argmax(np.round(self.weights, 12))]
         return found
 
     @cached_property
     def undecided(self) -> tuple[int, ...]:
-        """The objects that are not the same thing in all candidates."""
+        """Objects that are not the same thing in all candidates."""
         varying = set(np.flatnonzero((self.assignments != self.assignments[:1]).any(axis=0)).tolist())
         for group in self.groups:
             if len({*self.assignments[0, list(group)].tolist()}) > 1:
@@ -110,7 +122,7 @@ class Candidates:
 
     @property
     def likeliest_shares(self) -> NDArray[np.float64]:
-        """How probable it is that each object is what it is in the most probable map, shape (n1,)."""
+        """Probability of each object's match in the most probable map, shape (n1,)."""
         shares: NDArray[np.float64] = self.weights @ (self.assignments == self.best)
         for group in self.groups:
             members = list(group)
@@ -119,12 +131,12 @@ class Candidates:
 
     @cached_property
     def stand_ins(self) -> tuple[int, ...]:
-        """The objects of which questions are worth asking: of each group the first two, for the others are alike."""
+        """Objects to ask about: all except those beyond the first two of each group, which are like these."""
         skipped = {i for group in self.groups for i in sorted(group)[2:]}
         return tuple(i for i in range(self.assignments.shape[1]) if i not in skipped)
 
     def pinned(self, objects: Iterable[int]) -> Candidates:
-        """Return the same candidates in as many rows as it takes to have these objects in no group."""
+        """Return the same candidates with ``objects`` in no group, which may take more rows."""
         result = self
         for i in objects:
             group = next((group for group in result.groups if i in group), None)
@@ -142,17 +154,17 @@ class Candidates:
         return result
 
     def kept(self, rows: NDArray[np.bool_]) -> Candidates:
-        """Return only some of the rows; raises SettingError for none."""
+        """Return the candidates of the rows in the mask (k,); raise SettingError for an empty mask."""
         return Candidates(self.assignments[rows], self.weights[rows], self.groups, self.complete)
 
 
 def candidates_of(
     problem: Problem, deadline: Deadline = Deadline.never(), *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
 ) -> Candidates:
-    """Return the maps worth at most ``margin`` less than the best, weighted by the exponential of their values.
+    """Return the maps whose values are at most ``margin`` nats below the best, with weights exp(value).
 
-    Where there are more than ``limit``, the things of interchangeable objects are taken as those of the best map, and
-    held as groups; ``complete`` is then False, as it is where the deadline struck.
+    Where there are more than ``limit``, interchangeable objects get the things of the best map and are stored as
+    groups; ``complete`` is then False, as it is where the deadline was reached.
 
     >>> none = np.zeros((0, 2), np.int64)
     >>> alike = Problem(none, none[:, 0], np.zeros((0, 9, 9), np.float32), np.ones((9, 9)), np.zeros(9))

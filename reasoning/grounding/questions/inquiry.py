@@ -1,4 +1,4 @@
-"""A dialogue as pure steps: which question comes next, and what an answer leaves."""
+"""Dialogue without input or output: choose the next question, and update the candidates with an answer."""
 
 from __future__ import annotations
 
@@ -13,27 +13,28 @@ from deixis.reasoning.grounding.questions.selection import DONT_KNOW, Question, 
 from deixis.reasoning.grounding.questions.situation import Situation
 
 PATIENCE = 6
-"""Answers in a row that nobody knows after which no more is asked."""
+"""Number of consecutive questions without a usable answer after which the dialogue ends."""
 
 
 class ContradictionError(DeixisError, ValueError):
-    """An answer that no candidate gives."""
+    """Error for an answer that contradicts all candidates."""
 
 
 class ExchangeOutcome(StrEnum):
-    """What an answer did."""
+    """Effect of an answer."""
 
-    RESOLVED = "resolved"
-    UNKNOWN = "unknown"  # the person does not know; nothing changes, and no question that takes the same look is asked
-    SURPRISING = "surprising"  # no candidate ever agreed: they have to be listed anew with what it says of an object
+    RESOLVED = "resolved"  # the answer narrowed the candidates
+    UNKNOWN = "unknown"  # the person does not know; nothing changes, and similar questions are not asked
+    SURPRISING = "surprising"  # no initial candidate agrees: candidates must be listed again with the answer
     CONTRADICTORY = "contradictory"  # no candidate agrees; nothing changes
 
 
 @dataclass(frozen=True, slots=True)
 class Exchange:
-    """A question, its answer, and what it did; ``against`` are earlier exchanges that it cannot go together with.
+    """A question, its answer, and the effect of the answer.
 
-    With a relation that no candidate ever agreed with, ``against`` is empty.
+    ``against`` are the positions of earlier exchanges that the answer contradicts; it is empty where no initial
+    candidate agrees with the answer.
     """
 
     question: Question
@@ -43,39 +44,39 @@ class Exchange:
 
     @property
     def believed(self) -> bool:
-        """Whether the answer counts."""
+        """True where the answer is used."""
         return self.outcome in (ExchangeOutcome.RESOLVED, ExchangeOutcome.SURPRISING)
 
 
 def update(situation: Situation, candidates: Candidates, question: Question, answer: str) -> Candidates:
-    """Return the candidates that agree with an answer; all of them where it is ``DONT_KNOW``.
+    """Return the candidates that agree with an answer; all of them for ``DONT_KNOW``.
 
-    Raises ContradictionError where none agrees.
+    Raises ContradictionError where no candidate agrees.
     """
     if answer == DONT_KNOW:
         return candidates
     rows = candidates.pinned(question.about)
     agree = np.array([given == answer for given in answers_of(question, situation, rows.assignments)])
     if not (agree & (rows.weights > 0)).any():
-        raise ContradictionError(f"'{answer}' to '{question.text}' goes against every grounding that is left")
+        raise ContradictionError(f"the answer '{answer}' to '{question.text}' contradicts every remaining grounding")
     return rows.kept(agree)
 
 
 @dataclass(frozen=True, eq=False)
 class Inquiry:
-    """What some questions and answers have left of the candidates of the ``start``; :func:`begin` makes one."""
+    """State of a dialogue; :func:`begin` creates the first."""
 
     situation: Situation
-    start: Candidates
-    candidates: Candidates
-    kinds: tuple[QuestionKind, ...]  # the questions that may be asked
+    start: Candidates  # before the dialogue
+    candidates: Candidates  # that agree with the answers
+    kinds: tuple[QuestionKind, ...]  # kinds of questions that may be asked
     exchanges: tuple[Exchange, ...] = ()
 
     def next_question(self) -> Question | None:
-        """Return the question that is expected to resolve most, or None where there is none.
+        """Return the question with the largest expected information, or None to end the dialogue.
 
-        None is asked twice, nor one that takes a look at what the person could not tell before. Who has not known as
-        many answers in a row as there are objects (``PATIENCE`` at least), or is not understood, is asked no more.
+        No question is asked twice, nor one that needs knowledge that the person did not have before. The dialogue ends
+        after as many consecutive unusable answers as there are objects, and at least ``PATIENCE``.
         """
         patience = max(PATIENCE, len(self.situation.objects))
         latest = self.exchanges[-patience:]
@@ -86,8 +87,7 @@ class Inquiry:
         return best_question(self.situation, self.candidates, self.kinds, barred | {e.question.look for e in unknown})
 
     def answered(self, question: Question, answer: str) -> Inquiry:
-        """Return the inquiry after an answer; one with which no candidate agrees is recorded and changes nothing
-        else."""
+        """Return the inquiry after an answer; an answer without an agreeing candidate is only recorded."""
         if answer == DONT_KNOW:
             return self._with(Exchange(question, answer, ExchangeOutcome.UNKNOWN), self.candidates)
         try:
@@ -103,7 +103,7 @@ class Inquiry:
         return replace(self, exchanges=(*self.exchanges, exchange), candidates=candidates)
 
     def _against(self, question: Question, answer: str) -> tuple[int, ...]:
-        """Return earlier answers without which this one would be possible: a set from which none can be left out."""
+        """Return a minimal set of earlier answers that contradict this one, as positions of exchanges."""
         blamed = [k for k, exchange in enumerate(self.exchanges) if exchange.outcome is ExchangeOutcome.RESOLVED]
         if not self._possible(question, answer, []):
             return ()
@@ -127,5 +127,5 @@ class Inquiry:
 def begin(
     situation: Situation, candidates: Candidates, kinds: tuple[QuestionKind, ...] = tuple(QuestionKind)
 ) -> Inquiry:
-    """Return an inquiry into candidates of which nothing has been asked."""
+    """Return an inquiry without any questions asked."""
     return Inquiry(situation, candidates, candidates, kinds)

@@ -1,4 +1,4 @@
-"""Evidence refined by questions: which groundings are asked about, and which matches the answers rule out."""
+"""Refine the evidence by a dialogue: choose the groundings to ask about, and rule out matches by the answers."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from deixis.reasoning.grounding.questions.situation import Situation, situation_
 MARGINS = (6.0, 2.0)
 """Largest difference in nats between the best grounding and one that is still asked about.
 
-A grounding beyond the first margin, 400 times less likely, hardly ever keeps a match from being decided. The second
-one, seven times, is for where not all groundings within the first can be listed.
+A grounding beyond the first margin is 400 times less likely than the best, and seldom keeps a match from being decided.
+The second margin, 7 times, is used where not all groundings within the first can be listed.
 """
 
 MAX_JOINT_ANSWERS = 100
 """Maximum number of joint assignments of the questioned objects to enumerate."""
 
 Hold = Callable[[Inquiry, float], Inquiry]
-"""Holds a dialogue from an inquiry on, up to so many questions in all, and returns the inquiry after it."""
+"""Function that continues the dialogue of an inquiry up to a total number of questions, and returns the inquiry."""
 
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
-    """The evidence with the answers, the dialogue at its end, and the deadline for grounding."""
+    """Evidence with the answers, the finished dialogue, and the deadline for grounding."""
 
     evidence: Evidence
     inquiry: Inquiry
@@ -46,12 +46,12 @@ class Refinement:
 def refine(
     evidence: Evidence, implied: Implications, start: Callable[[Situation], Hold], time_limit: float
 ) -> Refinement:
-    """Ask what would tell the likeliest groundings apart, and return the evidence with the answers.
+    """Ask questions that distinguish the likeliest groundings, and return the evidence with the answers.
 
-    What the answers make likely is listed and asked about in turn, as long as that takes no more than one question
-    above log2 of the number of groundings that were considered at first. ``start`` begins the dialogue about a
-    situation. The time limit is not for the person: half of it is for what to ask, each time, and the whole for
-    grounding after the last answer; together they keep to it where nothing was answered.
+    After the answers, the groundings that have become likely are listed and asked about in turn, up to one question
+    more than log2 of the initial number of groundings. ``start`` begins the dialogue about a situation. The time limit,
+    in seconds, does not include the person's time: half of it is for choosing questions, each time, and all of it for
+    grounding after the last answer; both together keep to it where no question was answered.
     """
     deadline = Deadline.after(time_limit)
     situation = situation_of(evidence.description, evidence.scene, implied)
@@ -67,7 +67,7 @@ def refine(
         candidates = considered(evidence, Deadline.after(time_limit / 2))
         for exchange in done.exchanges:
             if exchange.believed:
-                with suppress(ContradictionError):  # what is likeliest now need not agree with every answer
+                with suppress(ContradictionError):  # the likeliest groundings need not agree with every answer
                     candidates = update(done.situation, candidates, exchange.question, exchange.answer)
         if (candidates.likeliest_shares >= DECIDED).all():
             candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
@@ -79,22 +79,22 @@ def refine(
 
 
 def question_limit(inquiry: Inquiry) -> int:
-    """Return one question more than yes and no take to tell the groundings apart, with those asked before."""
+    """Return the maximum number of questions: those asked, and one more than log2 of the number of groundings."""
     return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
 
 
 def considered(evidence: Evidence, deadline: Deadline) -> Candidates:
-    """Return the groundings within the widest margin of which all can be listed; half of the time is for the first."""
+    """Return the groundings within the widest margin for which all can be listed; the first gets half of the time."""
     wide = candidates_of(evidence.problem, deadline.share(0.5), margin=MARGINS[0])
     return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
 
 
 def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
-    """Return the evidence and what was answered; what was never considered stays as likely as it was.
+    """Return the evidence with the answers; matches that no candidate contained stay as likely as before.
 
-    Ruled out is what an object was in some candidate before the dialogue and is in none after it, nor in one of before
-    in which those asked about are what they are now. A list that was cut off at any place says nothing about the maps
-    that are not in it: there only what was said of a single object counts.
+    A match is ruled out where some candidate before the dialogue contained it, and none does after it, nor any earlier
+    candidate with the questioned objects as they are now. An incomplete list does not rule out maps that it does not
+    contain: then only answers about a single object are used.
     """
     labels, allowed = evidence.labels.copy(), evidence.allowed.copy()
     doubted = evidence.doubted_labels
@@ -104,8 +104,8 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
         resolved = [swap.question.about for swap in done.exchanges if swap.outcome is ExchangeOutcome.RESOLVED]
         asked = sorted({i for about in resolved for i in about})
         found = np.zeros(labels.shape, dtype=bool)
-        # a map with those asked about as in some candidate of now agrees with the answers, though it may be too
-        # unlikely to have been listed: which fork is which says nothing of the knives
+        # a map with the questioned objects as in some present candidate agrees with the answers, though it may be too
+        # unlikely to be listed: answers about the forks do not decide the knives
         for now in np.unique(done.candidates.assignments[:, asked], axis=0)[:MAX_JOINT_ANSWERS]:
             rows = done.start.assignments.copy()
             rows[:, asked] = now
@@ -133,8 +133,7 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
 
 
 def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Return which object is which thing in some candidate, shape (n1, n2); the members of a group share their
-    things."""
+    """Return the mask (n1, n2) of matches in some candidate, where the members of a group share their things."""
     found = _matched(candidates.assignments, shape)
     for group in candidates.groups:
         found[list(group)] = found[list(group)].any(axis=0)
@@ -142,7 +141,7 @@ def _possible(candidates: Candidates, shape: tuple[int, ...]) -> NDArray[np.bool
 
 
 def _matched(assignments: NDArray[np.int64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Return which object is which thing in some of k maps (k, n1), shape (n1, n2)."""
+    """Return the mask (n1, n2) of matches in some of k maps (k, n1)."""
     found = np.zeros(shape, dtype=bool)
     rows, objects = np.nonzero(assignments != UNMATCHED)
     found[objects, assignments[rows, objects]] = True

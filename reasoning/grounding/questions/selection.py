@@ -1,8 +1,8 @@
-"""The question that is expected to resolve most.
+"""Selection of the question with the largest expected information.
 
-What an answer resolves is the entropy of the answer itself, in bits, since every candidate answers every question in
-one way. Among questions that resolve as much the one wins that costs the person least (``Question.effort``): first of
-all one about two things and a word between them that is plainly so or plainly not.
+The information is the entropy of the answer in bits, because every candidate answers every question in one way. Among
+questions with the same information, the one with the least effort for the person (``Question.effort``) is chosen: best
+is one about a relation of two things that clearly holds or clearly does not.
 """
 
 from __future__ import annotations
@@ -22,24 +22,23 @@ from deixis.reasoning.grounding.questions.situation import Situation, spoken
 
 YES, NO = "yes", "no"
 ABSENT = "absent"
-"""The answer where something that the question is about is not there."""
+"""Answer that an object of the question is absent."""
 DONT_KNOW = "don't know"
 
 RELATION_EFFORT, IDENTITY_EFFORT, POINTING_EFFORT = 1.0, 1.5, 2.0
-VAGUE_EFFORT = 1.0  # more, where the word is half true in every candidate
-COMPOUND_EFFORT = 0.25  # more, for a word that says two things at once: bottom left of
-DISTANCE_EFFORT = 0.5  # more, where the two lie as far apart as things do
-ID_EFFORT = 1.0  # more, where a thing can be told by its id alone
+VAGUE_EFFORT = 1.0  # extra, where the relation holds only widely in every candidate
+COMPOUND_EFFORT = 0.25  # extra, for a word with two directions: bottom left of
+DISTANCE_EFFORT = 0.5  # extra, where the two things have the largest distance
+ID_EFFORT = 1.0  # extra, where a thing is identified by its id alone
 
 MAX_PAIRS = 2_000
-"""Pairs of objects about which questions are weighed; those least certain first."""
-
+"""Maximum number of pairs of objects for which questions are evaluated, the least certain first."""
 
 Topic = tuple[Hashable, ...]
 
 
 class QuestionKind(StrEnum):
-    """What a person has to do: look at two things, look at one, or point."""
+    """Task of the person: look at two things, look at one thing, or point."""
 
     RELATION = "relation"  # Is the salad fork left of the dinner fork?
     IDENTITY = "identity"  # Is the thing at the far left the bread plate?
@@ -48,30 +47,26 @@ class QuestionKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A question, what its answer is expected to resolve, and what each answer's probability is.
-
-    ``subject`` and ``object`` are described objects, ``thing`` a perceived one, by position; -1 where there is none.
-    ``answers`` are all that some candidate gives, in their order of probability.
-    """
+    """A question with the probabilities of its answers and its expected information."""
 
     kind: QuestionKind
     text: str
-    subject: int
+    subject: int  # position of a described object
     relation: Relation | None
-    object: int
-    thing: int
-    answers: tuple[tuple[str, float], ...]
-    bits: float
-    effort: float
+    object: int  # position of a described object; -1 for none
+    thing: int  # position of a perceived thing; -1 for none
+    answers: tuple[tuple[str, float], ...]  # possible answers with probabilities, most probable first
+    bits: float  # expected information
+    effort: float  # effort of the person, relative to a question about a clear relation
 
     @property
     def about(self) -> tuple[int, ...]:
-        """The described objects that it is about."""
+        """Positions of the described objects in the question."""
         return (self.subject,) if self.object < 0 else (self.subject, self.object)
 
     @property
     def topic(self) -> Topic:
-        """What two questions share that are one question in other words: *left of* and, the other way, *right of*."""
+        """Key that is equal for equivalent questions, such as *left of* and, for the reversed pair, *right of*."""
         if self.relation is None:
             return (self.kind, self.subject, self.thing)
         if self.subject < self.object:
@@ -80,9 +75,9 @@ class Question:
 
     @property
     def look(self) -> Topic:
-        """What two questions share that take one look: who cannot answer the one cannot answer the other.
+        """Key that is equal for questions that need the same knowledge, so that none can be answered without it.
 
-        Who does not know an object by sight can neither point to it nor say of a thing whether it is the one.
+        A person who does not recognise an object can neither point to it nor tell whether a thing is this object.
         """
         if self.relation is None:
             return (QuestionKind.POINTING, self.subject)
@@ -90,7 +85,7 @@ class Question:
 
 
 def answers_of(question: Question, situation: Situation, assignments: NDArray[np.int64]) -> list[str]:
-    """Return how each of k maps (k, n1) answers."""
+    """Return the answer of each of k maps (k, n1)."""
     things = situation.things
     subjects = assignments[:, question.subject]
     if question.kind is QuestionKind.POINTING:
@@ -109,11 +104,10 @@ def best_question(
     kinds: Collection[QuestionKind] = tuple(QuestionKind),
     barred: Collection[Topic] = (),
 ) -> Question | None:
-    """Return the question that is expected to resolve most, the least effort among equals; None where none resolves
-    anything.
+    """Return the question with the largest expected information, then the least effort, or None.
 
-    ``barred``: topics and looks of questions that are not to be asked. Neither the order of candidates nor that of
-    objects or things changes the question, up to which of several alike it is.
+    ``barred`` are topics and looks of questions to leave out. The question does not depend on the order of candidates,
+    objects or things, except for the choice among equivalent objects.
     """
     every, never = questions(situation, candidates, kinds), frozenset(barred)
     found = [question for question in every if never.isdisjoint((question.topic, question.look))]
@@ -123,7 +117,7 @@ def best_question(
 def questions(
     situation: Situation, candidates: Candidates, kinds: Collection[QuestionKind] = tuple(QuestionKind)
 ) -> Iterator[Question]:
-    """Yield every question that resolves something, and that the description does not settle."""
+    """Yield every question that has information and that the description does not answer."""
     marginals = _marginals(situation, candidates)
     asked = [i for i in candidates.stand_ins if marginals[i].max() < 1 - 1e-12]
     if QuestionKind.POINTING in kinds:
@@ -155,7 +149,7 @@ def questions(
 
 
 def _marginals(situation: Situation, candidates: Candidates) -> NDArray[np.float64]:
-    """Return the probability of each thing for each object (n1, n2 + 1); last, of its being left out."""
+    """Return the probability of each thing and, last, of absence for each object, shape (n1, n2 + 1)."""
     n1, n2 = len(situation.objects), len(situation.things)
     found = np.zeros((n1, n2 + 1))
     for i in range(n1):
@@ -169,8 +163,7 @@ def _marginals(situation: Situation, candidates: Candidates) -> NDArray[np.float
 def _pairs(
     asked: list[int], candidates: Candidates, marginals: NDArray[np.float64], situation: Situation
 ) -> list[tuple[int, int]]:
-    """Return pairs with an uncertain first object; both uncertain: by name. The least certain ones where there are
-    many."""
+    """Return the least certain pairs with an uncertain first object; if both are uncertain, in the order of names."""
     uncertain = set(asked)
     names, certainty = situation.objects, marginals.max(axis=1)
     found = [
@@ -194,8 +187,7 @@ def _identity(i: int, p: int, chance: float, situation: Situation) -> Question:
 
 
 def _joint(i: int, j: int, candidates: Candidates, n2: int) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
-    """Return the pairs of things (flat positions) that two objects can be, their probabilities, and that one is left
-    out."""
+    """Return pairs of things (flat indices) of two objects, their probabilities, and that of an absent object."""
     rows = candidates.pinned((i, j))
     p, q = rows.assignments[:, i], rows.assignments[:, j]
     there = (p != UNMATCHED) & (q != UNMATCHED)

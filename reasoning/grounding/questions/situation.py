@@ -1,4 +1,4 @@
-"""What questions can be about: described objects, perceived things, what relates them, and what is already said."""
+"""Subject matter of questions: described objects, perceived things, their relations, and the known facts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PLACES = (
 )
 
 MIN_REACH_SHARE = 0.02
-"""The share of all that is seen by which something reaches farther than all else."""
+"""Minimum lead of the outermost thing over the next one, as a share of the scene's extent."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,36 +34,36 @@ class Situation:
     things: tuple[str, ...]  # (n2,)
     relations: tuple[Relation, ...]  # (R,)
     degrees: NDArray[np.float64]  # (R, n2, n2): 1 the pair's exact name, 0.5 holds only widely, 0 does not hold
-    settled: NDArray[np.bool_]  # (R, n1, n1): the script says, implies or rules it out
+    settled: NDArray[np.bool_]  # (R, n1, n1): the script states, implies or excludes it
     centres: NDArray[np.float64]  # (n2, 2)
-    places: tuple[str | None, ...]  # (n2,): how the thing can be told by its place, where it can
+    places: tuple[str | None, ...]  # (n2,): description of the thing by its place, or None
 
     @cached_property
     def apart(self) -> NDArray[np.float64]:
-        """How far apart two things lie, as a share of the largest distance, shape (n2, n2)."""
+        """Distances of things as a share of the largest distance, shape (n2, n2)."""
         distance = np.linalg.norm(self.centres[:, None] - self.centres[None], axis=2)
         share: NDArray[np.float64] = distance / max(float(distance.max(initial=0.0)), 1e-300)
         return share
 
     def place(self, thing: int) -> str:
-        """Return how a thing is called in a question: by its place with its id, or by its id alone."""
+        """Return the words for a thing in a question: its place and its id, or its id alone."""
         where = self.places[thing]
         return f"the thing {where} ({self.things[thing]})" if where else f"the thing {self.things[thing]}"
 
 
 def situation_of(description: RelationGraph, scene: SceneRelations, implied: Implications | None = None) -> Situation:
-    """Return what a description and a scene give to ask about; ``implied`` is what the description implies, if known.
+    """Return the situation of a description and a scene; ``implied`` are the facts that it implies, if known.
 
     Raises SettingError for a scene without boxes.
     """
     if scene.boxes is None:
-        raise SettingError("questions are about perceived things with boxes, and the scene has none")
+        raise SettingError("questions need a scene with boxes, and this scene has none")
     relations = description.vocabulary.of_reading(Reading.WIDE)
     table = np.concatenate([description.vocabulary.degrees, np.zeros((len(description.vocabulary), 1))], axis=1)
     degrees = np.stack([table[relation.index][scene.names] for relation in relations])
     centres = scene.boxes.mean(axis=1)[:, :2]
     settled = _settled(description, relations, implied or Implications(description))
-    # the box that reaches farthest each way, and plainly so
+    # the outermost box in each direction, if its lead is clear
     found: list[str | None] = [None] * len(scene.boxes)
     for words, axis, side in PLACES:
         reach = side * scene.boxes[:, (1 + side) // 2, axis]
@@ -78,7 +78,7 @@ def situation_of(description: RelationGraph, scene: SceneRelations, implied: Imp
 
 
 def _settled(description: RelationGraph, relations: tuple[Relation, ...], implied: Implications) -> NDArray[np.bool_]:
-    """Return what is known of every ordered pair of objects: what holds in all pictures, and what that excludes."""
+    """Return the mask (R, n1, n1) of relations that hold in all pictures of the facts, or that these exclude."""
     n = len(description.nodes)
     holds = np.zeros((len(relations), n, n), dtype=bool)
     for row, relation in enumerate(relations):
@@ -105,7 +105,7 @@ def _settled(description: RelationGraph, relations: tuple[Relation, ...], implie
 
 
 def spoken(name: str) -> str:
-    """Return an object's name as it is said: ``salad_fork`` is "salad fork".
+    """Return an object's name in plain words: ``salad_fork`` is "salad fork".
 
     >>> spoken("wine_glass_2")
     'wine glass 2'

@@ -18,7 +18,7 @@ Matrix = NDArray[np.float64]
 
 
 def all_assignments(allowed: NDArray[np.bool_]) -> Iterator[list[int]]:
-    """Every partial one-to-one map of rows to allowed columns."""
+    """Yield every partial one-to-one map of rows to allowed columns."""
     n1, n2 = allowed.shape
     for count in range(min(n1, n2) + 1):
         for rows in combinations(range(n1), count):
@@ -40,7 +40,7 @@ def problems(draw: st.DrawFn) -> tuple[Matrix, NDArray[np.bool_]]:
 
 @settings(max_examples=100, deadline=None)
 @given(problems())
-def test_as_many_as_possible_are_matched_and_then_with_the_largest_sum(
+def test_most_matches_come_first_then_the_largest_sum(
     problem: tuple[Matrix, NDArray[np.bool_]],
 ) -> None:
     matrix, allowed = problem
@@ -74,7 +74,7 @@ def test_a_perfect_one_to_one_matrix_has_similarity_1(n: int) -> None:
 
 
 def test_the_similarity_of_a_matrix_without_preference_by_hand() -> None:
-    """Each of four entries is 1/2, two are matched: 1 over the root of 2."""
+    """Check 1 over the root of 2: each of four entries is 1/2, and two are matched."""
     matrix = np.full((2, 2), 0.5)
     assert graph_similarity(matrix, np.array([0, 1])) == pytest.approx(1 / np.sqrt(2))
     assert graph_similarity(matrix, np.array([0, UNMATCHED])) == pytest.approx(0.5)

@@ -40,7 +40,7 @@ def test_no_relation_in_common_is_noted_and_gives_no_nan(engine: str, graph_of: 
 def test_facts_that_the_similarity_cannot_see_are_listed(graph_of: MakeGraph, full_script: list[str]) -> None:
     description = graph_of(*full_script, "not on(napkin, bread_plate)", "left or top_left(salad_fork, dinner_plate)")
     found = answer(description, formal_setting())
-    (note,) = [note for note in found.notes if "not seen by the similarity" in note]
+    (note,) = [note for note in found.notes if "the similarity ignores" in note]
     assert "not on(napkin, bread_plate)" in note
     assert "left or top_left(salad_fork, dinner_plate)" in note
     assert len(found.satisfied) == 13
@@ -50,10 +50,10 @@ def test_what_is_rarely_so_is_not_what_the_similarity_looks_for(graph_of: MakeGr
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     found = ground(no_unary_evidence(graph_of("0.2 left(a, b)"), scene), engine_named("similarity"))
     assert found.graph_similarity == 0.0
-    assert "not seen by the similarity, being no single affirmed relation: rarely left(a, b)" in found.notes
+    assert "the similarity ignores facts that are not one affirmed relation: rarely left(a, b)" in found.notes
 
 
-def test_where_one_step_of_the_similarity_is_too_much_the_exact_engine_goes_without(
+def test_exact_engine_skips_an_expensive_similarity(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
     monkeypatch.setattr(similarity_engine, "_MAX_MULTIPLICATIONS", 1.0)
@@ -77,7 +77,7 @@ def test_more_subgraphs_than_are_tried_is_noted(
     assert len(found.matches) == 12
 
 
-def test_fewer_objects_than_things_beyond_the_subgraphs_that_are_tried(
+def test_too_many_subgraphs_use_the_heuristic(
     monkeypatch: pytest.MonkeyPatch, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
     monkeypatch.setattr(similarity_engine, "MAX_SUBGRAPHS", 1)
@@ -86,7 +86,7 @@ def test_fewer_objects_than_things_beyond_the_subgraphs_that_are_tried(
     assert len(found.matches) == len(graph_of(*full_script[:6]).nodes)
 
 
-def test_select_similarity_takes_the_most_similar_subgraph_and_facts_the_one_that_explains_most(
+def test_select_decides_the_criterion_for_subgraphs(
     graph_of: MakeGraph, full_script: list[str], absent_glasses: list[str]
 ) -> None:
     description = graph_of(*full_script, *absent_glasses)
@@ -107,7 +107,7 @@ def test_the_exact_value_is_never_below_that_of_the_similarity(graph_of: MakeGra
 
 @pytest.mark.parametrize("most", [similarity_engine.MAX_SUBGRAPHS, 100])
 @pytest.mark.parametrize("absent", [True, False])
-def test_the_similarity_answers_at_its_deadline_and_says_that_it_was_cut_short(
+def test_similarity_at_its_deadline_is_cut_short(
     most: int,
     absent: bool,
     monkeypatch: pytest.MonkeyPatch,

@@ -59,7 +59,7 @@ def weighed(evidence: Evidence) -> Verdict:
 
 
 def summed(problem: Problem) -> tuple[float, NDArray[np.float64]]:
-    """The logarithm of the sum over all maps, and the marginals, by listing every map."""
+    """Return the log sum over all maps, and the marginals, by listing every map."""
     options = list(maps(problem.allowed))
     values = np.array([problem.value(option) for option in options])
     total = float(np.logaddexp.reduce(values))
@@ -147,7 +147,7 @@ def unpruned(evidence: Evidence) -> Verdict:
 
 
 def same_answers(evidence: Evidence) -> bool:
-    """Whether both verdicts agree to 1e-4, and whether something was pruned."""
+    """Return whether both verdicts agree to 1e-4, and whether a side was pruned."""
     found, whole = weighed(evidence), unpruned(evidence)
     assert found.fits == pytest.approx(whole.fits, abs=1e-4)
     np.testing.assert_allclose(
@@ -163,7 +163,7 @@ def test_left_out_hypotheses_change_no_answer(evidence: Evidence) -> None:
     same_answers(evidence)
 
 
-def test_the_bound_of_a_shortlist_counts_maps_to_what_is_not_listed() -> None:
+def test_shortlist_bound_counts_maps_to_other_things() -> None:
     table = generate(5, 1.6, 0.2, seed=4)
     known = seen(table.boxes, table.description())
     outside = np.array([0.0, 0.1, 0.9, 0.0, 0.3])
@@ -228,7 +228,7 @@ def test_a_wrong_viewpoint_is_noticed_and_matches_are_right(angle: float, mirror
     decided = right_of_decided(found, table)
     assert len(decided) > 5 and all(decided)
     assert not found.violated
-    assert any("than as its viewpoint is stated" in note for note in found.notes)
+    assert any("than from the stated viewpoint" in note for note in found.notes)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -1,4 +1,4 @@
-"""What labels do to an answer: the certain ones settle, the others weigh against facts."""
+"""Grounding with labels."""
 
 from __future__ import annotations
 
@@ -60,31 +60,27 @@ def test_a_label_settles_what_the_facts_leave_open(graph_of: MakeGraph, figure_7
     assert "salad_fork" not in {name for group in found.interchangeable for name in group}
 
 
-def test_a_label_free_of_error_that_names_nothing_leaves_its_thing_out(
-    graph_of: MakeGraph, full_script: list[str]
-) -> None:
+def test_errorless_label_without_object_excludes_its_thing(graph_of: MakeGraph, full_script: list[str]) -> None:
     found = labelled(graph_of(*full_script), {"soup_spoon": Label("gizmo")}, error=0.0)
     (thing,) = found.unmatched_perceived
     assert thing.name == "soup_spoon"
-    assert thing.reason == "the labels of the scene leave it nothing in the description that it could be"
+    assert thing.reason == "the labels of the scene rule out every object that it could be"
     assert len(found.matches) == 11
 
 
-def test_an_object_that_labels_leave_nothing_is_left_out_with_that_reason(
-    graph_of: MakeGraph, boxes_of: MakeBoxes
-) -> None:
+def test_object_ruled_out_by_labels_has_that_reason(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)")
     found = labelled_scene(description, scene, [Label("a"), Label("a")], error=0.0)
     assert pairs(found) == {"a": "p"} or pairs(found) == {"a": "q"}
     assert [(entry.name, entry.reason) for entry in found.unmatched_objects] == [
-        ("b", "the labels of the scene leave it nothing that it could be")
+        ("b", "the labels of the scene rule out every thing that it could be")
     ]
     assert len(found.unmatched_perceived) == 1
 
 
-def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    """One fact speaks for a on the left; a label has to be surer than it is to speak louder."""
+def test_uncertain_label_competes_with_facts(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
+    """Check that a label must be more certain than the fact that supports a on the left."""
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(a, b)")
     answers = {}
@@ -94,7 +90,7 @@ def test_an_uncertain_label_weighs_against_facts_and_loses_or_wins(graph_of: Mak
 
 
 def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
-    """The fact has it the other way round, and two certain labels are stronger."""
+    """Check that two certain labels are stronger than a fact that contradicts them."""
     scene = scene_relations(["p", "q"], boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)]), R)
     description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
     found = labelled_scene(description, scene, [Label("dinner plate"), Label("dinner fork")])
@@ -102,9 +98,7 @@ def test_a_narrower_label_says_where_the_broader_object_is(graph_of: MakeGraph, 
     assert all((match.probability or 0) > 0.95 for match in found.matches.values())
 
 
-def test_beside_a_thing_of_its_very_name_an_object_is_none_of_a_narrower_one(
-    graph_of: MakeGraph, boxes_of: MakeBoxes
-) -> None:
+def test_exact_name_precedes_a_narrower_thing(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     boxes = boxes_of([(0, 1), (0, 1)], [(2, 3), (0, 1)], [(4, 5), (0, 1)])
     description = graph_of("left(fork, plate)", kinds=FORK_AND_PLATE)
     scene = scene_relations(["p", "q", "r"], boxes, R)

@@ -49,7 +49,7 @@ def scene(boxes: NDArray[np.float64]) -> SceneRelations:
 
 @pytest.mark.parametrize("seed", [None, 1, 2])
 @pytest.mark.parametrize("engine", ["exact", "scalable"])
-def test_the_full_description_of_a_setting_names_everything_right(
+def test_full_description_matches_everything_correctly(
     engine: str, seed: int | None, relations: Relations, graph_of: MakeGraph, full_script: list[str]
 ) -> None:
     found = ground(no_unary_evidence(graph_of(*full_script), setting(relations, seed)), engine_named(engine))
@@ -88,7 +88,7 @@ def test_a_scene_without_boxes_is_taken_literally(graph_of: MakeGraph, boxes_of:
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.2])
-def test_past_the_deadline_there_is_an_answer_that_is_not_called_proved(seconds: float) -> None:
+def test_past_the_deadline_the_answer_is_not_proved(seconds: float) -> None:
     evidence = knotty(60)
     started = time.perf_counter()
     found = ground(evidence, EXACT, deadline=Deadline.after(seconds))
@@ -177,8 +177,8 @@ def evidences(draw: st.DrawFn) -> Evidence:
 
 @settings(max_examples=60, deadline=None)
 @given(evidences())
-def test_the_likeliest_of_all_maps_is_proved_and_the_probabilities_are_those_of_all_maps(evidence: Evidence) -> None:
-    """As it stands; what of sides and scenes is added is in ``test_hypotheses.py``."""
+def test_exact_answer_equals_the_sum_over_all_maps(evidence: Evidence) -> None:
+    """Check the scene from the stated side; ``test_hypotheses.py`` tests sides and other scenes."""
     found = engine_named("exact", sides=AS_IT_STANDS).align(evidence, Deadline.never())
     options = list(maps(evidence.allowed))
     values = np.array([evidence.problem.value(option) for option in options])
@@ -217,7 +217,7 @@ def test_without_a_pivotal_fact_the_answer_is_the_one_foretold(evidence: Evidenc
 
 
 def elsewhere(graph_of: MakeGraph, boxes_of: MakeBoxes) -> Evidence:
-    """A description of five things in a row, in a scene where their kinds lie in another order."""
+    """Describe five things in a row, in a scene where their kinds have another order."""
     names = "abcde"
     told = graph_of(*(f"left({one}, {other})" for one, other in combinations(names, 2)))
     seen = scene(boxes_of(*[[(3 * i, 3 * i + 1), (0, 1)] for i in (2, 4, 1, 0, 3)]))
@@ -225,23 +225,21 @@ def elsewhere(graph_of: MakeGraph, boxes_of: MakeBoxes) -> Evidence:
     return replace(known, sizes=np.where(np.eye(5, dtype=bool), 1.5, -3.0))
 
 
-def test_what_makes_a_description_one_of_another_scene_is_not_said_to_be_no_fact(
-    graph_of: MakeGraph, boxes_of: MakeBoxes
-) -> None:
+def test_facts_of_another_scene_have_no_pivotal_claims(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     found = ground(elsewhere(graph_of, boxes_of), EXACT)
     assert not found.matches
     assert found.pivotal is None
     assert SENSITIVITY_NOT_ASKED in found.notes
 
 
-def test_a_description_of_another_scene_is_told_with_what_was_known_besides(
-    graph_of: MakeGraph, boxes_of: MakeBoxes
-) -> None:
+def test_note_on_another_scene_names_the_other_evidence(graph_of: MakeGraph, boxes_of: MakeBoxes) -> None:
     known = elsewhere(graph_of, boxes_of)
     nothing = np.zeros_like(known.sizes)
     others = {
-        "the description, with how large such things usually are, fits so little": known,
-        "the description, with their colours, fits so little": replace(known, sizes=nothing, colours=known.sizes),
+        "the description, with the usual sizes, fits this scene so poorly": known,
+        "the description, with the colours, fits this scene so poorly": replace(
+            known, sizes=nothing, colours=known.sizes
+        ),
     }
     for begins, evidence in others.items():
         (note,) = [note for note in ground(evidence, EXACT).notes if "another scene" in note]
@@ -250,8 +248,8 @@ def test_a_description_of_another_scene_is_told_with_what_was_known_besides(
 
 @settings(max_examples=40, deadline=None)
 @given(evidences())
-def test_literal_meaning_weighs_facts_as_their_crisp_degrees_rank_them(evidence: Evidence) -> None:
-    """What holds exactly weighs most, then what holds widely, then what does not hold."""
+def test_literal_weights_follow_crisp_degrees(evidence: Evidence) -> None:
+    """Check that exact facts weigh most, then wide ones, then violated ones."""
     literal = replace(evidence, meaning=LITERAL).problem
     for row, fact in enumerate(evidence.facts.tolist()):
         degrees = evidence.degree_table[row][evidence.scene.names]
@@ -269,7 +267,7 @@ def test_meaning_says_whether_probabilities_are_exact(graph_of: MakeGraph, boxes
     assert similarity.matches["a"].probability is None
 
 
-def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() -> None:
+def test_no_time_for_probabilities_decides_nothing() -> None:
     boxes = np.random.default_rng(3).uniform(size=(60, 1, 2)) + np.array([[0.0, 0.0], [0.05, 0.05]])
     seen, words = scene(boxes), ("left", "right", "top")
     facts = [Fact(f"a{i}", (R[words[i % 3]],), f"a{(7 * i + 1) % 60}") for i in range(60) if i != (7 * i + 1) % 60]
@@ -277,7 +275,7 @@ def test_without_time_for_probabilities_none_is_told_and_nothing_is_decided() ->
     found = ground(no_unary_evidence(described, seen), engine_named("scalable"), deadline=Deadline.after(0.0))
     assert found.probabilities is Standing.NONE
     assert all(match.probability is None and not match.decided for match in found.matches.values())
-    assert any("how probable" in note for note in found.notes)
+    assert any("before the probabilities" in note for note in found.notes)
     assert not found.finished
 
 
@@ -296,7 +294,7 @@ def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
     assert time.process_time() - started < 2.0
     assert len(found.matches) > 300
     assert found.graph_similarity == 0.0
-    assert any("no time for the paper's similarity" in note for note in found.notes)
+    assert any("before the paper's similarity was computed" in note for note in found.notes)
     assert not any("in common" in note for note in found.notes)
 
 

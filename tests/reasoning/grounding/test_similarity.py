@@ -162,7 +162,7 @@ def test_one_edge_by_hand() -> None:
 
 
 def test_two_forks_left_of_a_plate_by_hand() -> None:
-    """With u for a fork and a fork, v for the plate, m = (4u + v)/9: u' = (m + v)/2 and v' = u + m.
+    """Solve by hand: with u for a fork and a fork, v for the plate, m = (4u + v)/9: u' = (m + v)/2 and v' = u + m.
 
     So r = v/u obeys 5r^2 + r - 13 = 0, and 4u^2 + v^2 = 1.
     """
@@ -213,7 +213,7 @@ def test_a_prior_of_zero_forbids_a_pair(graph_of: MakeGraph, figure_7: list[str]
     assert node_similarity(graph, graph, prior=prior).matrices[0, 1, 1] == 0
 
 
-def test_at_the_deadline_it_stops_and_says_that_it_did_not_converge() -> None:
+def test_deadline_stops_without_convergence() -> None:
     graph = paper_graph(3, [(0, 1, 0), (1, 2, 1), (2, 0, 0)])
     found = node_similarity(graph, graph, deadline=Deadline.after(0.0))
     assert found.iterations == 0

@@ -39,7 +39,7 @@ def graphs(draw: st.DrawFn) -> tuple[RelationGraph, list[int]]:
 
 
 def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
-    """From all renamings that leave every fact and colour as it was."""
+    """Find the groups from all renamings that preserve every fact and colour."""
     n = len(graph.nodes)
     edges = [
         (int(s), int(o), int(r), bool(p), bool(q), float(w))
@@ -79,8 +79,8 @@ def test_a_ring_is_one_group_though_no_swap_of_two_proves_it(graph_of: MakeGraph
     assert interchangeable(ring, [1, 0, 0, 0]) == []
 
 
-def test_two_triangles_and_a_hexagon_are_alike_to_colour_refinement_only(graph_of: MakeGraph) -> None:
-    """All twelve nodes have one colour, but none of the triangles can become one of the hexagon."""
+def test_triangles_and_hexagon_fool_only_colour_refinement(graph_of: MakeGraph) -> None:
+    """Check twelve nodes of one colour: no triangle node can be exchanged with a hexagon node."""
     rings = ["left(a, b)", "left(b, c)", "left(c, a)", "left(d, e)", "left(e, f)", "left(f, d)"]
     rings += [f"left(h{i}, h{(i + 1) % 6})" for i in range(6)]
     graph = graph_of(*rings)

@@ -1,4 +1,4 @@
-"""Whose left: turning boxes, and the viewpoint recovered with the grounding."""
+"""Recovery of the viewpoint of a description."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def recovered(description: RelationGraph, boxes: Boxes, *, any_angle: bool = Fal
 
 
 def spun(boxes: Boxes, angle: float) -> Boxes:
-    """The enclosing boxes of a table that is turned: square things are round, others rectangles."""
+    """Return the enclosing boxes of a turned table: square things are round, others rectangles."""
     cos, sin = math.cos(angle), math.sin(angle)
     corners = (
         np.stack([boxes[:, i, 0] for i in (0, 0, 1, 1)], axis=1),
@@ -72,7 +72,7 @@ def test_a_whole_turn_is_none(some: Boxes, mirrored: bool) -> None:
 
 
 @given(boxes())
-def test_four_quarter_turns_and_two_mirrors_bring_everything_back(some: Boxes) -> None:
+def test_four_quarter_turns_and_two_mirrors_are_identity(some: Boxes) -> None:
     around = some
     for _ in range(4):
         around = turned(around, QUARTER)
@@ -107,7 +107,7 @@ def test_a_round_thing_stays_as_large_at_any_angle() -> None:
 
 @pytest.mark.parametrize("quarters", [0, 1, 2, 3])
 @pytest.mark.parametrize("mirrored", [False, True])
-def test_quarter_turns_and_mirrors_are_recovered_with_every_object(quarters: int, mirrored: bool) -> None:
+def test_quarter_turns_and_mirrors_are_recovered(quarters: int, mirrored: bool) -> None:
     scene = formal_setting(quarters, 0.01)
     changed = turned(scene.boxes, quarters * QUARTER)
     changed = turned(changed, 0.0, mirrored)
@@ -145,7 +145,7 @@ def test_a_description_that_cannot_tell_says_so() -> None:
     assert found.ties[0].assignment.tolist() == found.ties[1].assignment.tolist()[::-1]
 
 
-def test_what_only_a_mirror_explains_less_than_the_prior_is_not_mirrored() -> None:
+def test_weak_evidence_of_a_mirror_does_not_mirror() -> None:
     row = np.array([[[0.0, 0.0], [1.0, 1.0]], [[2.0, 0.0], [3.0, 1.0]]])
     found = recovered(parse_script("cup left of mug").graph(), row)
     assert len(found.ties) == 4
@@ -156,7 +156,7 @@ def test_what_only_a_mirror_explains_less_than_the_prior_is_not_mirrored() -> No
 
 @settings(max_examples=10, deadline=None)
 @given(st.integers(0, 1000))
-def test_probabilities_add_up_to_one_and_do_not_depend_on_the_order_of_things(seed: int) -> None:
+def test_probabilities_sum_to_one_in_any_order(seed: int) -> None:
     rng = np.random.default_rng(seed)
     low = rng.uniform(0, 1, (4, 2))
     some = np.stack([low, low + 0.2], axis=1)
@@ -179,7 +179,7 @@ def test_boxes_that_are_none_are_refused() -> None:
 
 
 def looked_until(monkeypatch: pytest.MonkeyPatch, most: int) -> tuple[Viewpoints, list[Boxes]]:
-    """What is recovered from a formal dinner where the deadline passes with so many problems built, and what was."""
+    """Recover the viewpoint of a formal dinner with a deadline after a number of problems; return those built, too."""
     scene, built, deadline = formal_setting(0, 0.01), list[Boxes](), Deadline.after(1000.0)
     real = time.monotonic
 
@@ -195,7 +195,7 @@ def looked_until(monkeypatch: pytest.MonkeyPatch, most: int) -> tuple[Viewpoints
     return recover_viewpoint(scene.boxes, noted, any_angle=True, deadline=deadline), built
 
 
-def test_no_problem_is_built_after_the_deadline_and_quarter_turns_come_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_quarter_turns_come_first_until_the_deadline(monkeypatch: pytest.MonkeyPatch) -> None:
     found, built = looked_until(monkeypatch, 10)
     assert len(built) == 10
     assert not found.exact
@@ -206,7 +206,7 @@ def test_no_problem_is_built_after_the_deadline_and_quarter_turns_come_first(mon
         assert np.array_equal(seen, expected)
 
 
-def test_the_scene_as_it_stands_is_looked_at_where_there_is_no_time_at_all() -> None:
+def test_scene_as_it_stands_is_searched_without_time() -> None:
     found = recover_viewpoint(
         formal_setting(0, 0.01).boxes, lambda seen: problem(FORMAL, seen), deadline=Deadline.after(0.0)
     )
@@ -214,7 +214,7 @@ def test_the_scene_as_it_stands_is_looked_at_where_there_is_no_time_at_all() -> 
     assert not found.exact
 
 
-def test_an_arc_that_there_was_no_time_to_look_at_finely_stays_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_arc_without_time_for_refinement_stays_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
     found, built = looked_until(monkeypatch, 2 * COARSE_ANGLES + 7)
     assert len(built) == 2 * COARSE_ANGLES + 7
     assert not found.everywhere

@@ -1,4 +1,4 @@
-"""What candidate names say of who is who: by hand, against labels, and where they say nothing."""
+"""Evidence of candidate names for matches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What described and seen colours say of who is who."""
+"""Evidence of colours for matches."""
 
 from __future__ import annotations
 
@@ -70,20 +70,20 @@ def test_most_names_of_the_survey_get_the_word_that_they_end_in() -> None:
     assert np.mean(right) > 0.88
 
 
-def test_a_thing_is_of_another_colour_only_where_its_name_would_hardly_do() -> None:
+def test_other_colour_needs_a_clear_difference() -> None:
     said = [iri("red"), iri("orange"), iri("red"), iri("blue"), None]
     found = other_colours(said, seen("#c02020", "#f04818", "#1e3a6e", None, "#1e3a6e"), COLOURS)
     assert [colour and colour.label for colour in found] == [None, None, "blue", None, None]
 
 
-def test_every_prototype_is_of_another_colour_than_all_words_but_its_own() -> None:
+def test_each_prototype_differs_from_all_other_colours() -> None:
     prototypes = np.array([colour.prototype for colour in COLOURS], dtype=np.float64)
     for said in COLOURS:
         found = other_colours([said.iri] * len(prototypes), prototypes, COLOURS)
         assert found == [None if seen_as == said else seen_as for seen_as in COLOURS]
 
 
-def test_white_things_are_about_as_white_as_each_other_though_none_is_pure() -> None:
+def test_impure_whites_are_about_equally_white() -> None:
     (found,) = colour_evidence([iri("white")], TABLE, COLOURS)
     assert found[1] == pytest.approx(found[3], abs=0.1)
     assert min(found[1], found[3]) > 0.5 > 0 > found[[0, 2, 4]].max()
@@ -107,7 +107,7 @@ def test_nothing_is_said_where_no_colour_is_described_or_seen() -> None:
 
 @settings(max_examples=50, deadline=None)
 @given(arrays(np.float64, st.tuples(st.integers(1, 6), st.just(3)), elements=st.floats(0, 255)))
-def test_no_colour_rules_a_thing_out_and_none_says_more_than_its_share_allows(rgb: NDArray[np.float64]) -> None:
+def test_colour_evidence_is_bounded_both_ways(rgb: NDArray[np.float64]) -> None:
     found = colour_evidence([colour.iri for colour in COLOURS], rgb, COLOURS)
     least_share = 1 / len(COLOURS) / (len(rgb) + 1)
     assert found.min() >= np.log(OUTLIERS) - 1e-9

@@ -39,9 +39,7 @@ def degree(word: str, subject: list[list[float]], object: list[list[float]]) -> 
 
 
 @given(tables(axes=3), st.sampled_from(list(RELATIONS)))
-def test_degrees_lie_between_0_and_1_and_evidence_is_finite_also_of_boxes_without_an_extent(
-    boxes: Array, name: str
-) -> None:
+def test_degrees_and_evidence_are_bounded_for_empty_boxes(boxes: Array, name: str) -> None:
     pairs = pair_geometry(boxes)
     degrees = relation_degree(pairs, RELATIONS[name], MODELS)
     assert np.all((degrees >= 0) & (degrees <= 1))
@@ -90,7 +88,7 @@ def test_vertical_is_horizontal_turned_by_a_quarter(boxes: Array) -> None:
 
 
 @given(tables(least=2, most=2), st.integers(1, 30))
-def test_moving_a_box_further_left_never_lowers_left_but_for_the_distance(boxes: Array, by: int) -> None:
+def test_moving_left_lowers_left_only_by_distance(boxes: Array, by: int) -> None:
     further = boxes.copy()
     further[0, :, 0] -= by
     blind = RelationModels({name: model.without("gap") for name, model in MODELS.models.items()})
@@ -99,7 +97,7 @@ def test_moving_a_box_further_left_never_lowers_left_but_for_the_distance(boxes:
 
 
 @given(tables(least=2, most=2), st.integers(1, 30))
-def test_until_the_boxes_part_moving_left_never_lowers_left_at_all(boxes: Array, by: int) -> None:
+def test_moving_left_never_lowers_left_until_boxes_part(boxes: Array, by: int) -> None:
     further = boxes.copy()
     further[0, :, 0] -= by
     before, after = pair_geometry(boxes), pair_geometry(further)
@@ -142,7 +140,7 @@ def test_a_fact_is_bounded_by_the_outliers_and_by_chance() -> None:
 
 @pytest.mark.parametrize("word", sorted(FAMILIES))
 def test_the_best_word_is_mostly_the_exact_name_of_random_boxes(word: str) -> None:
-    """The graded reading refines the crisp one: where a name fits best by degrees, it is mostly the name of the ten."""
+    """Check that the word with the best degree is mostly the exact relation of the pair."""
     agreed = total = 0
     for pairs in map(pair_geometry, random_scenes()[:40]):
         names = box_relations(pairs.boxes, RELATIONS).names

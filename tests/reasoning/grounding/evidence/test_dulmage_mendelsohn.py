@@ -1,4 +1,4 @@
-"""What the largest matchings leave over."""
+"""Rows that a maximum matching can leave over."""
 
 from __future__ import annotations
 
@@ -17,6 +17,6 @@ def largest(pairs: np.ndarray) -> int:
 
 
 @given(arrays(bool, st.tuples(st.integers(0, 6), st.integers(0, 6))))
-def test_a_row_is_spare_just_where_as_many_can_be_matched_without_it(pairs: np.ndarray) -> None:
+def test_spare_rows_leave_the_matching_size_unchanged(pairs: np.ndarray) -> None:
     without = [largest(np.delete(pairs, row, axis=0)) for row in range(len(pairs))]
     assert spare_rows(pairs).tolist() == [count == largest(pairs) for count in without]

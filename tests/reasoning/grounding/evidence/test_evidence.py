@@ -1,4 +1,4 @@
-"""How far facts hold of perceived pairs."""
+"""Degrees of facts, absence, and the matching problem of evidence."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_reordered_evidence_says_the_same(top_left_pair: SceneRelations, graph_o
         (["exactly_left(a, b)", "exactly_right(b, a)", "exactly_top(a, b)"], "every ordered pair"),
     ],
 )
-def test_a_scene_in_which_a_pair_has_no_one_exact_name_is_an_error(
+def test_pair_without_a_unique_exact_relation_is_an_error(
     sentences: list[str], message: str, graph_of: MakeGraph
 ) -> None:
     with pytest.raises(GraphError, match=message):
@@ -100,6 +100,6 @@ def test_a_scene_in_which_a_pair_has_no_one_exact_name_is_an_error(
 
 
 @given(st.integers(1, 60), st.integers(1, 400))
-def test_leaving_out_is_never_worth_more_than_a_match_where_there_is_room_for_all(objects: int, things: int) -> None:
+def test_absence_never_beats_a_match_with_room_for_all(objects: int, things: int) -> None:
     worth = absence(objects, things)
     assert worth < -2.9 if objects <= things else worth > absence(things, things)

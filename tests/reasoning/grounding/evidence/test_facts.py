@@ -1,4 +1,4 @@
-"""What facts weigh: choices, denials, hedges, optional facts, the saying model, and the crisp special case."""
+"""Evidence of stated facts for pairs of boxes."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ def test_a_plain_fact_weighs_what_its_word_does() -> None:
     assert table("left") == pytest.approx(alone, abs=1e-5)
 
 
-def test_a_choice_speaks_for_the_pairs_of_either_word_and_less_than_the_right_one_alone() -> None:
+def test_choice_supports_either_word_less_than_one_alone() -> None:
     either, left, top = table("left", "top"), table("left"), table("top")
     assert either[0, 1] > 0 and either[2, 0] > 0
     assert either[0, 1] < left[0, 1] and either[2, 0] < top[2, 0]
 
 
-def test_a_denial_speaks_against_the_pair_of_the_word_and_hardly_for_any_other() -> None:
+def test_denial_is_evidence_against_the_pair_of_the_word() -> None:
     denied = table("left", positive=False)
     assert denied[0, 1] < -0.5
     assert 0 < denied[1, 0] < 0.4
@@ -86,7 +86,7 @@ def test_every_table_is_finite(
     assert np.isfinite(found.tables).all()
 
 
-def test_facts_that_say_the_same_share_a_table_and_fill_a_problem() -> None:
+def test_equal_facts_share_a_table_of_the_problem() -> None:
     left, on = (R["left"],), (R["on"],)
     facts = [Fact("a", left, "b"), Fact("b", left, "c"), Fact("c", on, "a"), Fact("a", left, "a")]
     graph = RelationGraph.from_facts(R, ["a", "b", "c"], facts)
@@ -98,7 +98,7 @@ def test_facts_that_say_the_same_share_a_table_and_fill_a_problem() -> None:
     assert problem.value(np.array([0, 1, 2])) == pytest.approx(float(value), abs=1e-5)
 
 
-def test_the_larger_of_two_is_the_likelier_reference_and_neighbours_are_spoken_of() -> None:
+def test_larger_reference_and_neighbours_are_likelier() -> None:
     boxes = np.array([[[0, 0], [1, 1]], [[1.5, 0], [4.5, 3]], [[9, 0], [10, 1]]], dtype=float)
     graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
     spoken, alone = (fact_tables(graph, boxes, saying=flag).tables[0] for flag in (True, False))
@@ -106,17 +106,17 @@ def test_the_larger_of_two_is_the_likelier_reference_and_neighbours_are_spoken_o
     assert spoken[0, 1] - spoken[0, 2] > alone[0, 1] - alone[0, 2]
 
 
-def test_literal_speakers_make_what_holds_likelier_than_what_does_not() -> None:
+def test_literal_share_favours_exact_relations() -> None:
     far = np.array([[[0, 0], [1, 1]], [[90, 0], [91, 1]], [[0.8, 0], [1.8, 1]]], dtype=float)
     graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
     none, some, all_of = (fact_tables(graph, far, literal=share).tables[0] for share in (0.0, 0.3, 1.0))
     assert none[0, 1] < some[0, 1] < all_of[0, 1]
     assert all_of[0, 1] == pytest.approx(np.log(1 / (0.01 + 0.99 * 0.1)), abs=1e-4)
-    with pytest.raises(SettingError, match="meant literally"):
+    with pytest.raises(SettingError, match="share of literal facts"):
         fact_tables(graph, far, literal=1.5)
 
 
-def test_of_a_neighbouring_name_a_literal_speaker_says_the_word_one_time_in_ten() -> None:
+def test_literal_speaker_states_implied_words_rarely() -> None:
     beside, off = [[0, 0], [1, 1]], [[3, 5], [4, 6]]
     graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["left"],), "b")])
     found = fact_tables(graph, np.array([beside, [[3, 0], [4, 1]], off], dtype=float), literal=1.0).tables[0]
@@ -152,7 +152,7 @@ def test_what_is_farther_left_is_no_less_denied_to_be_left(apart: float) -> None
     assert denied[0, 1] < -0.5 < 0 < denied[1, 0]
 
 
-def test_what_is_rarely_so_speaks_against_it_and_what_is_rarely_not_so_for_it() -> None:
+def test_rarely_reverses_the_evidence() -> None:
     rarely, denied = table("left", weight=0.2), table("left", positive=False, weight=0.8)
     assert np.array_equal(rarely, denied)
     assert rarely[0, 1] < 0 < rarely[1, 0]

@@ -1,4 +1,4 @@
-"""Which objects the labels of perceived things name."""
+"""Objects that labels name."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_without_kinds_a_word_for_a_kind_names_nothing(graph_of: MakeGraph) -> N
     assert names(graph_of(nodes="salad_fork"), "fork") == [[]]
 
 
-def test_a_label_fits_what_it_is_and_names_more_where_it_is_broader(table: RelationGraph) -> None:
+def test_broader_labels_name_objects_that_they_do_not_fit(table: RelationGraph) -> None:
     found = naming(table, [Label("cutlery"), Label("dinner plate"), None], KINDS)
     assert found.named.shape == found.fitted.shape == (6, 3)
     assert [table.nodes[i] for i in np.flatnonzero(found.named[:, 0])] == ["salad_fork", "dinner_fork"]
@@ -85,7 +85,7 @@ def test_a_label_fits_what_it_is_and_names_more_where_it_is_broader(table: Relat
         ("serviette", ["napkin", "napkin"], [["serviette"], ["serviette"]]),
     ],
 )
-def test_names_come_before_narrower_labels_and_those_name_what_is_left(
+def test_exact_names_precede_narrower_labels(
     objects: str, labels: list[str], named: list[list[str]], graph_of: MakeGraph
 ) -> None:
     assert names(graph_of(nodes=objects, kinds=kinds_of(objects)), *labels) == named

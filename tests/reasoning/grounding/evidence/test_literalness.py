@@ -1,4 +1,4 @@
-"""How literally words are meant, judged from what was said."""
+"""Estimates of how literally a description is meant."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ def judged(description: RelationGraph, boxes: NDArray[np.float64]) -> float:
 
 
 def problem(description: RelationGraph, boxes: NDArray[np.float64], share: float) -> Problem:
-    """The facts alone, every object being there."""
+    """Return the problem of the facts alone, with every object present."""
     said, n1 = fact_tables(description, boxes, literal=share), len(description.nodes)
     return Problem(said.ends, said.kinds, said.tables, np.zeros((n1, len(boxes))), np.full(n1, -30.0))
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_exact_names_are_taken_literally_though_one_in_ten_is_off(seed: int) -> None:
+def test_exact_names_with_some_errors_are_literal(seed: int) -> None:
     assert share_of(generate(12, 2.5, 0.1, seed=seed)) > 0.85
 
 
@@ -68,7 +68,7 @@ def test_the_order_of_listing_changes_no_table() -> None:
 
 
 def test_what_labels_say_counts_in_the_judgement() -> None:
-    """Told who is who, a description that could be literal the other way round is seen not to be."""
+    """Check that known matches show that a description is not literal."""
     boxes = np.array([[[0.0, 0.0], [1.0, 8.0]], [[3.0, 10.0], [4.0, 18.0]], [[0.5, 20.0], [1.5, 28.0]]])
     said = RelationGraph.from_facts(R, ["a", "b", "c"], [Fact("a", (R["top"],), "b"), Fact("b", (R["top"],), "c")])
     known = np.eye(3)[::-1] > 0

@@ -155,6 +155,6 @@ def test_a_scene_of_a_shortlist_names_all_that_is_left_out() -> None:
         name: match.perceived for name, match in whole.matches.items()
     }
     assert len(answered.unmatched_perceived) == 400 - len(answered.matches)
-    assert any("of 400 things were looked at closely" in note for note in answered.notes)
+    assert any("of 400 things were compared in detail" in note for note in answered.notes)
     for name, match in answered.matches.items():
         assert match.probability == pytest.approx(whole.matches[name].probability, abs=0.02)

@@ -1,4 +1,4 @@
-"""How boxes look around things of a kind: from above, in images, and beside each other."""
+"""Size distributions of boxes around things of a kind."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ def test_a_usual_range_is_two_deviations_wide_to_both_sides() -> None:
     assert 4 * model.length[1] == pytest.approx(np.log(usual.length.greatest / usual.length.least))
 
 
-def test_of_what_the_ontology_does_not_know_there_is_no_usual_size() -> None:
+def test_unknown_kinds_have_no_usual_size() -> None:
     assert usual_size("https://example.org/unheard", SIZES) is None
 
 
-def test_a_handle_makes_a_round_thing_longer_whichever_way_it_points_or_is_not_seen() -> None:
+def test_handle_lengthens_a_round_thing_at_any_angle() -> None:
     look = from_above(SizeModel((np.log(0.08), 0.1), (0.0, 0.05)), reach=0.4)
     hidden, along, *turned = sides(look)
     assert hidden == pytest.approx((0.08, 0.08)) and along == pytest.approx((0.08 * 1.4, 0.08))
@@ -66,7 +66,7 @@ def test_a_handle_makes_a_round_thing_longer_whichever_way_it_points_or_is_not_s
     )
 
 
-def test_what_was_learned_from_images_is_as_they_showed_it_handle_and_all() -> None:
+def test_sizes_learned_from_images_are_unchanged() -> None:
     model = SizeModel((0.1, 0.1), (-0.2, 0.1), relative=True)
     assert sides(from_above(model, reach=0.4)) == sides(from_above(model))
 
@@ -82,7 +82,7 @@ def test_a_long_thing_may_lie_at_any_angle() -> None:
     assert look.shares[0] == look.shares.max() and look.shares.sum() == pytest.approx(1)
 
 
-def test_somebody_in_an_image_is_seen_from_above_from_the_front_or_from_the_side() -> None:
+def test_image_sizes_cover_top_front_and_side_views() -> None:
     look = in_image("adult")
     lengths, tall = np.exp(look.centres).T
     assert (lengths[0], tall[0]) == pytest.approx((0.5, 0.6))

@@ -1,4 +1,4 @@
-"""What labels, sizes and proportions say of who is who."""
+"""Evidence of labels and sizes for matches."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def learned_from(*views: tuple[np.ndarray, int], relative: bool = False) -> Size
     return learn_size(sizes, pooled_prior([sizes]), relative)
 
 
-def test_what_is_far_higher_than_a_fork_is_none_whatever_its_plan() -> None:
+def test_much_higher_thing_is_not_a_fork() -> None:
     def things(height: float) -> np.ndarray:
         return np.array([[[0.0, 0.0, 0.0], [0.03, 0.195, height]], [[0.1, 0.0, 0.0], [0.37, 0.27, 0.02]]])
 
@@ -63,7 +63,7 @@ def test_sizes_are_finite_of_points_and_never_rule_out() -> None:
     assert found.min() >= np.log(0.05) - 1e-9
 
 
-def test_sizes_say_which_of_the_things_it_is_and_so_no_more_than_the_logarithm_of_their_number() -> None:
+def test_size_evidence_is_at_most_log_of_the_things() -> None:
     found = size_evidence([SPOON, PLATE], TABLE, SIZES)
     assert found.max() <= np.log(len(TABLE)) + 1e-9
 
@@ -75,7 +75,7 @@ def test_where_all_things_are_alike_sizes_say_nothing() -> None:
     assert abs(found[0]) < 0.5
 
 
-def test_a_kind_whose_size_is_not_stated_says_nothing_but_a_learned_one_does() -> None:
+def test_only_stated_or_learned_sizes_are_evidence() -> None:
     thing = DX.THING.value
     unheard = "https://example.org/unheard"
     assert (size_evidence([thing, unheard], TABLE, SIZES) == 0).all()
@@ -102,7 +102,7 @@ def test_a_spoon_lies_as_well_across() -> None:
     assert size_evidence([SPOON], turned, SIZES) == pytest.approx(size_evidence([SPOON], TABLE, SIZES))
 
 
-def test_in_pixels_sizes_in_metres_say_how_large_things_are_beside_each_other() -> None:
+def test_sizes_in_metres_give_ratios_in_pixels() -> None:
     found = size_evidence([SPOON, PLATE], TABLE[:2] * 900, SIZES, metric=False)
     assert found.argmax(axis=1).tolist() == [0, 1] and found.min() < 0
     assert found == pytest.approx(size_evidence([SPOON, PLATE], TABLE[:2] * 7, SIZES, metric=False))
@@ -117,7 +117,7 @@ def test_in_an_image_a_person_stands_and_is_no_car() -> None:
     assert found.argmax(axis=1).tolist() == [1, 0] and found.min() < 0
 
 
-def test_a_table_in_an_image_is_seen_from_above_where_that_fits_the_whole_of_it() -> None:
+def test_image_from_above_where_that_fits_the_whole_table() -> None:
     plate, glass = (kind.iri for word in ("dinner plate", "wine glass") if (kind := KINDS.of_word(word)))
     round_things = np.array([[[0.0, 0.0], [81.0, 81.0]], [[100.0, 0.0], [124.0, 24.0]]] * 2)
     upright = np.array([[[0.0, 0.0], [81.0, 8.0]], [[100.0, 0.0], [124.0, 63.0]]] * 2)
@@ -139,7 +139,7 @@ def test_a_learned_range_replaces_the_shipped_one() -> None:
     assert size_evidence([SPOON], small, SIZES, {SPOON: learned})[0, 0] > size_evidence([SPOON], small, SIZES)[0, 0]
 
 
-def test_labels_weigh_by_how_much_likelier_they_are_than_of_anything_else() -> None:
+def test_label_ratios_compare_with_undescribed_things() -> None:
     labels = [Label("soup spoon", 0.8), None, Label("dinner plate", 1.0)]
     found = label_ratios(TWO, labels, KINDS, error=0.01)
     world = 1 / len(KINDS)

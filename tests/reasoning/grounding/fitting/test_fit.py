@@ -45,7 +45,7 @@ def alike_left(count: int, seed: int = 3) -> list[SaidPairs]:
 
 
 def share_of_said(models: RelationModels, lessons: list[SaidPairs]) -> float:
-    """How often the pair that was said is the best of its scene."""
+    """Return how often the stated pair is the best of its scene."""
     hits = []
     for lesson in lessons:
         score = relation_evidence(lesson.pairs, R["left"], models) + np.log(saying_degree(lesson.pairs, models))
@@ -122,7 +122,7 @@ def test_learned_models_make_finite_tables() -> None:
     assert np.isfinite(fact_tables(graph, np.zeros((3, 2, 2)), learned).tables).all()
 
 
-def test_a_grounding_teaches_by_its_confidence_and_leaves_out_what_it_cannot() -> None:
+def test_examples_of_a_grounding_weigh_by_confidence() -> None:
     left = (R["left"],)
     facts = [
         Fact("a", left, "b", weight=0.8),
@@ -161,7 +161,7 @@ def test_settings_that_cannot_be_are_refused(wrong: dict[str, float]) -> None:
 
 
 def largest_change(one: RelationFit, other: RelationFit) -> float:
-    """The largest difference between fitted values, and between log chance degrees."""
+    """Return the largest difference between fitted values, and between log chance degrees."""
     assert one.statistics is not None
     assert other.statistics is not None
     apart = [np.abs(one.statistics.values - other.statistics.values).max()]

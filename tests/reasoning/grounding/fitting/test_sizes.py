@@ -49,9 +49,7 @@ def test_a_view_that_is_wrong_hardly_moves_what_three_others_say() -> None:
 
 
 @given(LOGS, st.randoms(use_true_random=False))
-def test_the_order_of_views_does_not_matter_and_what_is_typical_lies_between_prior_and_views(
-    views: NDArray[np.float64], random: Random
-) -> None:
+def test_typical_size_lies_between_prior_and_views(views: NDArray[np.float64], random: Random) -> None:
     found, mixed = learn_size(views, PRIOR), learn_size(np.array(random.sample(views.tolist(), len(views))), PRIOR)
     assert found.length == pytest.approx(mixed.length) and found.aspect == pytest.approx(mixed.aspect)
     least, greatest = sorted((PRIOR.centre[0], np.median(views[:, 0])))
@@ -68,7 +66,7 @@ def test_kinds_that_differ_much_within_make_a_new_kind_wide() -> None:
     assert learn_size(one, wide).length[1] > 3 * learn_size(one, narrow).length[1]
 
 
-def test_of_a_single_view_of_a_single_kind_the_spread_is_the_usual_one() -> None:
+def test_single_view_has_the_prior_spread() -> None:
     prior = pooled_prior([np.zeros((0, 2)), np.array([[-1.0, -0.3]])])
     assert prior.centre.tolist() == [-1.0, -0.3]
     assert prior.within == pytest.approx([PRIOR_SPREAD] * 2) and prior.between == pytest.approx([PRIOR_SPREAD] * 2)

@@ -22,7 +22,7 @@ def heymans_singh(problem: Problem) -> NDArray[np.int64]:
 
 
 def path(n1: int, n2: int) -> Problem:
-    """A chain of facts 0 -> 1 -> 2 …, and things in a chain."""
+    """Build a chain of facts 0 -> 1 -> 2 …, and things in a chain."""
     ends = np.stack([np.arange(n1 - 1), np.arange(1, n1)], axis=1)
     return Problem(
         ends, np.zeros(n1 - 1, np.int64), np.eye(n2, k=1, dtype=np.float32)[None], np.zeros((n1, n2)), np.zeros(n1)
@@ -30,7 +30,7 @@ def path(n1: int, n2: int) -> Problem:
 
 
 @pytest.mark.parametrize(("n1", "n2"), [(3, 3), (3, 5), (4, 4)])
-def test_blondels_limit_is_the_projection_of_ones_on_the_leading_eigenvectors(n1: int, n2: int) -> None:
+def test_blondel_limit_is_the_leading_eigenprojection(n1: int, n2: int) -> None:
     a, b = np.eye(n1, k=1), np.eye(n2, k=1)
     matrix = np.kron(a, b) + np.kron(a.T, b.T)
     squares, vectors = np.linalg.eigh(matrix @ matrix)

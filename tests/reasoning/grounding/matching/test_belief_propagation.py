@@ -48,7 +48,7 @@ def test_an_object_that_nothing_suits_is_left_out() -> None:
     assert (propagated(problem) >= 0).sum() == 1
 
 
-def test_on_a_large_table_it_comes_near_the_best_that_annealing_finds(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_table_is_near_the_best_of_annealing(monkeypatch: pytest.MonkeyPatch) -> None:
     table = generate(100, 2.5, 0.1, missing=10, extra=10, seed=4)
     problem = table.crisp(centred=True)
     monkeypatch.setattr(module, "MIN_PROPAGATED_OBJECTS", 101)

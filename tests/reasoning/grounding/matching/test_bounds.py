@@ -16,9 +16,7 @@ from deixis.reasoning.grounding.matching.problem import Problem, compile_problem
 
 @settings(max_examples=200, deadline=None)
 @given(st.integers(0, 6), st.integers(0, 6), st.integers(0, 2**32 - 1), st.booleans())
-def test_the_assignment_is_as_good_as_scipys_and_its_prices_prove_it(
-    rows: int, columns: int, seed: int, ties: bool
-) -> None:
+def test_assignment_equals_scipy_with_prices_as_proof(rows: int, columns: int, seed: int, ties: bool) -> None:
     rng = np.random.default_rng(seed)
     gain = rng.integers(0, 4, (rows, columns + 1)).astype(float) if ties else rng.normal(0, 3, (rows, columns + 1))
     gain[:, :columns][rng.random((rows, columns)) < 0.2] = -np.inf
@@ -37,7 +35,7 @@ def test_the_assignment_is_as_good_as_scipys_and_its_prices_prove_it(
     assert (profit[:, None] >= gain - np.append(price, 0.0) - 1e-9).all()
 
 
-def test_where_a_row_can_neither_have_a_column_nor_go_without_there_is_no_assignment() -> None:
+def test_row_without_any_option_has_no_assignment() -> None:
     gain = np.array([[1.0, -np.inf], [2.0, -np.inf]])
     assert solve_assignment(gain, np.zeros(2, np.int64), np.empty(1), np.empty(2)) == -np.inf
 

@@ -74,7 +74,7 @@ def drawn(n: int, strength: float) -> Problem:
 
 
 def two_orders(n: int, strength: float) -> Problem:
-    """A ring of facts that holds of two maps only, which no two objects have in common: each as good as the other."""
+    """Check a ring of facts with exactly two equally good maps, which share no match."""
     ends = np.stack([np.arange(n), np.roll(np.arange(n), -1)], axis=1)
     kinds, tables = np.arange(n), np.zeros((n, n, n), np.float32)
     for i, (s, o) in enumerate(ends.tolist()):

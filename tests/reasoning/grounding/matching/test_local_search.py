@@ -1,4 +1,4 @@
-"""Gains that are kept up to date against gains computed anew, and what exchanges gain against values of maps."""
+"""Incremental gains of local search equal recomputed ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_exchanges_keep_the_gains(problem: Problem, seed: int) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(problems(), st.data())
-def test_what_an_object_would_gain_is_the_value_of_the_map_with_it(problem: Problem, data: st.DataObject) -> None:
+def test_gains_are_values_of_the_changed_map(problem: Problem, data: st.DataObject) -> None:
     values, n2 = every_map(problem), problem.unary.shape[1]
     choice = data.draw(st.sampled_from(sorted(values)))
     state = keep(to_labels(np.array(choice, dtype=np.int64), n2), compile_problem(problem))

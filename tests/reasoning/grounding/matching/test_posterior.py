@@ -70,7 +70,7 @@ def test_sampled_marginals_come_near_those_of_all_maps(problem: Problem, seed: i
     np.testing.assert_allclose(found.marginals, brute(problem), atol=max(0.02, 6 * found.error))
 
 
-def test_valleys_between_modes_are_crossed_and_exchangeable_objects_have_one_marginal() -> None:
+def test_chains_cross_valleys_and_average_groups() -> None:
     n = 9
     unary = np.where(np.eye(n, dtype=bool) | np.eye(n, k=1, dtype=bool), 6.0, 0.0)
     unary[1] = unary[0]
@@ -112,7 +112,7 @@ def permanents(unary: np.ndarray, absent: float) -> np.ndarray:
 
 @settings(max_examples=30, deadline=None)
 @given(problems())
-def test_every_object_is_something_or_left_out_and_entropy_is_bounded(problem: Problem) -> None:
+def test_marginals_sum_to_one_and_entropy_is_bounded(problem: Problem) -> None:
     found = posterior(problem)
     np.testing.assert_allclose(found.marginals.sum(axis=1), 1.0)
     assert (found.entropy >= 0).all()

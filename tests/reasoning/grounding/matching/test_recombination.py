@@ -25,7 +25,7 @@ def test_it_is_a_map_of_both_and_no_worse_than_either(problem: Problem, data: st
     assert values[child] >= max(values[one], values[two]) - 1e-5
 
 
-def test_parts_without_a_fact_or_a_thing_in_common_are_judged_apart() -> None:
+def test_independent_parts_are_combined_separately() -> None:
     ends, kinds = np.array([[0, 1], [2, 3]]), np.array([0, 1])
     tables = np.zeros((2, 4, 4), np.float32)
     tables[0, 0, 1], tables[1, 3, 2] = 1.0, 1.0  # the first fact holds in the first map, the second in the second

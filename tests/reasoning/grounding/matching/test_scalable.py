@@ -63,7 +63,7 @@ def test_the_same_seed_gives_the_same_map() -> None:
     assert one.assignment.tolist() == two.assignment.tolist()
 
 
-def test_past_the_deadline_there_is_a_map_that_is_not_called_finished() -> None:
+def test_past_the_deadline_the_map_is_not_finished() -> None:
     problem = random_problem(300)
     started = time.perf_counter()
     found = scalable(problem, Deadline.after(0.1))

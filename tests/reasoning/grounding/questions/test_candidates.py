@@ -67,7 +67,7 @@ def test_weights_are_those_of_the_posterior(problem: Problem) -> None:
 
 @settings(max_examples=60, deadline=None)
 @given(problems())
-def test_members_of_a_group_change_places_without_changing_any_value(problem: Problem) -> None:
+def test_permuting_a_group_changes_no_value(problem: Problem) -> None:
     for group in exchangeable(problem):
         order = np.arange(len(problem.absent))
         order[[group[0], group[1]]] = order[[group[1], group[0]]]
@@ -76,7 +76,7 @@ def test_members_of_a_group_change_places_without_changing_any_value(problem: Pr
             assert swapped.value(maps) == pytest.approx(problem.value(maps), abs=1e-5)
 
 
-def test_too_many_maps_are_held_as_groups_and_said_to_be_incomplete() -> None:
+def test_too_many_maps_become_groups_and_incomplete() -> None:
     found = candidates_of(alike(10), limit=50)
     assert (len(found), found.groups, found.complete) == (1, (tuple(range(10)),), False)
     assert found.count == math.factorial(10)

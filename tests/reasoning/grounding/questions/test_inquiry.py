@@ -54,7 +54,7 @@ def asked(inquiry: Inquiry, truth: NDArray[np.int64]) -> Inquiry:
     return inquiry
 
 
-def test_the_eight_automorphisms_of_figure_7_take_three_yes_no_questions(inquiry_of: Callable[..., Inquiry]) -> None:
+def test_figure_7_automorphisms_take_three_questions(inquiry_of: Callable[..., Inquiry]) -> None:
     start = inquiry_of("script1")
     assert start.candidates.count == 8
     for truth in start.candidates.assignments:
@@ -68,7 +68,7 @@ def test_the_eight_automorphisms_of_figure_7_take_three_yes_no_questions(inquiry
 @pytest.mark.parametrize("kinds", [tuple(QuestionKind), YES_NO])
 @pytest.mark.parametrize(("crisp", "margin"), [(False, 0.0), (True, 0.0), (False, 2.0)])
 @pytest.mark.parametrize("script", ["script1", "script2", "formal_dinner"])
-def test_no_dialogue_takes_more_than_one_question_above_the_bound(
+def test_dialogue_takes_at_most_one_question_over_the_bound(
     inquiry_of: Callable[..., Inquiry], script: str, crisp: bool, margin: float, kinds: tuple[QuestionKind, ...]
 ) -> None:
     start = inquiry_of(script, margin, crisp, kinds)
@@ -81,9 +81,7 @@ def test_no_dialogue_takes_more_than_one_question_above_the_bound(
 
 
 @pytest.mark.parametrize("script", ["script1", "script2"])
-def test_gain_is_within_what_answers_can_say_and_no_answer_leaves_more(
-    inquiry_of: Callable[..., Inquiry], script: str
-) -> None:
+def test_gain_is_bounded_and_answers_only_narrow(inquiry_of: Callable[..., Inquiry], script: str) -> None:
     start = inquiry_of(script, margin=1.0)
     for question in questions(start.situation, start.candidates):
         assert 0 <= question.bits <= math.log2(len(question.answers)) + 1e-12
@@ -97,7 +95,7 @@ def test_gain_is_within_what_answers_can_say_and_no_answer_leaves_more(
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_the_order_of_candidates_objects_and_things_changes_no_question(seed: int) -> None:
+def test_order_of_the_input_changes_no_question(seed: int) -> None:
     rng = np.random.default_rng(seed)
     n, k = 4, int(rng.integers(2, 8))
     maps = np.array([rng.permutation(n) for _ in range(k)])
@@ -133,7 +131,7 @@ def test_what_is_denied_is_never_asked() -> None:
     assert texts == {"Is the cup 0 right of the cup 1?"}
 
 
-def test_a_question_that_all_candidates_answer_alike_is_not_asked() -> None:
+def test_question_without_information_is_not_asked() -> None:
     same = Candidates(np.array([[0, 1, 2], [0, 2, 1]]), np.ones(2))
     for question in questions(row_of(3), same):
         assert question.bits > 0
@@ -151,7 +149,7 @@ def test_things_are_told_by_their_place() -> None:
     assert "Is the thing o1 the cup 0?" in texts
 
 
-def test_twelve_alike_are_settled_by_pointing_without_listing_their_orders() -> None:
+def test_pointing_settles_twelve_alike_without_listing() -> None:
     start = begin(row_of(12), Candidates(np.arange(12)[None], np.ones(1), groups=(tuple(range(12)),)))
     assert start.candidates.count == math.factorial(12)
     truth = np.random.default_rng(3).permutation(12)
@@ -185,7 +183,7 @@ def test_who_does_not_know_is_not_asked_the_same_again(inquiry_of: Callable[...,
         assert inquiry.exchanges[-1].outcome is ExchangeOutcome.UNKNOWN
 
 
-def test_who_does_not_know_an_object_by_sight_is_not_asked_to_tell_it_again(inquiry_of: Callable[..., Inquiry]) -> None:
+def test_unrecognised_object_is_not_asked_about_again(inquiry_of: Callable[..., Inquiry]) -> None:
     inquiry, unknown = inquiry_of("script1", kinds=(QuestionKind.IDENTITY, QuestionKind.POINTING)), set()
     while (question := inquiry.next_question()) is not None:
         assert question.subject not in unknown
@@ -194,7 +192,7 @@ def test_who_does_not_know_an_object_by_sight_is_not_asked_to_tell_it_again(inqu
     assert len(unknown) > 1
 
 
-def test_who_knows_nothing_is_not_asked_more_often_than_there_are_objects(inquiry_of: Callable[..., Inquiry]) -> None:
+def test_unknown_answers_end_after_as_many_as_objects(inquiry_of: Callable[..., Inquiry]) -> None:
     inquiry = inquiry_of("script1")
     while (question := inquiry.next_question()) is not None:
         inquiry = inquiry.answered(question, DONT_KNOW)
@@ -210,7 +208,7 @@ def test_a_dialogue_with_one_who_knows_nothing_ends() -> None:
     assert inquiry.candidates.count == 2
 
 
-def test_an_answer_that_contradicts_an_earlier_one_is_told_with_it() -> None:
+def test_contradiction_names_the_earlier_answer() -> None:
     situation = row_of(3)
     maps = np.array([[0, 1, 2], [1, 0, 2], [0, 2, 1]])
     start = begin(situation, Candidates(maps, np.ones(3)))
@@ -223,16 +221,16 @@ def test_an_answer_that_contradicts_an_earlier_one_is_told_with_it() -> None:
     assert third.candidates.assignments.tolist() == second.candidates.assignments.tolist() == [[0, 1, 2]]
 
 
-def test_what_is_pointed_out_against_all_candidates_is_believed_and_they_are_to_be_listed_anew() -> None:
+def test_surprising_pointing_is_believed() -> None:
     start = begin(row_of(3), Candidates(np.array([[0, 1, 2], [1, 0, 2]]), np.ones(2)))
     question = next(iter(questions(start.situation, start.candidates, [QuestionKind.POINTING])))
     after = start.answered(question, "o2")
     assert (after.exchanges[0].outcome, after.exchanges[0].against) == (ExchangeOutcome.SURPRISING, ())
-    with pytest.raises(ContradictionError, match="goes against every grounding"):
+    with pytest.raises(ContradictionError, match="contradicts every remaining grounding"):
         update(start.situation, start.candidates, question, "o2")
 
 
-def test_objects_that_may_be_missing_can_be_answered_to_be_absent() -> None:
+def test_possibly_missing_objects_allow_the_answer_absent() -> None:
     pointing = (QuestionKind.POINTING,)
     start = begin(row_of(2), Candidates(np.array([[0, 1], [0, UNMATCHED]]), np.ones(2)), pointing)
     question = start.next_question()
