@@ -95,7 +95,7 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
         (("--matrix", "--of", "fork"), "excludes --matrix"),
         (("--calculus", "distance"), "`reference` must be a length"),
         (("--calculus", "allen", "--axis", "q"), "`axis` must be x, y or z, got 'q'"),
-        (("--image", "x.jpg"), "an image ('x.jpg') is chosen in annotation files"),
+        (("--image", "x.jpg"), "an image ('x.jpg') can be chosen in annotation files only"),
     ],
 )
 def test_what_it_refuses(table: Path, options: tuple[str, ...], message: str) -> None:

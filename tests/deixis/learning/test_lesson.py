@@ -154,7 +154,7 @@ def test_the_commands(taught: Path) -> None:
     assert found["misplaced"][0]["violated"][0]["line"] == 7
     code, told, _ = deixis("memory", "stats", "--json", "--memory", taught)
     assert (code, json.loads(told)["lesson_ids"]) == (0, ["formal_dinner-1", "script1-1"])
-    assert deixis("query", "ASK { ?x a dx:Nothing }", "--memory", taught)[0] == 1
+    assert deixis("query", "ASK { ?x a dx:Layout . FILTER(?x = lx:nothing) }", "--memory", taught)[0] == 1
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ EXPECTED = {
     "10. Where": "2026-11-21T10:00:00Z  0.1.0    exact   dinner.layout  lx:scene/s1",
     "11. Which": "horizontal  3      2026-11-21T00:00:00Z  lx:lesson/dinner-1",
     "12. How": "dx:DinnerPlate  0.27    false     0.98    3      2",
-    "And how": "dxg:learned",
+    "How large": "dxg:learned",
 }
 
 
