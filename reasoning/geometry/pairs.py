@@ -229,9 +229,11 @@ def _spread_evenly(boxes: Array) -> Array:
 
 @njit(cache=True)
 def shares_nearer(subjects, objects, apart, crowd):  # type: ignore[no-untyped-def]
-    """Fills in (n, m) the share of others nearer than the partner, the mean over both: distances (n, r) and (m, r) to
-    others in rising order, and those of the pairs (n, m). Where those of one side are not known (r is 0), the other
-    side's stand for both."""
+    """Fill in the share of others that are nearer than the partner, the mean over both partners, (n, m).
+
+    The arguments are the distances (n, r) and (m, r) to others in rising order, and those of the pairs (n, m). If those
+    of one side are not known (r is 0), the other side's are used for both.
+    """
     total = subjects.shape[1] + objects.shape[1]
     for p in range(apart.shape[0]):
         for q in range(apart.shape[1]):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
@@ -165,7 +164,7 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
     """Return a view of a thing of a scene, ready to be stored; raise SceneError where the scene has no points of it."""
     from deixis.learning.views import view_of
 
-    file = scene.file if scene.file.startswith("<") else os.path.abspath(scene.file)
+    file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
     boxes = hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
     metadata = {"scene": file, "boxes": boxes, "object": object_id, "teacher": teacher}
     return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)

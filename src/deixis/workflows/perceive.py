@@ -76,7 +76,7 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     try:
         if perceived:
             folder.mkdir(parents=True, exist_ok=True)
-            before = set(os.listdir(folder))
+            before = {path.name for path in folder.iterdir()}
         things = []
         for number, thing in enumerate(scene.objects, start=1):
             if isinstance(thing.cloud, PointCloud):
@@ -114,7 +114,7 @@ def clouds_folder(scene: Path) -> Path:
 def _remove_others(folder: Path, kept: set[str]) -> None:
     """Remove what other scenes, whole or not, left in the folder; what cannot be removed does no harm."""
     with contextlib.suppress(OSError):
-        for name in set(os.listdir(folder)) - kept:
-            if _CLOUD.fullmatch(name):
+        for path in list(folder.iterdir()):
+            if path.name not in kept and _CLOUD.fullmatch(path.name):
                 with contextlib.suppress(OSError):
-                    (folder / name).unlink()
+                    path.unlink()

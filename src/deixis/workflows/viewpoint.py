@@ -126,8 +126,8 @@ def ground_from_sides(
 def as_weighed(found: Viewpoints, sides: Sequence[tuple[Side, float]]) -> Viewpoints:
     """Return viewpoints as probable as the posterior of the matches has them, given that the scene is the one meant.
 
-    ``sides`` are those that were grounded from, with their probabilities; viewpoints that are none of them are so
-    unlikely that they keep theirs.
+    ``sides`` are those that were grounded from, with their probabilities; other viewpoints are so unlikely that
+    they keep theirs.
     """
     weighed = {(side.angle, side.mirrored): probability for side, probability in sides}
     total = sum(weighed.values())

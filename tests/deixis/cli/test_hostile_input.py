@@ -248,7 +248,7 @@ def test_questions_without_somebody_who_answers(redirected: str) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 def test_a_command_whose_answer_is_lost_says_what_it_changed(tmp_path: Path) -> None:
     memory = tmp_path / "memory"
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         ran = run_bounded("learn", SCRIPT, SCENE, "--memory", memory, stdout=full)
         assert ran.returncode == 2
         assert f"No space left on device; the memory at {memory} was already changed" in ran.stderr

@@ -113,7 +113,7 @@ def test_a_pipe_that_closes_early_is_no_traceback(tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 def test_a_full_disk_is_no_traceback() -> None:
     command = [sys.executable, "-m", "deixis.cli.app", "parse", str(SCRIPT1)]
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         ran = subprocess.run(command, env=environment(), stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert ran.returncode == 2
     assert "No space left on device" in ran.stderr

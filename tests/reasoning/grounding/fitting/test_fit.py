@@ -165,8 +165,8 @@ def largest_change(one: RelationFit, other: RelationFit) -> float:
     assert one.statistics is not None
     assert other.statistics is not None
     apart = [np.abs(one.statistics.values - other.statistics.values).max()]
-    for name in one.statistics.names:
-        apart.append(abs(np.log(one.models[name].chance / other.models[name].chance)))
+    chances = [(one.models[name].chance, other.models[name].chance) for name in one.statistics.names]
+    apart.extend(abs(np.log(mine / its)) for mine, its in chances)
     return float(max(apart))
 
 
