@@ -44,7 +44,7 @@ LABELME: Json = {
 
 
 def coco(**annotation: Any) -> Json:
-    """A file with one image 480 px high and one annotation of it, a fork's."""
+    """Make a COCO file with one image, 480 px high, and one annotation, of a fork."""
     entry = {"image_id": 1, "category_id": 10, **annotation}
     return {"images": COCO["images"][:1], "categories": COCO["categories"], "annotations": [entry]}
 

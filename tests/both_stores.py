@@ -36,11 +36,11 @@ class Example:
         return str(self.folder / "tea.layout")
 
     def scene(self, seed: int) -> str:
-        """The file of a perceived table: 3 was learned, 4 and 5 were not."""
+        """Return the file of a perceived table; table 3 was learned, tables 4 and 5 were not."""
         return str(self.folder / f"{seed}.scene.json")
 
     def writes(self) -> dict[str, str]:
-        """Each write by its name: what is to be done to ``session``, whose memory is a copy in ``folder``."""
+        """Return the code of each write by name; it uses ``session``, whose memory is a copy in ``folder``."""
         views, concepts = str(self.folder / "views.zip"), str(self.folder / "concepts.trig")
         importing = (
             "from pathlib import Path; from deixis.memory.perceptual.in_folder import import_all; "
@@ -60,7 +60,7 @@ class Example:
         }
 
     def begin(self, write: str) -> Path | None:
-        """The memory that a write begins with; None for a new one."""
+        """Return the memory that a write starts from, or None for a new memory."""
         return None if write.endswith("new memory") else self.memory
 
 
@@ -91,6 +91,6 @@ def state(memory: Path) -> Any:
 
 
 def findings(memory: Path, inferred: bool = True) -> tuple[str, ...]:
-    """What verifying finds, with what is inferred, or without."""
+    """Verify a memory, with or without its inferred facts, and return the findings as text."""
     worked_out = (lambda store: stale(store, default_ontology())) if inferred else None
     return tuple(map(str, verify(memory, None, worked_out).findings)) if memory.exists() else ()

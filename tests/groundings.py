@@ -27,5 +27,5 @@ def pairs(found: Grounding) -> dict[str, str]:
 
 
 def right(found: Grounding) -> int:
-    """How many objects are what the setting's ids say that they are."""
+    """Count the objects that are matched to the thing with their own name."""
     return sum(name == match.perceived for name, match in found.matches.items())

@@ -109,8 +109,8 @@ for line in sys.stdin:
         os._exit(0)
     os.write(1, b"ended %d\\n" % os.waitpid(child, 0)[1])
 """
-"""A program that does to a memory what it is told, in a child each, and kills it at a step: before or after a call that
-changes what is on the disk."""
+"""Program that changes a memory as requested, in one child process each, and kills the child at a step: before or after
+a call that changes what is on the disk."""
 
 
 class KilledAtSteps:

@@ -30,7 +30,7 @@ def problems(draw: st.DrawFn, most: int = 4) -> Problem:
 
 
 def every_map(problem: Problem) -> dict[tuple[int, ...], float]:
-    """The value of every map, added up fact by fact."""
+    """Compute the value of every map, fact by fact."""
     n1, n2 = problem.unary.shape
     found = {}
     for choice in product(range(UNMATCHED, n2), repeat=n1):
@@ -48,7 +48,7 @@ def every_map(problem: Problem) -> dict[tuple[int, ...], float]:
 
 
 def reordered(problem: Problem, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Problem:
-    """The same problem with its objects and its things in another order."""
+    """Return the problem with its objects and its things in another order."""
     return Problem(
         np.argsort(rows)[problem.ends].reshape(-1, 2),
         problem.kinds,
@@ -60,7 +60,7 @@ def reordered(problem: Problem, rows: NDArray[np.int64], columns: NDArray[np.int
 
 
 def maps(allowed: NDArray[np.bool_]) -> Iterator[NDArray[np.int64]]:
-    """Every map of objects to things that a mask allows, shape (n1,) each."""
+    """Yield every map of objects to things that a mask allows, of shape (n1,) each."""
     n1, n2 = allowed.shape
     for count in range(min(n1, n2) + 1):
         for rows in combinations(range(n1), count):

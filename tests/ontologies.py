@@ -28,23 +28,23 @@ CUTLERY = """
 
 
 def ntriples(turtle: str) -> str:
-    """A Turtle text, its prefixes added, as N-Triples."""
+    """Convert a Turtle text, with the prefixes added, to N-Triples."""
     triples = [quad.triple for quad in ox.parse((PREFIXES + turtle).encode(), format=ox.RdfFormat.TURTLE)]
     return (ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode()
 
 
 def triples(turtle: str) -> list[Triple]:
-    """The same, read."""
+    """Read the triples of a Turtle text, with the prefixes added."""
     return read_ntriples(ntriples(turtle))
 
 
 def triple(text: str) -> Triple:
-    """One statement, in Turtle without its full stop."""
+    """Read one statement, in Turtle without its full stop."""
     (found,) = triples(f"{text} .")
     return found
 
 
 def core() -> str:
-    """The ontology that Deixis comes with, as N-Triples."""
+    """Return the ontology that Deixis comes with, as N-Triples."""
     found = [quad.triple for quad in ox.parse(path=CORE)]
     return (ox.serialize(found, format=ox.RdfFormat.N_TRIPLES) or b"").decode()

@@ -16,7 +16,7 @@ from deixis.reasoning.geometry.allen import allen_relations
 
 @cache
 def orders(n: int) -> NDArray[np.int8]:
-    """The Allen codes of every picture of n proper intervals on one axis, shape (pictures, n, n), each once."""
+    """Compute the distinct Allen codes of n proper intervals on one axis, of shape (pictures, n, n)."""
     spans = [(low, high) for low in range(2 * n) for high in range(low + 1, 2 * n)]
     ends = np.array(list(product(spans, repeat=n)), dtype=np.float64)
     low, high = ends[:, :, 0], ends[:, :, 1]
@@ -25,7 +25,7 @@ def orders(n: int) -> NDArray[np.int8]:
 
 
 def bears(relation: Relation, s: int, o: int, n: int, axes: int) -> NDArray[np.bool_]:
-    """In which pictures s bears the relation to o: one axis of the result an axis of space."""
+    """Mark the pictures in which s has the relation to o; each axis of the result is an axis of space."""
     masks = (relation.x_atoms, relation.y_atoms, relation.z_atoms or ALL_ALLEN)[:axes]
     held = [(mask >> orders(n)[:, s, o].astype(np.int64) & 1).astype(bool) for mask in masks]
     result = held[0]
@@ -35,7 +35,7 @@ def bears(relation: Relation, s: int, o: int, n: int, axes: int) -> NDArray[np.b
 
 
 def satisfying(facts: list[Fact], names: str, axes: int) -> NDArray[np.bool_]:
-    """The pictures in which all firm facts hold."""
+    """Mark the pictures in which all firm facts hold."""
     n = len(names)
     kept = np.ones((len(orders(n)),) * axes, dtype=bool)
     for fact in facts:

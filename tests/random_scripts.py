@@ -15,7 +15,7 @@ ONTOLOGY = default_ontology()
 
 
 def meaning(script: Script) -> tuple[Any, ...]:
-    """All that a script says, without where it says it."""
+    """Return the content of a script, without source positions."""
     facts = [(str(f), f.positive, f.optional, f.weight) for f in script.facts]
     kinds = {name: kind.iri for name, kind in script.kinds.items()}
     colours = {name: colour.iri for name, colour in script.colours.items()}
@@ -59,7 +59,7 @@ HEADER = st.sampled_from(
 
 @st.composite
 def scripts(draw: st.DrawFn) -> Script:
-    """A script of the statements that make sense among random ones."""
+    """Draw random statements and make a script of those that parse together."""
     text = draw(HEADER)
     for statement, end in draw(st.lists(st.tuples(STATEMENT, END), max_size=6)):
         try:

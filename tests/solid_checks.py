@@ -1,4 +1,4 @@
-"""What the simulator's tests measure meshes by; none of it is the simulator's own code."""
+"""Measurements of meshes for the tests of the simulator, independent of the simulator's code."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from deixis.perception.open3d import open3d
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """Whether every edge is in one face this way round and in one the other way round."""
+    """Return whether each edge belongs to exactly two faces, once in each direction."""
     a, b, c = mesh.faces.T
     start, end, n = (
         np.concatenate([a, b, c]).astype(np.int64),
@@ -22,7 +22,7 @@ def is_closed(mesh: Mesh) -> bool:
 
 
 def volume(mesh: Mesh) -> float:
-    """By the divergence theorem: below 0 where faces are turned inwards."""
+    """Compute the volume by the divergence theorem; below 0 where faces are turned inwards."""
     a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
@@ -35,7 +35,7 @@ def scene_of(mesh: Mesh) -> object:
 
 
 def inside(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.bool_]:
-    """Which points lie inside a mesh, by Open3D's occupancy (a vote of three rays)."""
+    """Mark the points inside a mesh, by Open3D's occupancy (a vote of three rays)."""
     core = open3d().core
     query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
     found: NDArray[np.bool_] = scene_of(mesh).compute_occupancy(query, nsamples=3).numpy() > 0.5  # type: ignore[attr-defined]
@@ -43,7 +43,7 @@ def inside(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.bool_]:
 
 
 def distances(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.float32]:
-    """From points to the surface of a mesh, by Open3D."""
+    """Compute the distances from points to the surface of a mesh, by Open3D."""
     core = open3d().core
     query = core.Tensor(np.ascontiguousarray(points, dtype=np.float32))
     found: NDArray[np.float32] = scene_of(mesh).compute_distance(query).numpy()  # type: ignore[attr-defined]
@@ -51,7 +51,7 @@ def distances(points: NDArray[np.floating], mesh: Mesh) -> NDArray[np.float32]:
 
 
 def surface_points(mesh: Mesh, count: int, seed: int = 0) -> NDArray[np.float64]:
-    """Points spread evenly over a surface, and all of its vertices."""
+    """Sample points evenly over a surface, and add all of its vertices."""
     rng = np.random.default_rng(seed)
     a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -62,13 +62,13 @@ def surface_points(mesh: Mesh, count: int, seed: int = 0) -> NDArray[np.float64]
 
 
 def boxes_within(a: Mesh, b: Mesh, gap: float) -> bool:
-    """Whether the boxes of two meshes are nowhere farther apart than a gap, metres."""
+    """Return whether the boxes of two meshes are at most ``gap`` metres apart along each axis."""
     (low, high), (other_low, other_high) = ((m.vertices.min(axis=0), m.vertices.max(axis=0)) for m in (a, b))
     return bool((low <= other_high + gap).all() and (other_low <= high + gap).all())
 
 
 def deepest(a: Mesh, b: Mesh) -> float:
-    """How deep the surface of either of two meshes reaches into the other, metres; 0 where they are apart."""
+    """Compute how deep the surface of one mesh reaches into the other, in metres; 0 where they are apart."""
     found = 0.0
     if not boxes_within(a, b, 0.0):
         return found

@@ -68,6 +68,6 @@ assert isinstance(BA, ProductCalculus)
 
 
 def atoms(relation: Relation) -> int:
-    """A relation as a set of atoms of the block algebra."""
+    """Convert a relation to a set of atoms of the block algebra."""
     assert isinstance(BA, ProductCalculus)
     return BA.of_axes([relation.x_atoms, relation.y_atoms, relation.z_atoms or (1 << 13) - 1])

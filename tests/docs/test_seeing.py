@@ -1,4 +1,4 @@
-"""docs/tutorial/seeing.md, one command after the other: each does what is shown, but for numbers."""
+"""Run the commands of docs/tutorial/seeing.md in order and compare their output, except numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="there is no docs/tuto
 
 
 def without_numbers(line: str) -> str:
-    """A line as far as it is shown, with its numbers, ids of views and widths left out."""
+    """Replace the numbers and view ids of a line, cut it at an ellipsis, and collapse its spaces."""
     line = re.sub(r"'[0-9a-f]{16}'", "'view'", line.split("…")[0])
     return " ".join(re.sub(r"-?\d+(\.\d+)?", "#", line).split())
 

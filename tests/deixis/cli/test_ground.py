@@ -109,13 +109,13 @@ def test_json_holds_what_is_promised(engine: str) -> None:
     assert data["facts"]["stated"] == 11
 
 
-def test_the_text_says_how_probably_the_description_is_of_the_scene() -> None:
+def test_text_output_gives_the_probability_of_the_description() -> None:
     told = "The description fits this scene with probability"
     assert told in deixis("ground", FULL, SCENE)[1]
     assert told not in deixis("ground", FULL, SCENE, "--engine", "similarity")[1]
 
 
-def test_a_violated_fact_is_told_with_its_line_and_what_was_perceived(tmp_path: Path) -> None:
+def test_a_violated_fact_has_its_line_and_perceived_relation(tmp_path: Path) -> None:
     script = write(tmp_path / "s.layout", "a left of b\nb on c\nc left of a\n")
     boxes = [f'{{"id": "o{i}", "min": [{i}, 0], "max": [{i}.5, 1]}}' for i in range(3)]
     scene = write(tmp_path / "s.scene.json", f'{{"objects": [{", ".join(boxes)}]}}')
@@ -162,7 +162,7 @@ def test_an_unwritable_place(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("engine", ["exact", "scalable"])
-def test_without_time_there_is_an_answer_that_is_called_undecided(tmp_path: Path, engine: str) -> None:
+def test_a_time_limit_of_zero_gives_an_undecided_answer(tmp_path: Path, engine: str) -> None:
     script = write(tmp_path / "s.layout", "\n".join(f"a{i} left of a{(i * 7 + 1) % 20}" for i in range(1, 20)))
     boxes = [
         {"id": f"o{i}", "min": [i * 37 % 20, i * 11 % 20], "max": [i * 37 % 20 + 2, i * 11 % 20 + 2]} for i in range(20)
@@ -188,7 +188,7 @@ def test_a_scene_without_objects_is_a_no(tmp_path: Path, engine: str) -> None:
     assert set(data["left_out"].values()) == {"nothing was perceived"}
 
 
-@pytest.mark.parametrize("text", ["", "# nothing but a comment\n", 'layout empty "Empty"\n'])
+@pytest.mark.parametrize("text", ["", "# only a comment\n", 'layout empty "Empty"\n'])
 def test_a_script_without_objects_is_a_no(tmp_path: Path, text: str) -> None:
     code, out, err = deixis("ground", write(tmp_path / "s.layout", text), SCENE, "--plot", tmp_path / "found.svg")
     assert (code, err) == (1, "")
@@ -211,7 +211,7 @@ def test_a_contradictory_script_is_grounded_with_a_note() -> None:
     assert "violated" in out
 
 
-def test_of_very_many_equal_things_a_line_names_the_first_and_counts_the_rest(tmp_path: Path) -> None:
+def test_a_line_lists_the_first_equal_things_and_counts_the_rest(tmp_path: Path) -> None:
     things = [{"id": f"o{i}", "min": [0.0, 0.0], "max": [0.1, 0.1]} for i in range(30)]
     scene = {"frame": "table", "viewpoint": "chair", "unit": "m", "objects": things}
     (tmp_path / "t.scene.json").write_text(json.dumps(scene), encoding="utf-8")
@@ -222,7 +222,7 @@ def test_of_very_many_equal_things_a_line_names_the_first_and_counts_the_rest(tm
     assert line.endswith(", 17 more")
 
 
-def test_what_only_swaps_things_that_cannot_be_told_apart_is_no_news() -> None:
+def test_swaps_of_indistinguishable_things_are_not_printed() -> None:
     arguments = ("ground", SCRIPT1, SCENE, "--no-sizes")
     _, out, _ = deixis(*arguments)
     without = [line for line in out.splitlines() if line.startswith("Without ")]

@@ -1,4 +1,4 @@
-"""Ctrl-C is no defect, whatever a library makes of it."""
+"""Ctrl-C exits quietly, even where a library turns it into another error."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ def pythons_own_handler() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("error", [ImportError("generic_type: cannot initialize type"), OSError("no such library")])
-def test_an_error_that_a_library_makes_of_an_interrupt_ends_the_program_quietly(
-    monkeypatch: pytest.MonkeyPatch, error: Exception
-) -> None:
+def test_a_library_error_after_an_interrupt_exits_quietly(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
     def imports_a_native_library(**_: object) -> None:
         try:
             signal.raise_signal(signal.SIGINT)
@@ -42,7 +40,7 @@ def test_the_same_error_without_an_interrupt_is_a_defect(monkeypatch: pytest.Mon
     assert code == 2 and "a defect in Deixis" in told
 
 
-def test_an_interrupt_is_noted_and_raised_and_the_handler_is_put_back() -> None:
+def test_an_interrupt_is_recorded_and_the_handler_is_restored() -> None:
     with noting_interrupts() as interrupted:
         assert not interrupted.is_set()
         with pytest.raises(KeyboardInterrupt):

@@ -96,7 +96,7 @@ def test_an_export_has_a_name_that_import_reads_as_what_it_is(
     assert not (tmp_path / name).exists()
 
 
-def test_a_folder_that_is_named_and_not_there_is_no_memory_without_categories(tmp_path: Path) -> None:
+def test_recognise_refuses_a_memory_folder_that_does_not_exist(tmp_path: Path) -> None:
     code, out, err = deixis("recognise", SCENE, "--memory", tmp_path / "typo")
     assert (code, out) == (2, "")
     assert "there is no memory at" in err
@@ -136,7 +136,7 @@ def test_what_is_no_archive_makes_no_memory(tmp_path: Path) -> None:
     assert not (tmp_path / "new").exists()
 
 
-def test_a_named_memory_that_is_not_there_has_no_categories_to_list(tmp_path: Path) -> None:
+def test_category_list_refuses_a_memory_that_does_not_exist(tmp_path: Path) -> None:
     code, out, err = deixis("category", "list", "--memory", tmp_path / "mistyped")
     assert (code, out) == (2, "")
     assert "there is no memory" in err

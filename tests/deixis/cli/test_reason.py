@@ -57,7 +57,7 @@ def test_an_impossible_class_is_named_with_its_reasons(table: Path, spork: Path,
     assert "nothing is more than one of fork" in out.splitlines()[4]
 
 
-def test_an_inconsistency_is_justified_in_words_as_turtle_and_as_json(table: Path, spork: Path) -> None:
+def test_an_inconsistency_is_justified_in_text_turtle_and_json(table: Path, spork: Path) -> None:
     spork.write_text(PREFIXES + IMPOSSIBLE + ":x a :Spork .", encoding="utf-8")
     code, out, _ = deixis("reason", table, spork, CORE)
     assert code == 1

@@ -23,7 +23,7 @@ def table(tmp_path: Path) -> Path:
     return path
 
 
-def test_every_ordered_pair_is_printed_in_rectangle_algebra_unless_told_otherwise(table: Path) -> None:
+def test_pairs_are_printed_in_rectangle_algebra_by_default(table: Path) -> None:
     assert deixis("relate", table) == (0, "fork   <,d   plate\nplate  >,di  fork\n", "")
 
 

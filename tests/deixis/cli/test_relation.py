@@ -34,7 +34,7 @@ def run(*args: object) -> Result:
 
 
 def refused(*args: object) -> str:
-    """The message of the DeixisError that a command ends with."""
+    """Run a command that must raise a DeixisError and return its message."""
     error = run(*args).exception
     assert isinstance(error, DeixisError), error
     return str(error)
@@ -51,7 +51,7 @@ def lesson(tmp_path: Path) -> list[str]:
     return [str(script), str(scene)]
 
 
-def test_a_word_is_shown_in_both_readings_with_inverse_words_and_graded_model() -> None:
+def test_a_word_is_shown_with_readings_inverse_and_graded_model() -> None:
     found = run("relation", "to the left of")
     assert found.exit_code == 0
     lines = found.stdout.splitlines()
@@ -119,7 +119,7 @@ def test_what_relation_refuses(tmp_path: Path) -> None:
     assert "must be numbers" in refused("relation", "left", "--models", empty)
 
 
-def test_the_memory_keeps_what_was_learned_and_shows_what_is_in_force(lesson: list[str], memory: Path) -> None:
+def test_the_memory_keeps_learned_models_and_shows_those_in_use(lesson: list[str], memory: Path) -> None:
     found = run("learn-relation", *lesson)
     assert found.exit_code == 0, found.exception
     assert found.stdout.splitlines()[2:] == [
@@ -138,7 +138,7 @@ def test_the_memory_keeps_what_was_learned_and_shows_what_is_in_force(lesson: li
     assert "learned from 2 facts" in run("learn-relation").stdout
 
 
-def test_what_is_remembered_counts_in_a_file_too_unless_it_is_left_out(lesson: list[str], tmp_path: Path) -> None:
+def test_models_in_a_file_use_the_memory_unless_it_is_excluded(lesson: list[str], tmp_path: Path) -> None:
     run("learn-relation", *lesson)
     other, out = tmp_path / "other.layout", tmp_path / "m.ttl"
     other.write_text("knife right of fork\n", encoding="utf-8")

@@ -88,7 +88,7 @@ def test_a_scene_ranks_what_is_remembered(tmp_path: Path) -> None:
     assert lines[2].startswith("script2 ")
 
 
-def test_layouts_and_scenes_of_a_folder_and_of_the_memory_are_ranked_together(tmp_path: Path) -> None:
+def test_results_of_folder_and_memory_are_ranked_together(tmp_path: Path) -> None:
     memory, folder = tmp_path / "memory", tmp_path / "scenes"
     folder.mkdir()
     setting = read_scene(SETTING)

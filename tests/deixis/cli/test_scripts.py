@@ -213,7 +213,7 @@ def test_a_long_listing_is_cut_with_its_count(tmp_path: Path, monkeypatch: pytes
     assert out.splitlines()[-1] == "    and 6 more: --ntriples prints all that holds, --json everything"
 
 
-def test_an_object_that_the_script_does_not_name_cannot_be_asked_about() -> None:
+def test_why_not_refuses_an_object_that_the_script_does_not_name() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(salad_frok, soup_spoon)")
     assert (code, out) == (2, "")
     assert err == "deixis: --why-not: the script names no 'salad_frok'; did you mean 'salad_fork'?\n"

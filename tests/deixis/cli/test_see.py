@@ -40,7 +40,7 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_every_thing_of_a_laid_table_is_found_and_named_by_the_script(tables: Path) -> None:
+def test_every_object_of_a_laid_table_is_found_and_grounded(tables: Path) -> None:
     scene = read_scene(tables / "20.scene.json")
     truth = {thing.label: thing for thing in read_scene(tables / "20.truth.scene.json").objects}
     assert len(scene.objects) == len(truth) == 12
@@ -101,9 +101,7 @@ def test_recognise_prints_one_line_a_thing_and_why_on_request(tables: Path) -> N
     assert full.count("is nearest: ND") == len(ids) and full.count(", D_C ") >= len(ids)
 
 
-def test_a_view_is_taught_and_corrected_and_categories_are_renamed_merged_and_forgotten(
-    tables: Path, tmp_path: Path
-) -> None:
+def test_views_and_categories_can_be_taught_changed_and_removed(tables: Path, tmp_path: Path) -> None:
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     assert deixis("category", "list", "--json", *memory)[0] == 2  # there is no such memory yet
     assert deixis("teach", scene, "o1", "Bread plate", *memory)[1] == "o1 is a view of 'Bread_plate'; 1 in all.\n"
@@ -147,7 +145,7 @@ def test_what_a_teacher_named_is_not_overruled_by_a_grounding(tables: Path, tmp_
     assert f"{again.standing[0]}." in out
 
 
-def test_what_a_category_has_learned_is_kept_and_is_what_its_views_give(tables: Path, tmp_path: Path) -> None:
+def test_the_stored_model_of_a_category_matches_its_views(tables: Path, tmp_path: Path) -> None:
     from deixis.learning.views import DISTANCES, UPRIGHT, instances_of
     from deixis.perception.recognition.instances import InstanceCategory
 
@@ -211,7 +209,7 @@ def test_nobody_answers_where_standard_input_is_closed(
 def test_the_memory_is_free_while_someone_is_asked(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    seal = tmp_path / "memory" / "perceptual" / "seal.json"  # there is one while nobody has the memory open
+    seal = tmp_path / "memory" / "perceptual" / "seal.json"  # exists only while no process has the memory open
     with Session(tmp_path / "memory") as session:
         session.teach(tables / "7.scene.json", "o1", "plate")
     sealed: list[bool] = []
@@ -252,7 +250,7 @@ def test_a_cloud_without_a_point_is_named(tmp_path: Path) -> None:
     assert str(tmp_path / "nothing.pcd") in deixis("perceive", tmp_path / "nothing.pcd")[2]
 
 
-def test_a_camera_that_cannot_be_is_refused_before_a_table_is_laid(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_impossible_camera_is_refused_before_a_table_is_laid(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("deixis.workflows.lay_table.lay_script", None)
     for option, value, word in (("--camera-height", "0", "above"), ("--camera-back", "50", "edge"),
                                 ("--azimuth", "nan", "azimuth")):  # fmt: skip
@@ -356,7 +354,7 @@ def test_a_scene_is_written_over_in_one_step(seen: tuple[Scene, Scene], tmp_path
     assert {f"table.clouds/{cloud.name}" for cloud in (tmp_path / "table.clouds").iterdir()} == named
 
 
-def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables: Path, tmp_path: Path) -> None:
+def test_damaged_views_are_reported_and_repaired_by_teaching(tables: Path, tmp_path: Path) -> None:
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     for object, word in (("o1", "plate"), ("o3", "fork"), ("o4", "fork")):
         deixis("teach", scene, object, word, *memory)
@@ -381,7 +379,7 @@ def test_damaged_views_are_left_out_and_told_and_mended_by_teaching_again(tables
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"fork": 2, "plate": 2}
 
 
-def test_a_memory_of_which_nothing_can_be_read_is_not_called_empty(tables: Path, tmp_path: Path) -> None:
+def test_an_unreadable_memory_is_not_reported_as_empty(tables: Path, tmp_path: Path) -> None:
     memory = ("--memory", tmp_path / "memory")
     deixis("teach", tables / "7.scene.json", "o1", "plate", *memory)
     store = tmp_path / "memory" / "perceptual" / "store-2"
@@ -451,7 +449,7 @@ def test_no_views_are_kept_where_the_lesson_is_refused(
         assert len(session.learn(FULL, scene).seen) > 3
 
 
-def test_a_lesson_says_which_views_are_new_and_which_it_had_before(tables: Path, tmp_path: Path) -> None:
+def test_a_lesson_lists_new_views_and_views_already_stored(tables: Path, tmp_path: Path) -> None:
     arguments = ("learn", FULL, tables / "7.scene.json", "--memory", tmp_path / "memory")
     first, again = (deixis(*arguments)[1].splitlines() for _ in range(2))
     (new,) = (line.removeprefix("Categories with a new view: ") for line in first if "new view" in line)
@@ -460,7 +458,7 @@ def test_a_lesson_says_which_views_are_new_and_which_it_had_before(tables: Path,
     assert not any("new view" in line for line in again)
 
 
-def test_a_word_that_differs_in_case_alone_is_a_known_category_and_that_is_told(tables: Path, tmp_path: Path) -> None:
+def test_a_word_that_differs_only_by_case_is_the_known_category(tables: Path, tmp_path: Path) -> None:
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     assert "taken for" not in deixis("teach", scene, "o1", "Wine Glass", *memory)[1]
     for arguments in (("teach", scene, "o2", "wine glass"), ("ask", "WINE_GLASS", scene, "--points-at", "o3")):
@@ -507,7 +505,7 @@ def test_a_word_that_could_not_be_said_of_a_thing_is_not_taught(
     assert not (tmp_path / "memory").exists()
 
 
-def test_two_things_with_the_same_points_are_named_before_anything_is_learned(tables: Path, tmp_path: Path) -> None:
+def test_objects_with_equal_points_are_refused_before_learning(tables: Path, tmp_path: Path) -> None:
     scene, twice = json.loads((tables / "7.scene.json").read_text()), tables / "twice.scene.json"
     scene["objects"][3]["cloud"] = scene["objects"][2]["cloud"]
     twice.write_text(json.dumps(scene))
@@ -517,7 +515,7 @@ def test_two_things_with_the_same_points_are_named_before_anything_is_learned(ta
     assert not (tmp_path / "memory").exists()
 
 
-def test_the_next_table_perceived_into_the_same_file_shows_other_things(tables: Path, tmp_path: Path) -> None:
+def test_a_scene_file_perceived_again_contains_different_objects(tables: Path, tmp_path: Path) -> None:
     scene, memory = tmp_path / "table.scene.json", ("--memory", tmp_path / "memory")
     for seed in (7, 20):
         clouds = tmp_path / "table.clouds"

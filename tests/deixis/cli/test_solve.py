@@ -33,7 +33,7 @@ def test_a_consistent_network(tmp_path: Path) -> None:
     assert out.startswith("line 1 (chain): consistent; 3 things, 2 constraints in allen, 1 pair narrowed")
 
 
-def test_an_inconsistent_network_names_the_lines_of_its_minimal_conflict_only(tmp_path: Path) -> None:
+def test_an_inconsistent_network_prints_its_minimal_conflict(tmp_path: Path) -> None:
     path = write(tmp_path, CIRCLE)
     code, out, _ = deixis("solve", path, "--calculus", "point")
     assert code == 1
@@ -147,7 +147,7 @@ def test_things_that_nothing_is_said_about_cost_nothing(tmp_path: Path) -> None:
     assert code == 0 and "100,000,000 things" in out
 
 
-def test_gaps_in_the_numbering_cost_nothing_to_explain_or_to_close_jointly(tmp_path: Path) -> None:
+def test_gaps_in_the_numbering_do_not_slow_down_solving(tmp_path: Path) -> None:
     path = write(tmp_path, "50000000\n0 7 ( < )\n7 50000000 ( < )\n.")
     code, out, _ = deixis("solve", path, "--calculus", "allen", "--explain", 0, 50_000_000)
     assert code == 0 and out.splitlines()[1] == "0 ( < ) 50000000   composed"
@@ -169,7 +169,7 @@ def test_of_what_is_inconsistent_there_is_nothing_to_explain(tmp_path: Path) -> 
     assert code == 2 and "no thing 9" in err
 
 
-def test_one_calculus_that_only_search_refutes_is_blamed_among_several(tmp_path: Path) -> None:
+def test_a_search_conflict_lists_only_lines_of_its_calculus(tmp_path: Path) -> None:
     lines = ["3 0 m s", "3 1 o", "3 2 m s", "0 1 d di", "1 2 d di", "0 2 f fi"]
     parts = (line.split(maxsplit=2) for line in lines)
     said = [f"{i} {j} ( {' '.join(f'ra:{sign},=' for sign in signs.split())} )" for i, j, signs in parts]
@@ -179,7 +179,7 @@ def test_one_calculus_that_only_search_refutes_is_blamed_among_several(tmp_path:
     assert len([line for line in out.splitlines() if ".csp:" in line]) == 6 and "any one of these" in out
 
 
-def test_a_conflict_for_which_time_was_short_says_that_it_may_not_be_minimal() -> None:
+def test_a_conflict_cut_short_says_that_it_may_not_be_minimal() -> None:
     (text,) = parse_networks(FIGURE_5.read_text(encoding="utf-8"), [calculus("allen")])
     stated = tuple((text.network, c) for c in text.network.constraints)
     solved = SolvedNetwork(text, Verdict.INCONSISTENT, "", 0, 0.0, conflict=stated, minimal=False)

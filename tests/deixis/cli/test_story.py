@@ -1,4 +1,4 @@
-"""The demo: every chapter is told, and all pictures are there."""
+"""The demo prints every chapter and writes all its pictures."""
 
 from __future__ import annotations
 

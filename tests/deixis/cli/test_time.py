@@ -155,7 +155,7 @@ def test_a_fluent_equals_itself_for_a_reason() -> None:
     assert deixis("time", FILE, "--explain", "fetch", "fetch") == (0, "equals(fetch, fetch)   by definition\n", "")
 
 
-def test_where_more_may_be_certain_it_exits_3_and_the_stated_sets_are_still_explained() -> None:
+def test_an_incomplete_answer_exits_3_and_explains_stated_sets() -> None:
     ids = [f"f{k}" for k in range(8)]
     fluents = [{"id": id, "statement": ["robot", "lays", id]} for id in ids]
     relations = [{"a": a, "allen": NEVER, "b": b} for a in ids for b in ids if a < b]

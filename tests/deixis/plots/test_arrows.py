@@ -32,7 +32,7 @@ def box(x: float, y: float, right: float, top: float) -> PerceivedObject:
         pytest.param(box(-2, 2, 12, 8), id="across"),
     ],
 )
-def test_an_arrow_can_be_seen_however_two_boxes_lie_and_leads_from_one_to_the_other(other: PerceivedObject) -> None:
+def test_an_arrow_is_visible_and_connects_boxes_in_any_position(other: PerceivedObject) -> None:
     for subject, object in ((PLATE, other), (other, PLATE)):
         subject, object = replace(subject, id="subject"), replace(object, id="object")
         start, end = Ends([subject, object]).arrow("subject", "object")
@@ -45,7 +45,7 @@ def held(point: Point, thing: PerceivedObject) -> bool:
     return all(thing.minimum[k] < point[k] < thing.maximum[k] for k in (0, 1))
 
 
-def test_an_arrow_does_not_begin_or_end_where_something_lies_on_its_thing() -> None:
+def test_an_arrow_avoids_objects_that_lie_on_its_end_points() -> None:
     book, pen = replace(box(0, 0, 20, 30), id="book"), replace(box(3, 14, 20, 16), id="pen")
     keyboard = replace(box(40, 5, 80, 25), id="keyboard")
     ends = Ends([book, pen, keyboard])
@@ -55,7 +55,7 @@ def test_an_arrow_does_not_begin_or_end_where_something_lies_on_its_thing() -> N
     assert held(start, pen) and held(end, book) and not held(end, pen)
 
 
-def test_an_arrow_ends_beside_what_shares_the_place_of_its_object() -> None:
+def test_an_arrow_ends_beside_other_things_on_its_object() -> None:
     saucer, spoon = replace(box(0, 0, 15, 15), id="saucer"), replace(box(0.5, 1, 3, 14), id="spoon")
     cup = replace(box(4, 4, 12, 12), id="cup")
     start, end = Ends([spoon, cup, saucer]).arrow("cup", "saucer")

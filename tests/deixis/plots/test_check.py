@@ -1,4 +1,4 @@
-"""What the picture of a checked table marks."""
+"""Marks in the picture of a checked table."""
 
 from __future__ import annotations
 
@@ -17,9 +17,7 @@ PLATE = PerceivedObject("p", (0.15, 0.0), (0.4, 0.25), label="plate")
 @pytest.mark.parametrize(
     ("x", "wrong"), [pytest.param(0.0, set(), id="in place"), pytest.param(0.6, {"n", "p"}, id="misplaced")]
 )
-def test_what_is_of_another_colour_is_marked_as_that_and_as_misplaced_only_where_it_is(
-    x: float, wrong: set[str]
-) -> None:
+def test_a_wrong_colour_is_marked_separately_from_a_wrong_place(x: float, wrong: set[str]) -> None:
     red = PerceivedObject("n", (x, 0.1), (x + 0.1, 0.2), label="napkin", colour=(192, 32, 32))
     script = read_script(text="napkin is white; napkin left of plate")
     marks = marks_of(Session(Path("unused")).check(script, Scene((red, PLATE), unit="m")))

@@ -1,4 +1,4 @@
-"""What the picture of a grounded scene shows: legend, axes, names."""
+"""Legend, axes and names in the picture of a grounded scene."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_the_legend_says_what_there_is() -> None:
 
 @pytest.fixture(scope="module")
 def row() -> Figure:
-    """Two groups of things that cannot be told apart, in a row many times as wide as deep."""
+    """Two groups of indistinguishable things, in a row many times as wide as deep."""
     spoons = [PerceivedObject(f"s{n}", (0.05 * n, 0.3), (0.05 * n + 0.03, 0.44), "teaspoon") for n in range(16)]
     glasses = [PerceivedObject(f"g{n}", (1.4 + 0.1 * n, 0.3), (1.47 + 0.1 * n, 0.37), "wine_glass") for n in range(6)]
     scene = Scene((*spoons, PerceivedObject("p", (1.0, 0.3), (1.26, 0.56), "plate"), *glasses))
@@ -43,7 +43,7 @@ def row() -> Figure:
     return grounding_figure(ground(parse_script(script), scene), scene)
 
 
-def test_groups_are_abbreviated_in_lines_that_fit_into_the_picture(row: Figure) -> None:
+def test_large_groups_are_abbreviated_to_fit_the_picture(row: Figure) -> None:
     spoons = next(entry for entry in legend(row) if "teaspoon" in entry)
     assert spoons.count("teaspoon") == 12 and spoons.endswith("4 more")
     assert all(line.split(" ")[0] != "glass" for entry in legend(row) for line in entry.split("\n"))
@@ -53,14 +53,14 @@ def test_groups_are_abbreviated_in_lines_that_fit_into_the_picture(row: Figure) 
     assert extent.y1 < axes.xaxis.label.get_window_extent().y0
 
 
-def test_a_flat_table_keeps_the_width_of_the_picture_and_its_names_cover_each_other_nowhere(row: Figure) -> None:
+def test_a_flat_table_fills_the_width_without_overlapping_names(row: Figure) -> None:
     assert row.axes[0].bbox.width > 0.85 * row.bbox.width
     extents = [text.get_window_extent() for text in row.axes[0].texts]
     assert len(extents) == 23
     assert not any(a.overlaps(b) for i, a in enumerate(extents) for b in extents[:i])
 
 
-def test_a_picture_with_large_groups_is_written_without_a_warning(row: Figure, tmp_path: Path) -> None:
+def test_a_picture_with_large_groups_is_saved_without_a_warning(row: Figure, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         save(row, tmp_path / "row.png")

@@ -24,13 +24,13 @@ def grid(number: int, side: float) -> list[PerceivedObject]:
     return [PerceivedObject(f"thing_{n}", (x, y), (x + 0.8 * side, y + 0.8 * side)) for n, (x, y) in enumerate(corners)]
 
 
-def test_of_very_many_things_those_without_room_for_a_name_have_none_and_the_axis_says_so() -> None:
+def test_the_axis_counts_the_names_that_have_no_room() -> None:
     (axes,) = written(grid(900, 0.33)).axes
     assert not axes.texts
     assert axes.get_xlabel().endswith("; 900 names left out for lack of room")
 
 
-def test_of_many_things_those_that_have_room_are_named_at_their_place() -> None:
+def test_names_are_written_where_there_is_room_among_many_things() -> None:
     dense = [PerceivedObject(f"d{n}", (0, 0), (0.01, 0.01)) for n in range(MANY)]
     far = PerceivedObject("far", (5, 5), (9, 9))
     (axes,) = written([*dense, far]).axes
@@ -44,7 +44,7 @@ def test_nothing_is_said_of_names_where_all_are_written() -> None:
     assert len(axes.texts) == 20 and "left out" not in axes.get_xlabel()
 
 
-def test_a_name_as_long_as_the_picture_is_shortened_and_not_left_out() -> None:
+def test_a_name_as_long_as_the_picture_is_shortened() -> None:
     (axes,) = written([PerceivedObject("x" * 400, (1, 1), (9, 9))]).axes
     assert [text.get_text() for text in axes.texts] == ["x" * 47 + "…"]
 

@@ -1,4 +1,4 @@
-"""What the picture of a relation word's meaning shows."""
+"""Content of the picture of a relation word's meaning."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from deixis.reasoning.grounding.evidence.meaning import shipped_models
 RELATIONS = default_ontology().relations
 
 
-def test_a_field_has_at_each_place_the_degree_of_a_thing_there_and_the_reference_alone() -> None:
+def test_a_field_holds_the_degree_of_a_lone_object_at_each_place() -> None:
     places, degrees = field(RELATIONS["top_left"], shipped_models(), 7)
     half = np.full(2, SUBJECT / 2)
     for row, column in ((4, 2), (5, 1), (0, 6)):

@@ -1,4 +1,4 @@
-"""What the pictures of perceived and recognised things show."""
+"""Content of the pictures of perceived and recognised things."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from deixis.workflows.simulate import simulate
 
 
 def table_before_a_wall() -> Scene:
-    """A simulated plate on a table, and behind the points of these those of a wall."""
+    """Perceive a simulated plate on a table, with the points of a wall behind them."""
     cloud = simulate(lay_script(parse_script("plate on table"), seed=1), seed=1).cloud
     cloud = cloud.take(cloud.finite)
     across, up = (axis.ravel() for axis in np.mgrid[-1:1:0.05, -0.5:0.5:0.05])
@@ -35,7 +35,7 @@ def table_before_a_wall() -> Scene:
 
 
 def drawn_window(found: Scene) -> plot_seen.Window:
-    """What is drawn of the points of a scene that was perceived."""
+    """Compute the window that the picture of a perceived scene shows."""
     assert found.detection is not None
     return plot_seen.window_of(in_frame(found.detection.cloud, found.detection.frame).points, found, found.detection)
 
@@ -65,7 +65,7 @@ def test_all_points_are_drawn_where_there_is_no_table() -> None:
 
 
 def texts(found: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """What is written in each panel of the picture of what was perceived."""
+    """Return the texts in each panel of the picture of a perceived scene."""
     drawn: list[Figure] = []
     monkeypatch.setattr(plot_seen, "save", lambda figure, _: drawn.append(figure))
     plot_seen.plot_perceived(found, tmp_path / "seen.png")
@@ -85,7 +85,7 @@ def test_a_picture_of_nothing_says_so(tmp_path: Path, monkeypatch: pytest.Monkey
     assert texts(found, tmp_path, monkeypatch) == [["no table was found: no large level surface is in view"]]
 
 
-def test_the_image_is_cropped_to_its_segments_and_they_are_boxed_in_its_pixels() -> None:
+def test_the_image_is_cropped_to_its_segments_with_pixel_boxes() -> None:
     labels = np.full((100, 200), -1, np.int32)
     labels[40:60, 50:70] = 0
     cloud = PointCloud(np.ones((20_000, 3), np.float32), organised=(100, 200))
@@ -109,7 +109,7 @@ def test_a_recognised_thing_is_named_with_its_id(tmp_path: Path, monkeypatch: py
     assert written == ["o1 cup", "o2 unknown", f"o3 {'a' * 31}…"]
 
 
-def test_perceive_says_where_the_picture_is_and_prints_nothing_but_the_scene_where_it_prints_one(
+def test_perceive_prints_the_picture_path_apart_from_the_scene(
     tmp_path: Path,
 ) -> None:
     cloud, scene, picture = tmp_path / "two.pcd", tmp_path / "two.scene.json", tmp_path / "two.svg"
@@ -120,9 +120,7 @@ def test_perceive_says_where_the_picture_is_and_prints_nothing_but_the_scene_whe
     assert "picture" not in "".join(deixis("perceive", cloud, "--json", "--plot", picture)[1:])
 
 
-def test_a_picture_of_recognised_things_says_what_its_numbers_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_picture_of_recognised_things_explains_its_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Figure] = []
     monkeypatch.setattr(plot_seen, "save", lambda figure, _: drawn.append(figure))
     answer = Recognition(None, (), 0.39, Calibration(0.7, 0.7, 0.1, 0.1), True, ())

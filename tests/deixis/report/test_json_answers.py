@@ -23,7 +23,7 @@ SCENE: dict[str, Any] = {
 
 
 def through_json(data: dict[str, Any]) -> dict[str, Any]:
-    """The data after a round through JSON, which refuses nan and must change nothing."""
+    """Write the data as JSON without nan, read it back, and require that nothing changed."""
     back: dict[str, Any] = json.loads(json.dumps(data, allow_nan=False))
     assert back == data
     return back

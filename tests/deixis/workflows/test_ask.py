@@ -58,7 +58,7 @@ def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Pa
     assert all(one["outcome"] == "resolved" and one["answer"] and one["bits"] > 0 for one in questions)
 
 
-def test_without_answers_the_dialogue_ends_and_the_answer_is_as_without_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dialogue_without_answers_leaves_the_grounding_as_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
     code, out, _ = deixis("ground", example("script1.layout"), SCENE, "--ask", "--no-sizes")
     assert code == 0
@@ -82,7 +82,7 @@ def test_a_truth_file_that_is_none_is_bad_input(tmp_path: Path) -> None:
 
 
 def turned_scene(quarters: int) -> dict[str, Any]:
-    """The shipped setting without labels, turned by quarters of a circle."""
+    """Turn the shipped setting, without labels, by quarters of a circle."""
     scene = read_scene(SCENE)
     return scene_of(scene.ids, turned(scene.boxes, quarters * math.pi / 2))
 
@@ -125,7 +125,7 @@ def test_no_side_is_recovered_where_nothing_tells_one(viewpoint: str, tmp_path: 
 
 
 def boxes_file(tmp_path: Path, lows: list[list[float]], side: float = 0.1) -> Path:
-    """A scene of equal things, o1, o2, …, told by their lower corners."""
+    """Write a scene of equal things, o1, o2, …, with the given lower corners."""
     boxes = np.array([[low, [x + side for x in low]] for low in lows])
     file = tmp_path / "boxes.scene.json"
     file.write_text(json.dumps(scene_of([f"o{k + 1}" for k in range(len(lows))], boxes)), encoding="utf-8")
@@ -142,9 +142,7 @@ def probabilities(out: str) -> list[float | None]:
     return [match["probability"] for match in json.loads(out)["matches"]]
 
 
-def test_without_an_answer_nothing_becomes_certain_where_not_all_groundings_were_considered(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_incomplete_groundings_without_answers_stay_uncertain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script = layout_file(tmp_path, *(f"a{k} left of a{k + 1}" for k in range(29)))
     scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
@@ -155,9 +153,7 @@ def test_without_an_answer_nothing_becomes_certain_where_not_all_groundings_were
     assert all(chance is None or chance < 0.2 for chance in probabilities(out))
 
 
-def test_both_searches_together_keep_to_the_time_limit_where_nothing_was_answered(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_both_searches_share_the_time_limit_without_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script = layout_file(tmp_path, *(f"a{k} left of a{k + 1}" for k in range(29)))
     scene = boxes_file(tmp_path, [[0.0, 0.0]] * 30)
     limits: list[float] = []
@@ -206,7 +202,7 @@ def test_it_is_asked_about_what_would_otherwise_not_be_decided(monkeypatch: pyte
 
 
 @pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
-def test_no_side_is_told_where_no_two_things_that_are_compared_were_found(viewpoint: str, tmp_path: Path) -> None:
+def test_no_side_is_inferred_when_no_compared_pair_was_found(viewpoint: str, tmp_path: Path) -> None:
     script = layout_file(tmp_path, "cup is a Cup", "mug is a Mug", "cup left of mug")
     scene = boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.1]])
     things = json.loads(scene.read_text(encoding="utf-8"))
@@ -219,15 +215,15 @@ def test_no_side_is_told_where_no_two_things_that_are_compared_were_found(viewpo
     assert "nothing tells from which side" in note
 
 
-def test_a_match_is_no_more_probable_than_the_sides_from_which_it_is_seen(tmp_path: Path) -> None:
-    """Two equal things fit from two opposite sides: nobody can know which of them is meant."""
+def test_a_match_is_at_most_as_probable_as_its_viewpoints(tmp_path: Path) -> None:
+    """Two equal things fit from two opposite sides, so that both matches stay uncertain."""
     script, scene = layout_file(tmp_path, "cup left of mug"), boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.0]])
     _, out, err = deixis("ground", script, scene, "--viewpoint", "quarter", "--json")
     for match in json.loads(out)["matches"]:
         assert match["probability"] < 0.55 and not match["decided"], err
 
 
-def test_with_a_dialogue_probabilities_hold_as_seen_from_one_side(tmp_path: Path) -> None:
+def test_an_uncertain_viewpoint_limits_probabilities_to_one_side(tmp_path: Path) -> None:
     def doubt(probability: float) -> str:
         sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
         sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
@@ -250,7 +246,7 @@ def test_no_side_is_told_where_every_angle_does_as_well(tmp_path: Path) -> None:
     assert any("nothing tells from which side" in note for note in json.loads(out)["notes"])
 
 
-def test_what_an_answer_rules_out_does_not_make_an_uncertain_label_certain(tmp_path: Path) -> None:
+def test_a_ruled_out_match_leaves_an_uncertain_label_uncertain(tmp_path: Path) -> None:
     script = read_script(layout_file(tmp_path, "cup is a Cup", "mug is a Mug"))
     scene = read_scene(boxes_file(tmp_path, [[0.0, 0.0], [0.4, 0.0], [0.8, 0.0]]))
     evidence = evidence_of(script, scene)
@@ -320,7 +316,7 @@ def test_who_says_that_an_object_is_not_there_is_believed(absent: str, tmp_path:
     assert len(json.loads(out)["questions"]) <= 12
 
 
-def test_a_dialogue_with_somebody_who_finds_nothing_comes_to_an_end(tmp_path: Path) -> None:
+def test_a_dialogue_ends_when_the_oracle_finds_no_object(tmp_path: Path) -> None:
     oracle = tmp_path / "truth.json"
     oracle.write_text(json.dumps(dict.fromkeys(TRUTH)), encoding="utf-8")
     _, out, _ = deixis("ground", example("script1.layout"), SCENE, "--no-sizes", "--oracle", oracle, "--json")
@@ -328,7 +324,7 @@ def test_a_dialogue_with_somebody_who_finds_nothing_comes_to_an_end(tmp_path: Pa
     assert len(matches(out)) <= 2
 
 
-def test_python_grounds_from_a_side_to_be_recovered_as_the_command_does() -> None:
+def test_python_recovers_the_viewpoint_as_the_command_does() -> None:
     found = deixis_package.ground(example("formal_dinner.layout"), turned_scene(1), viewpoint="quarter")
     assert {name: match.perceived for name, match in found.matches.items()} == TRUTH
     with pytest.raises(deixis_package.DeixisError, match="viewpoint is one of stated, quarter, unknown"):

@@ -71,7 +71,7 @@ def test_what_is_missing_and_what_is_extra_is_named() -> None:
     }
 
 
-def test_a_thing_without_a_name_is_extra_for_want_of_a_place_or_for_fitting_none() -> None:
+def test_an_unnamed_extra_object_has_the_reason_that_applies() -> None:
     scene = Scene((PerceivedObject("p", (0.0, 0.0), (0.27, 0.27)), PerceivedObject("q", (2.0, 2.0), (2.01, 2.01))))
     (extra,) = check(scene, "plate is a DinnerPlate").table.extra
     assert (extra.perceived, extra.reason) == ("q", "the scene has more objects than the layout has roles")
@@ -87,7 +87,7 @@ PLATE = box("plate", (0.0, 0.0, 0.0), (0.25, 0.25, 0.02), "plate")
 CUBE = (0.3, 0.3, 0.3)
 
 
-def test_what_is_no_fork_by_its_size_nor_by_its_place_is_no_misplaced_fork() -> None:
+def test_a_thing_of_wrong_size_and_place_is_not_a_misplaced_fork() -> None:
     checked = check(Scene((PLATE, box("o2", (0.3, 0.06, 0.0), CUBE))), "fork left of plate")
     assert roles(checked, RoleVerdict.MISSING) == {"fork"} and not roles(checked, RoleVerdict.MISPLACED)
     (extra,) = checked.table.extra
@@ -102,13 +102,13 @@ def test_what_is_far_too_high_for_a_knife_is_no_misplaced_knife() -> None:
         assert roles(check(Scene((PLATE, other)), "butter_knife left of plate"), verdict) == {"butter_knife"}
 
 
-def test_what_is_as_large_as_a_fork_or_is_called_one_is_misplaced() -> None:
+def test_a_thing_with_the_size_or_label_of_a_fork_is_misplaced() -> None:
     for other in (box("o2", (0.4, 0.06, 0.0), (0.025, 0.19, 0.01)), box("o2", (0.3, 0.06, 0.0), CUBE, "fork")):
         checked = check(Scene((PLATE, other)), "fork left of plate")
         assert "fork" in roles(checked, RoleVerdict.MISPLACED) and not checked.table.extra
 
 
-def test_what_stands_in_a_forks_place_may_be_one_whatever_its_size() -> None:
+def test_a_thing_in_the_place_of_a_fork_is_undetermined() -> None:
     for label in (None, "fork"):
         fork = replace(box("o2", (-0.4, 0.0, 0.0), CUBE), label=label, confidence=0.8)
         assert roles(check(Scene((PLATE, fork)), "fork left of plate"), RoleVerdict.UNDETERMINED) == {"fork"}
@@ -247,7 +247,7 @@ def test_of_any_swapped_pair_both_are_reported_and_nothing_else(swap: tuple[str,
 @pytest.mark.parametrize(
     "turn", [("salad_fork", "dinner_knife", "soup_spoon"), ("salad_fork", "dinner_fork", "dinner_knife")]
 )
-def test_three_that_have_changed_places_are_all_reported_and_nothing_else(turn: tuple[str, str, str]) -> None:
+def test_exactly_the_three_swapped_objects_are_misplaced(turn: tuple[str, str, str]) -> None:
     label = dict(zip(turn, (*turn[1:], turn[0]), strict=True))
     scene = formal_setting()
     turned = replace(scene, objects=tuple(replace(o, label=label.get(o.label or "", o.label)) for o in scene.objects))
@@ -262,7 +262,7 @@ def test_nothing_is_held_against_what_nothing_is_said_of() -> None:
     assert roles(check(scene, says + "; optional salt_shaker above plate"), RoleVerdict.MISPLACED) == {"knife"}
 
 
-def test_what_is_only_hedged_or_denied_need_not_be_there_and_is_told_where_it_fails() -> None:
+def test_hedged_and_denied_objects_are_optional_but_reported() -> None:
     boxes = {"fork": (0.0, 0.0), "plate": (2.0, 0.0), "candle": (2.0, -3.0)}
     scene = Scene(tuple(PerceivedObject(n, (x, y), (x + 1, y + 1), label=n) for n, (x, y) in boxes.items()))
     checked = check(scene, "maybe candle above plate; fork left of plate; not vase on plate")

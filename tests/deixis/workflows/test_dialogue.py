@@ -57,20 +57,20 @@ def test_the_end_of_input_ends_the_dialogue_politely() -> None:
     assert text.endswith("4 groundings are left after 0 questions; undecided: big cup, cup, mug.\n")
 
 
-def test_pointing_lists_the_things_that_it_can_be_with_their_places() -> None:
+def test_pointing_questions_list_candidates_with_their_places() -> None:
     _, text = typed(three_cups(QuestionKind.POINTING))
     assert "o1 at the far left" in text
     assert "none, ?)" in text
 
 
-def test_an_answer_that_no_grounding_has_ends_the_questions_about_them() -> None:
+def test_an_answer_that_fits_no_grounding_ends_the_questions() -> None:
     done, text = typed(three_cups(QuestionKind.POINTING), "none", "o1")
     assert "No considered grounding agrees with this answer; the groundings are computed again." in text
     assert len(done.exchanges) == 1
     assert done.candidates.count == 4
 
 
-def test_a_contradictory_answer_is_told_with_the_number_of_the_one_it_is_against() -> None:
+def test_a_contradictory_answer_names_the_answer_it_contradicts() -> None:
     done, text = typed(three_cups(QuestionKind.POINTING), "o1", "o1")
     assert done.exchanges[0].question.text != done.exchanges[1].question.text
     assert "This answer is ignored: it contradicts the answer to 1." in text
@@ -140,7 +140,7 @@ def test_a_missing_truth_file_is_told_by_its_name(tmp_path: Path) -> None:
         read_oracle(tmp_path / "nowhere.json", three_cups().situation, io.StringIO())
 
 
-def test_a_list_that_is_not_complete_is_not_said_to_leave_one_grounding() -> None:
+def test_incomplete_candidates_are_not_reported_as_one_grounding() -> None:
     several = three_cups(QuestionKind.POINTING)
     alone = begin(several.situation, Candidates(np.array([[0, 1, 2]]), np.ones(1), complete=False))
     assert typed(alone)[1] == (

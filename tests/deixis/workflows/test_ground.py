@@ -30,7 +30,7 @@ PLAIN = {"time_limit": 60.0}
 
 
 def written(data: dict[str, Any]) -> dict[str, Any]:
-    """What JSON makes of an answer, without the time it took."""
+    """Convert an answer through JSON and remove its running time."""
     data = json.loads(json.dumps(data))
     assert data.pop("seconds") > 0
     return data

@@ -32,7 +32,7 @@ def table(text: str) -> ImaginedTable:
 
 
 def require_well_laid(script: Script, imagined: ImaginedTable) -> None:
-    """Checking and grounding see every firm fact in the scene, but for those that the table itself notes."""
+    """Require that check and grounding find every firm fact, except those that the table notes."""
     noted = {str(fact) for fact in imagined.named_otherwise}
     checked = Session(memory="not-needed").check(script, imagined.scene)
     assert {str(entry.fact) for entry in checked.table.broken} <= noted
@@ -48,7 +48,7 @@ def require_well_laid(script: Script, imagined: ImaginedTable) -> None:
 
 @pytest.mark.parametrize("name", POSSIBLE)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_an_example_imagined_is_checked_and_grounded_as_laid_well(name: str, seed: int) -> None:
+def test_imagined_examples_are_checked_and_grounded_as_laid_well(name: str, seed: int) -> None:
     script = read_script(str(EXAMPLES / f"{name}.layout"))
     found = imagine(script, seed=seed)
     assert [(entry.finished, entry.overlapping, entry.named_otherwise) for entry in found.tables] == [(True, (), ())]
@@ -57,7 +57,7 @@ def test_an_example_imagined_is_checked_and_grounded_as_laid_well(name: str, see
 
 @settings(max_examples=15, deadline=None)
 @given(scripts())
-def test_a_random_script_is_imagined_so_that_it_is_checked_and_grounded_as_laid_well_or_has_no_table(
+def test_imagined_random_scripts_are_laid_well_or_have_no_table(
     script: Script,
 ) -> None:
     found = imagine(script, any_size=True)
@@ -86,7 +86,7 @@ SENTENCE = st.builds(
 
 @settings(max_examples=25, deadline=None)
 @given(st.lists(SENTENCE.filter(lambda text: text.count("saucer") < 2), min_size=1, max_size=7))
-def test_tables_with_usual_sizes_are_checked_as_laid_well_and_have_them(sentences: list[str]) -> None:
+def test_tables_of_usual_sizes_are_laid_well_with_those_sizes(sentences: list[str]) -> None:
     script = parse_script("\n".join(sentences))
     found = imagine(script)
     assert found.decided
@@ -101,7 +101,7 @@ def test_tables_with_usual_sizes_are_checked_as_laid_well_and_have_them(sentence
 # ---- what is imagined -------------------------------------------------------------------------------------------
 
 
-def test_labels_are_the_names_of_the_script_and_the_viewpoint_is_its_own() -> None:
+def test_labels_and_viewpoint_come_from_the_script() -> None:
     scene = table("layout t seen from door\nfork left of plate").scene
     assert [thing.label for thing in scene.objects] == ["fork", "plate"]
     assert scene.viewpoint == "door"
@@ -134,7 +134,7 @@ def test_a_declared_kind_decides_over_the_name() -> None:
     assert table("my_plate is a teaspoon; my_plate left of cup").objects[0].size.length.greatest == pytest.approx(0.16)
 
 
-def test_so_many_tables_as_wanted_are_all_different_and_the_same_for_a_seed() -> None:
+def test_imagined_tables_differ_and_repeat_for_a_seed() -> None:
     script = parse_script("fork left of plate; cup above or right of plate")
     found = imagine(script, seed=4, count=5)
     boxes = [imagined.scene.boxes.tobytes() for imagined in found.tables]
@@ -163,7 +163,7 @@ def script_file(folder: Path, text: str) -> Path:
     return file
 
 
-def test_the_command_writes_a_scene_that_check_finds_well_laid_and_a_picture(tmp_path: Path) -> None:
+def test_the_command_writes_a_picture_and_a_scene_laid_well(tmp_path: Path) -> None:
     scene, plot = tmp_path / "new" / "t.scene.json", tmp_path / "new" / "t.png"
     script = EXAMPLES / "formal_dinner.layout"
     code, out, _ = deixis("imagine", script, "-o", scene, "--plot", plot)
@@ -204,7 +204,7 @@ def test_a_contradiction_that_needs_exhaustion_is_told_too(tmp_path: Path) -> No
     assert "d" not in {line.split("(")[-1][0] for line in out.splitlines() if line.startswith("    ")}
 
 
-def test_sizes_that_do_not_go_together_are_told_and_any_size_offers_a_table(tmp_path: Path) -> None:
+def test_conflicting_sizes_are_reported_and_any_size_has_a_table(tmp_path: Path) -> None:
     script = script_file(tmp_path, "dinner_plate on teaspoon\nteaspoon left of cup")
     code, out, _ = deixis("imagine", script)
     assert code == 1
@@ -285,7 +285,7 @@ def test_the_examples_of_the_page_give_what_it_shows(
 
 
 def _without_reason(shown: str) -> str:
-    """How a contradiction is put in a sentence is the business of inference."""
+    """Remove the explanation of a contradiction, which the tests of inference check."""
     return re.sub(r"(with things of any size).*", r"\1.", shown)
 
 
@@ -301,13 +301,13 @@ def test_a_long_row_is_imagined_well_before_the_time_is_up() -> None:
 
 
 @pytest.mark.parametrize("many", [8, 40])
-def test_things_of_unknown_kind_keep_their_size_however_many_facts_relate_them(many: int) -> None:
+def test_things_of_unknown_kind_keep_their_size_under_many_facts(many: int) -> None:
     facts = "; ".join(f"a{j} right of a{i}" for j in range(many) for i in range(j))
     boxes = table(facts).scene.boxes
     assert (boxes[:, 1] - boxes[:, 0])[:, :2].round(3).tolist() == [[0.08, 0.12]] * many
 
 
-def test_names_of_any_letters_are_written_without_a_warning_and_within_the_frame() -> None:
+def test_names_in_any_script_are_drawn_within_the_frame() -> None:
     from deixis.plots.imagine import table_figure
 
     row = ", ".join(["日本語", *(f"wine_glass_{i}" for i in range(25)), '"_"'])

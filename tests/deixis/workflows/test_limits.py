@@ -27,7 +27,7 @@ from deixis.workflows.ground import GroundingRequest, answer
 
 
 def written(objects: int, folder: Path) -> tuple[Path, Path]:
-    """A script and a scene of so many objects."""
+    """Write a script and a scene with this number of objects."""
     table = generate(objects, seed=0)
     facts = table.description().facts()
     script, scene = folder / "large.layout", folder / "large.scene.json"
@@ -51,7 +51,7 @@ def test_the_memory_estimate_is_no_less_than_the_peak(objects: int, tmp_path: Pa
     assert peak / 1e9 <= estimate < 0.5
 
 
-def test_what_takes_too_much_memory_is_refused_before_it_is_taken(tmp_path: Path) -> None:
+def test_a_request_over_the_memory_limit_is_refused_in_advance(tmp_path: Path) -> None:
     compile_grounding("exact")
     script, scene = written(200, tmp_path)
     read, seen = package.read_script(script), read_scene(scene)

@@ -52,7 +52,7 @@ def test_what_a_layout_says_is_true_of_the_table_that_is_laid(name: str, seed: i
     require_true(None, laid, name)
 
 
-def test_cups_with_their_handles_find_room_and_stacks_are_stacked() -> None:
+def test_cups_with_handles_fit_and_stacked_objects_lie_on_top() -> None:
     laid = lay_script(parse_script(CUPS), seed=1)
     require_true(CUPS, laid)
     bottoms = {thing.name: thing.box[0, 2] for thing in laid.table.things}
@@ -63,7 +63,7 @@ def test_cups_with_their_handles_find_room_and_stacks_are_stacked() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_every_thing_of_a_formal_setting_is_seen_and_none_goes_through_another(seed: int) -> None:
+def test_things_of_a_formal_setting_are_seen_and_do_not_overlap(seed: int) -> None:
     found = simulate(lay_script(FORMAL, seed), seed=seed)
     assert found.camera.eye[2] == pytest.approx(0.7)
     assert len(found.points) == 12
@@ -72,14 +72,14 @@ def test_every_thing_of_a_formal_setting_is_seen_and_none_goes_through_another(s
         assert deepest(a.mesh, b.mesh) < 1e-5, f"{a.name} and {b.name}"
 
 
-def test_things_are_turned_a_little_and_otherwise_fill_their_boxes() -> None:
+def test_objects_are_turned_slightly_and_fill_their_boxes() -> None:
     cloud_boxes = {thing.name: np.ptp(thing.box, axis=0) for thing in lay_script(FORMAL, 2).table.things}
     knife = cloud_boxes["dinner_knife"]
     assert 0.2 < knife[1] < 0.27
     assert knife[0] > 0.015
 
 
-def test_the_same_seed_gives_the_same_simulation_and_another_another() -> None:
+def test_simulations_repeat_for_a_seed_and_differ_between_seeds() -> None:
     one, other = (simulate(lay_script(FORMAL, seed), seed=seed) for seed in (3, 4))
     again = simulate(EXAMPLES / "formal_dinner.layout", seed=3)
     assert np.array_equal(one.cloud.points, again.cloud.points, equal_nan=True)
@@ -106,7 +106,7 @@ def test_a_table_that_a_script_speaks_of_is_the_tables_top() -> None:
         lay_script(parse_script("dining_table left of side_table; dining_table is a table; side_table is a table"), 0)
 
 
-def test_everything_is_on_the_table_that_a_script_speaks_of_unless_it_is_beside_it() -> None:
+def test_everything_in_the_script_lies_on_the_table_by_default() -> None:
     script = "laptop left of toaster; banana right of toaster; mug on coffee_table; teapot right of banana"
     laid = lay_script(parse_script(script), seed=5)
     low, high = np.array(laid.table.top.low), np.array(laid.table.top.high)
@@ -178,7 +178,7 @@ def run(*args: object) -> Result:
     return CliRunner().invoke(app, ["simulate", *map(str, args)])
 
 
-def test_the_command_writes_a_cloud_and_the_truth_that_belong_together(tmp_path: Path) -> None:
+def test_the_command_writes_a_cloud_and_its_matching_truth(tmp_path: Path) -> None:
     cloud_file, truth_file = tmp_path / "out" / "scene.pcd", tmp_path / "truth.scene.json"
     layout = EXAMPLES / "formal_dinner.layout"
     result = run(layout, "-o", cloud_file, "--truth", truth_file, "--seed", 7, "--json")
