@@ -1,4 +1,4 @@
-"""Where missing and misplaced objects of a checked table belong."""
+"""Estimate where missing and misplaced objects of a checked table belong."""
 
 from __future__ import annotations
 
