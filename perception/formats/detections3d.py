@@ -110,17 +110,12 @@ def _rotation(quaternion: Any, where: str) -> NDArray[np.float64]:
     if quaternion is None:
         return np.eye(3)
     values = _vector(quaternion, "xyzw", where)
-    norm = float(np.linalg.norm(values))
-    if norm == 0.0:  # the orientation of the message was never set
+    if np.linalg.norm(values) == 0.0:  # the orientation of the message was never set
         return np.eye(3)
-    x, y, z, w = values / norm
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    from scipy.spatial.transform import Rotation
+
+    matrix: NDArray[np.float64] = Rotation.from_quat(values).as_matrix()
+    return matrix
 
 
 def _get(message: Any, name: str) -> Any:

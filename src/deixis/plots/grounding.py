@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.arrows import Arrow, Ends, draw_arrows, drawing_order, points_along
@@ -286,8 +287,7 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
 
     keys: list[Any] = []
     if found.satisfied:
-        said = "1 fact satisfied" if len(found.satisfied) == 1 else f"{len(found.satisfied)} facts satisfied"
-        keys.append(Line2D([], [], color=QUIET, label=said))
+        keys.append(Line2D([], [], color=QUIET, label=f"{count(len(found.satisfied), 'fact')} satisfied"))
     if found.violated:
         keys.append(Line2D([], [], color=WRONG, label=f"{len(found.violated)} violated"))
     if marks.wrong:

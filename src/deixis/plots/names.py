@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import count
 from deixis.perception.scene import PerceivedObject
 from deixis.plots.arrows import Arrow, points_along
 from deixis.plots.figure import FADED_INK, INK, PAPER, WRONG
@@ -155,8 +156,7 @@ def write_names(
         for word, arrow in words:
             _write_word(figure, axes, word, arrow, taken)
         if left_out:
-            counted = f"{left_out} {'name' if left_out == 1 else 'names'}"
-            axes.set_xlabel(f"{axes.get_xlabel()}; {counted} left out for lack of room")
+            axes.set_xlabel(f"{axes.get_xlabel()}; {count(left_out, 'name')} left out for lack of room")
 
 
 def _shown(name: str) -> str:

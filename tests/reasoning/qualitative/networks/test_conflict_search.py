@@ -8,10 +8,11 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from random_networks import random_network
 
 from deixis.deadline import Deadline
 from deixis.reasoning.geometry.allen import allen_relations
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus, bits
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks import conflict_search
 from deixis.reasoning.qualitative.networks.closure import close
@@ -20,17 +21,6 @@ from deixis.reasoning.qualitative.networks.network import Constraint, Network
 from deixis.reasoning.qualitative.networks.search import Verdict, solve
 
 ALLEN, RA = calculus("allen"), calculus("ra")
-
-
-def random_network(chosen: Calculus, things: int, degree: float, atoms: float, seed: int) -> Network:
-    """Return a network of random constraints: ``degree`` per thing on average, of ``atoms`` atoms on average."""
-    rng, size = np.random.default_rng(seed), len(chosen.atoms)
-    constraints = []
-    for i, j in combinations(range(things), 2):
-        if rng.random() < degree / (things - 1):
-            codes = np.flatnonzero(rng.random(size) < atoms / size)
-            constraints.append(Constraint(i, j, sum(1 << int(code) for code in codes) or 1))
-    return Network(chosen, things, tuple(constraints))
 
 
 def placeable(network: Network) -> bool:

@@ -7,10 +7,11 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from random_networks import random_network
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
+from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus, bits
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.calculi.words import words_of
 from deixis.reasoning.qualitative.networks import wide_search
@@ -32,16 +33,6 @@ def wide() -> TableCalculus:
     rows = [words_of([both.compose(1 << i, 1 << j) for j in range(size)], size) for i in range(size)]
     converses = [both.converse(1 << i).bit_length() - 1 for i in range(size)]
     return TableCalculus("wide", both.atoms, np.array(converses), np.array(rows), both.identity)
-
-
-def random_network(chosen: Calculus, things: int, degree: float, atoms: float, seed: int) -> Network:
-    rng, size = np.random.default_rng(seed), len(chosen.atoms)
-    constraints = []
-    for i, j in combinations(range(things), 2):
-        if rng.random() < degree / (things - 1):
-            codes = np.flatnonzero(rng.random(size) < atoms / size)
-            constraints.append(Constraint(i, j, sum(1 << int(code) for code in codes) or 1))
-    return Network(chosen, things, tuple(constraints))
 
 
 def widened(network: Network, wide: TableCalculus) -> Network:
