@@ -1,0 +1,161 @@
+"""The parsed form of English sentences: clauses, the predicates that they state, and noun phrases.
+
+The parser (``parse``) turns a text into these types. Two readers use them: ``discourse`` turns statements into the
+facts of a script, and :mod:`deixis.workflows.refer` turns a description into a query for one object.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+Span = tuple[int, int]
+"""First and last character of a phrase in the text, counted from 0, the end exclusive."""
+
+
+class Mood(StrEnum):
+    """The use of a sentence: something that holds, something to do, or something asked."""
+
+    STATEMENT = "statement"
+    COMMAND = "command"
+    QUESTION = "question"
+
+
+class Degree(StrEnum):
+    """Degree of an adjective: *tall*, *taller*, *tallest*."""
+
+    PLAIN = "plain"
+    COMPARATIVE = "comparative"
+    SUPERLATIVE = "superlative"
+
+
+@dataclass(frozen=True, slots=True)
+class Adjective:
+    """A modifier of a noun: ``red``, ``tallest``, ``left``, ``second`` (``rank`` 2, or -1 for ``last``).
+
+    ``dimension`` is what it describes: ``colour``, ``size``, ``height``, ``length``, ``width``, ``thickness``,
+    ``material``, ``shape``, ``position`` (``left``, ``middle``, ``top``, ``near``), ``rank``, ``state`` or ``other``.
+    """
+
+    word: str  # lemma: 'tall' for 'tallest'
+    dimension: str
+    degree: Degree
+    span: Span
+    rank: int | None = None
+    positive: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A distance, in metres: 0.1 and the hedge ``about`` for *about 10 cm*.
+
+    ``bound`` is ``<`` for *within* and *less than*, ``>`` for *at least* and *more than*, and None otherwise.
+    """
+
+    metres: float
+    hedge: str | None
+    bound: str | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class NounPhrase:
+    """A phrase that stands for one or more objects.
+
+    ``head`` is the noun in the singular with the nouns before it (``water bottle``), empty for a pronoun or an ellipsis
+    (``the left one`` has the pronoun ``one``; ``the leftmost`` has neither). ``members`` are the parts of a
+    coordination, joined by ``joined_by`` (``and``, ``or``); a coordination has no head of its own. ``of`` is the
+    complement of a phrase such as *end of the shelf*, *row of pawns*, *one of the forks*. ``owner`` is the possessor
+    (*the cup's handle*, *its lid*).
+    """
+
+    span: Span
+    head: str = ""
+    determiner: str | None = (
+        None  # 'a', 'the', 'this', 'each', 'every', 'all', 'both', 'no', 'any', 'other', 'same', ...
+    )
+    count: int | None = None  # 2 for 'two cups'; None where no number is given
+    plural: bool = False
+    pronoun: str | None = None  # 'it', 'they', 'one', 'other', 'former', 'latter', 'me', 'you', 'everything', ...
+    adjectives: tuple[Adjective, ...] = ()
+    predicates: tuple[Predicate, ...] = ()  # restrictions: phrases and relative clauses whose subject is this phrase
+    of: NounPhrase | None = None
+    owner: NounPhrase | None = None
+    members: tuple[NounPhrase, ...] = ()
+    joined_by: str | None = None
+    negated: bool = False  # 'the red box, not the blue one': the second member
+
+
+@dataclass(frozen=True, slots=True)
+class Predicate:
+    """Something said of a subject: ``left of the plate``, ``red``, ``between the cup and the jug``, ``the tallest``.
+
+    ``relation`` is a name of the ontology (``left``, ``near``, ``between``, ``corner``, ``bigger``, ``colour``) or, for
+    a property, the dimension of its ``value``. ``reversed`` is True where the subject and the first argument change
+    places: *with a napkin on it*, *holding a pen*, and the relative clause *that the cup stands on*.
+    """
+
+    relation: str
+    arguments: tuple[NounPhrase, ...]
+    span: Span
+    value: Adjective | None = None
+    part: str | None = None  # 'far left' for 'in the far left corner'
+    subject_part: NounPhrase | None = None  # 'its handle' in 'its handle pointing to the right'
+    measure: Measure | None = None
+    degree: Degree = Degree.PLAIN  # 'closer to the edge than the mouse' is comparative, 'closest to it' superlative
+    than: NounPhrase | None = None
+    adverbs: tuple[str, ...] = ()  # 'directly', 'right', 'slightly', 'usually'
+    positive: bool = True
+    reversed: bool = False
+    viewpoint: NounPhrase | None = None  # 'from your side', 'when facing the sink', 'to the chair's left'
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """One subject with what is said of it; ``predicates`` are all said together (*and*).
+
+    ``choices`` are further lists of predicates of which one holds instead (*or, if you prefer, …*). ``condition`` is
+    the text of an *if* clause, ``modal`` the word that makes it less than a plain statement (``should``, ``may``,
+    ``must``, ``cannot``), ``past`` is True if it need not hold any more.
+    """
+
+    subject: NounPhrase | None
+    predicates: tuple[Predicate, ...]
+    span: Span
+    mood: Mood = Mood.STATEMENT
+    positive: bool = True
+    modal: str | None = None
+    hedges: tuple[str, ...] = ()
+    past: bool = False
+    condition: str | None = None
+    choices: tuple[tuple[Predicate, ...], ...] = ()
+    existential: bool = False  # 'there is a cup on the tray'
+    step: str | None = None  # 'first', 'then', 'before'
+
+
+@dataclass(frozen=True, slots=True)
+class Misunderstood:
+    """A phrase that was left out: where it is, why, and a wording that would be understood."""
+
+    span: Span
+    reason: str
+    suggestion: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """A sentence of a text: its clauses, the words that were understood, and the phrases that were not."""
+
+    text: str
+    span: Span
+    clauses: tuple[Clause, ...]
+    fragment: NounPhrase | None  # a sentence that is only a noun phrase: 'The chair to the left of the desk.'
+    words: int
+    words_understood: int
+    misunderstood: tuple[Misunderstood, ...] = ()
+    heading: bool = False
+
+    @property
+    def understood(self) -> float:
+        """Share of the words that were understood."""
+        return self.words_understood / self.words if self.words else 1.0
