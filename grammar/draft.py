@@ -12,6 +12,7 @@ from deixis.grammar.script import Mention
 from deixis.grammar.words import chains
 from deixis.ontology.colours import Colour
 from deixis.ontology.facts import Source
+from deixis.ontology.inflection import singulars
 from deixis.ontology.kinds import Kind, with_article
 from deixis.ontology.relation import Relation, nearest, plain_phrase
 from deixis.ontology.tbox import Ontology
@@ -75,7 +76,7 @@ class Draft:
         A plural such as 'forks' stands for its kind. Raises StatementError for a word that stands for neither.
         """
         colours = self.ontology.colours
-        for form in (word, word.removesuffix("s"), word.removesuffix("es")):
+        for form in (word, *singulars(word)):
             kind, colour = self.ontology.quality(form)
             if kind is not None:
                 return kind, colour

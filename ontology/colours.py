@@ -1,4 +1,4 @@
-"""The basic colour terms: their words, and the region of the colour space that people call by each."""
+"""The colour terms: their words, and the region of the colour space that people call by each."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ class Colour:
     """A colour term: its words (label and synonyms, case-folded) and the distribution of colours called by it.
 
     ``prototype`` is the mean of the distribution, ``covariance`` its covariance in CIELAB, as LL, La, Lb, aa, ab, bb.
+    ``broader`` is the IRI of the basic term above a narrower one (blue for navy), None for a basic term.
     """
 
     iri: str
@@ -34,6 +35,7 @@ class Colour:
     words: tuple[str, ...]
     prototype: Rgb
     covariance: tuple[float, float, float, float, float, float]
+    broader: str | None = None
 
     def matrix(self) -> NDArray[np.float64]:
         """Return the covariance as a symmetric matrix, shape (3, 3)."""
@@ -64,6 +66,11 @@ class Colours:
 
     def __getitem__(self, iri: str) -> Colour:
         return self._by_iri[iri]
+
+    @cached_property
+    def basic(self) -> tuple[Colour, ...]:
+        """The basic terms, which together cover all colours."""
+        return tuple(colour for colour in self._all if colour.broader is None)
 
     @cached_property
     def words(self) -> dict[str, Colour]:
@@ -162,4 +169,5 @@ def _colour(iri: str, triples: TripleIndex, words: tuple[str, ...]) -> Colour:
     minors = (ll, ll * aa - la**2, ll * (aa * bb - ab**2) - la * (la * bb - ab * lb) + lb * (la * ab - aa * lb))
     if not all(map(math.isfinite, spread)) or min(minors) <= 0:  # Sylvester's criterion
         raise OntologyError(f"<{iri}>: its spread must be a positive definite matrix, got '{text}'")
-    return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, spread)
+    broader = triples.value(iri, W3C.SKOS_BROADER)
+    return Colour(iri, triples.only(iri, W3C.RDFS_LABEL), words, prototype, spread, broader)

@@ -1,11 +1,14 @@
-"""Kinds of things: the taxonomy of tableware, looked up by the words that people use."""
+"""Kinds of things: the taxonomy of everyday things, looked up by the words that people use."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
+
+from deixis.ontology.inflection import singulars
 
 
 def plain_name(name: str) -> str:
@@ -41,20 +44,43 @@ class Kind:
         return self.iri.rsplit("#", 1)[-1]
 
 
+MEASURES = frozenset(
+    {"bit", "bunch", "couple", "group", "kind", "lot", "number", "pair", "piece", "set", "slice", "sort", "type"}
+)
+"""Nouns before *of* that leave the kind to the noun after it: a pair of scissors is scissors."""
+
+
+class FurtherKinds(Protocol):
+    """Kinds below those of the TBox by IRI, and the kinds that further words stand for, the usual one first."""
+
+    @property
+    def kinds(self) -> Mapping[str, Kind]:
+        """Kinds by IRI."""
+
+    @property
+    def words(self) -> Mapping[str, tuple[Kind, ...]]:
+        """Kinds by word."""
+
+
 class Kinds:
-    """All kinds, by IRI and by word.
+    """All kinds, by IRI and by word: those of the TBox, and those of the lexicon.
+
+    Most scripts need only the TBox. The lexicon (``nouns``) is read at the first word or IRI that the TBox does not
+    know. Iteration and ``len`` cover the TBox.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> kinds = default_ontology().kinds
-    >>> kinds.of_word("Dessert_Fork").name, kinds.of_word("serviette").name
-    ('DessertFork', 'Napkin')
+    >>> kinds.of_word("Dessert_Fork").name, kinds.of_word("serviette").name, kinds.of_word("coffee table").name
+    ('DessertFork', 'Napkin', 'CoffeeTable')
     >>> kinds.is_a(kinds.of_word("dessert fork"), kinds.of_word("cutlery"))
     True
     """
 
-    def __init__(self, kinds: tuple[Kind, ...]) -> None:
+    def __init__(self, kinds: tuple[Kind, ...], nouns: Callable[[], FurtherKinds] | None = None) -> None:
         self._all = kinds
         self._by_iri = {kind.iri: kind for kind in kinds}
+        self._nouns = nouns
+        self._heads: dict[str, tuple[tuple[Kind, ...], str]] = {}
 
     def __iter__(self) -> Iterator[Kind]:
         return iter(self._all)
@@ -64,24 +90,96 @@ class Kinds:
 
     def __contains__(self, iri: object) -> bool:
         """Return whether a kind has this IRI."""
-        return iri in self._by_iri
+        return iri in self._by_iri or (isinstance(iri, str) and iri in self._further_kinds)
 
     def __getitem__(self, iri: str) -> Kind:
-        return self._by_iri[iri]
+        return self._by_iri[iri] if iri in self._by_iri else self._further_kinds[iri]
 
     @cached_property
     def words(self) -> dict[str, Kind]:
-        """Kinds by word, single-spaced and case-folded; the first of two kinds keeps a word that both have."""
+        """Kinds of the TBox by word, single-spaced and case-folded; the first of two kinds keeps a shared word."""
         words: dict[str, Kind] = {}
         for kind in self._all:
             for word in (*kind.words, kind.name.casefold()):
-                words.setdefault(word, kind)
+                words.setdefault(spaced(word), kind)
         return words
+
+    @cached_property
+    def every_word(self) -> dict[str, tuple[Kind, ...]]:
+        """Kinds of the TBox and the lexicon by word, with all kinds that a word may stand for, the usual one first."""
+        every: dict[str, tuple[Kind, ...]] = {word: (kind,) for word, kind in self.words.items()}
+        if self._nouns is not None:
+            nouns = self._nouns()
+            for word, kinds in nouns.words.items():
+                every[word] = (*every.get(word, ()), *kinds)
+            for kind in nouns.kinds.values():
+                every.setdefault(kind.name.casefold(), (kind,))
+        return every
 
     def of_word(self, word: str) -> Kind | None:
         """Return the kind that a word stands for; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` are equal."""
-        return self.words.get(" ".join(word.casefold().replace("_", " ").replace("-", " ").split()))
+        plain = spaced(word)
+        return self.words.get(plain) or next(iter(self.senses(plain)), None)
+
+    def senses(self, word: str) -> tuple[Kind, ...]:
+        """Return all kinds that a word stands for, the usual one first; *arm chair* and *armchair* are equal.
+
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> [kind.name for kind in default_ontology().kinds.senses("glasses")]
+        ['Glass', 'Spectacles']
+        """
+        plain = spaced(word)
+        return self.every_word.get(plain) or self.every_word.get(plain.replace(" ", ""), ())
+
+    def head_noun(self, noun: str) -> tuple[tuple[Kind, ...], str]:
+        """Return all kinds that the longest known end of a noun stands for, and the words before this end.
+
+        Without a known end, the kinds are empty and the words are the whole noun. Plurals count; of *cup of tea*, the
+        cup counts, and of *pair of scissors* the scissors.
+
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> kinds, rest = default_ontology().kinds.head_noun("old_rice_bowls")
+        >>> [kind.name for kind in kinds], rest
+        (['Bowl'], 'old rice')
+        """
+        key = spaced(noun)
+        if key not in self._heads:
+            self._heads[key] = self._find_head(key)
+        return self._heads[key]
 
     def is_a(self, kind: Kind, broader: Kind) -> bool:
         """Return whether ``kind`` is ``broader`` or a subclass of it."""
         return kind.iri == broader.iri or broader.iri in kind.broader
+
+    def parent(self, kind: Kind) -> Kind:
+        """Return the narrowest kind above a kind: the kind itself for the kind of all things."""
+        return max((self[iri] for iri in sorted(kind.broader)), key=lambda above: len(above.broader), default=kind)
+
+    def in_tbox(self, iri: str) -> bool:
+        """Return whether the TBox, not only the lexicon, has the kind."""
+        return iri in self._by_iri
+
+    def _find_head(self, noun: str) -> tuple[tuple[Kind, ...], str]:
+        if " of " in noun and not self.senses(noun):
+            first, _, second = noun.partition(" of ")
+            measure = singulars(first)[0].rpartition(" ")[2]
+            return self.head_noun(second if measure in MEASURES else first)
+        words = noun.split()
+        for start in range(len(words)):
+            end = " ".join(words[start:])
+            if found := dict.fromkeys(kind for one in (end, *singulars(end)) for kind in self.senses(one)):
+                return tuple(found), " ".join(words[:start])
+        return (), noun
+
+    @property
+    def _further_kinds(self) -> Mapping[str, Kind]:
+        return self._nouns().kinds if self._nouns is not None else {}
+
+
+def spaced(word: str) -> str:
+    """Return a word case-folded, with single spaces for underscores and hyphens.
+
+    >>> spaced("Coffee_Table")
+    'coffee table'
+    """
+    return " ".join(word.casefold().replace("_", " ").replace("-", " ").split())

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from deixis.errors import OntologyError
 from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
     from deixis.ontology.triple_index import TripleIndex
+
+
+ABOUT_AS_LARGE = 1.6
+"""Greatest ratio of typical lengths of two kinds that are about as large."""
 
 
 class Outline(StrEnum):
@@ -63,6 +67,23 @@ class SizeRange:
             return f"{self.length} across"
         return f"{self.length} long and {self.width} wide"
 
+    def is_about_as_large_as(self, other: SizeRange) -> bool:
+        """Return whether typical length and height differ by a factor of at most ``ABOUT_AS_LARGE``."""
+        pairs = ((self.length, other.length), (self.height, other.height))
+        return all(max(a.typical, b.typical) <= ABOUT_AS_LARGE * min(a.typical, b.typical) for a, b in pairs)
+
+
+class FurtherSizes(Protocol):
+    """Sizes of kinds below those of the TBox, and the parents of these kinds, by IRI."""
+
+    @property
+    def sizes(self) -> Mapping[str, SizeRange]:
+        """Sizes by kind."""
+
+    @property
+    def parents(self) -> Mapping[str, tuple[str, ...]]:
+        """Parents by kind."""
+
 
 class Sizes:
     """The size of every kind, by IRI; a kind without its own size takes that of its nearest broader kind.
@@ -75,15 +96,23 @@ class Sizes:
     'Shaker'
     """
 
-    def __init__(self, stated: Mapping[str, SizeRange], parents: Mapping[str, Iterable[str]]) -> None:
+    def __init__(
+        self,
+        stated: Mapping[str, SizeRange],
+        parents: Mapping[str, Iterable[str]],
+        nouns: Callable[[], FurtherSizes] | None = None,
+    ) -> None:
         self._stated = dict(stated)
         self._parents = {iri: tuple(above) for iri, above in parents.items()}
+        self._nouns = nouns
 
     def of(self, kind: str | None) -> SizeRange:
         """Return the size of a kind, or the size stated of all things where the kind is None.
 
         Raises OntologyError if the TBox states no size of all things.
         """
+        if kind is not None and kind not in self._parents and self._nouns is not None:
+            self._take_in(self._nouns())
         level = [kind or DX.THING.value]
         seen: set[str] = set()
         while level:
@@ -96,6 +125,11 @@ class Sizes:
             return self._stated[DX.THING]
         raise OntologyError(f"<{DX.THING}> has no usual size, so unknown things have none; state one")
 
+    def _take_in(self, nouns: FurtherSizes) -> None:
+        self._stated.update(nouns.sizes)
+        self._parents.update(nouns.parents)
+        self._nouns = None
+
 
 _EXTENTS = {
     "length": (DX.LEAST_LENGTH, DX.TYPICAL_LENGTH, DX.GREATEST_LENGTH),
@@ -105,11 +139,14 @@ _EXTENTS = {
 }
 
 
-def sizes_from_triples(triples: TripleIndex) -> Sizes:
-    """Read all sizes from the TBox; raise OntologyError where one is incomplete or its numbers are out of order."""
+def sizes_from_triples(triples: TripleIndex, nouns: Callable[[], FurtherSizes] | None = None) -> Sizes:
+    """Read all sizes from the TBox; raise OntologyError where one is incomplete or its numbers are out of order.
+
+    ``nouns`` reads the lexicon, with the sizes of the kinds that the TBox does not have.
+    """
     classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
     stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}
-    return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes})
+    return Sizes(stated, {iri: triples.values(iri, W3C.RDFS_SUB_CLASS_OF) for iri in classes}, nouns)
 
 
 def _size_range(iri: str, triples: TripleIndex) -> SizeRange:

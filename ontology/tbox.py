@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from deixis.errors import OntologyError
 from deixis.ontology.colours import Colour, Colours, colours_from_triples
-from deixis.ontology.kinds import Kind, Kinds, plain_name
+from deixis.ontology.kinds import Kind, Kinds, plain_name, spaced
 from deixis.ontology.relation import Relation, Relations, relation_from_triples
 from deixis.ontology.sizes import Sizes, sizes_from_triples
 from deixis.ontology.triple_index import TripleIndex
@@ -19,6 +19,9 @@ from deixis.ontology.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
     import pyoxigraph as ox
+
+    from deixis.ontology.lexicon.lexicon import Lexicon
+    from deixis.ontology.lexicon.nouns import Nouns
 
 TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "everyday.ttl"))
 """Turtle files of one ontology: the vocabulary with the kinds of tableware, and the everyday kinds around them."""
@@ -35,9 +38,19 @@ class Ontology:
     colours: Colours
 
     @cached_property
+    def lexicon(self) -> Lexicon:
+        """The nouns of the ontology: their inflection, head nouns, kinds, sizes, and how well they fit labels."""
+        from deixis.ontology.lexicon.lexicon import Lexicon
+
+        return Lexicon(self.kinds, self.sizes, self.colours)
+
+    @cached_property
     def kinds_key(self) -> str:
-        """Hash of all statements about kinds: their words, their broader kinds, and their usual sizes."""
-        return content_key(repr([(kind.iri, kind.words, kind.broader, self.sizes.of(kind.iri)) for kind in self.kinds]))
+        """Hash of all statements about kinds: their words, their broader kinds, their usual sizes, and the lexicon."""
+        from deixis.ontology.lexicon.nouns import NOUNS_FILE
+
+        stated = [(kind.iri, kind.words, kind.broader, self.sizes.of(kind.iri)) for kind in self.kinds]
+        return content_key(repr(stated) + NOUNS_FILE.read_text(encoding="utf-8"))
 
     def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
         """Return the kind, the colour, or both, that words such as ``red mug`` stand for.
@@ -61,11 +74,24 @@ class Ontology:
     def of_name(self, name: str) -> tuple[Kind | None, Colour | None]:
         """Return the kind and the colour that the name of an object stands for, without its number.
 
-        A name that is only a colour word gives no colour, since an orange may be a fruit.
+        A name that is only a colour word gives no colour, since an orange may be a fruit. A name of several words
+        that is not a kind itself is of the kind of its head noun: a rice bowl is a bowl. A noun that has several senses
+        and is not a word of the TBox counts only if things of all its senses are about as large.
+
+        >>> [kind and kind.name for kind, _ in map(default_ontology().of_name, ("rice_bowl_2", "mouse", "router"))]
+        ['Bowl', 'ComputerMouse', None]
         """
         plain = plain_name(name)
-        kind, colour = self.quality(plain)
-        return (kind, None) if self.colours.of_word(plain) else (kind, colour)
+        colour, noun = (None, plain) if self.kinds.of_word(plain) else self.colours.split(plain)
+        return self._usual_kind(noun), colour
+
+    def _usual_kind(self, noun: str) -> Kind | None:
+        senses, before = self.kinds.head_noun(noun)
+        end = spaced(noun)[len(before) :].strip()
+        if len(senses) < 2 or end in self.kinds.words:
+            return next(iter(senses), None)
+        first, *others = (self.sizes.of(kind.iri) for kind in senses)
+        return senses[0] if all(first.is_about_as_large_as(other) for other in others) else None
 
 
 def load_ontology(*extra: str) -> Ontology:
@@ -97,8 +123,20 @@ def load_ontology(*extra: str) -> Ontology:
     colours = colours_from_triples(
         triples, {iri: _words(triples, iri) for iri in triples.subjects(W3C.RDF_TYPE, DX.COLOUR)}
     )
+    kinds = _kinds(triples)
+
+    @lru_cache(maxsize=1)
+    def nouns() -> Nouns:
+        from deixis.ontology.lexicon.nouns import read_nouns
+
+        return read_nouns(kinds.words)
+
     return Ontology(
-        Relations(tuple(relations)), _kinds(triples), _hedges(triples), sizes_from_triples(triples), colours
+        Relations(tuple(relations)),
+        Kinds(tuple(kinds), nouns),
+        _hedges(triples),
+        sizes_from_triples(triples, nouns),
+        colours,
     )
 
 

@@ -140,6 +140,7 @@ class W3C(StrEnum):
     OWL_INVERSE_OF = "http://www.w3.org/2002/07/owl#inverseOf"
     OWL_TRANSITIVE_PROPERTY = "http://www.w3.org/2002/07/owl#TransitiveProperty"
     SKOS_ALT_LABEL = "http://www.w3.org/2004/02/skos/core#altLabel"
+    SKOS_BROADER = "http://www.w3.org/2004/02/skos/core#broader"
     OWL_RESTRICTION = "http://www.w3.org/2002/07/owl#Restriction"
     OWL_ON_PROPERTY = "http://www.w3.org/2002/07/owl#onProperty"
     OWL_SOME_VALUES_FROM = "http://www.w3.org/2002/07/owl#someValuesFrom"

@@ -8,6 +8,7 @@ import pyoxigraph as ox
 
 from deixis.ontology.colours import hex_of_rgb
 from deixis.ontology.facts import Fact
+from deixis.ontology.kinds import Kinds
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, Match, Role, SeenObject, WordLesson
 from deixis.ontology.relation import Relations
 from deixis.ontology.triples import (
@@ -39,6 +40,19 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
         yield from _match(lesson, match)
     for match in lesson.categories():
         yield from _category(match.object, kinds.get(match.object), lesson)
+
+
+def noun_triples(lesson: Lesson, kinds: Kinds) -> Iterator[ox.Triple]:
+    """Yield the classes of the lexicon that the layout's roles have and that the TBox does not, up to the TBox."""
+    known = dict.fromkeys(kinds[role.kind] for role in lesson.layout.roles if role.kind and role.kind in kinds)
+    above = dict.fromkeys(kinds[name] for kind in known for name in sorted(kind.broader))
+    for kind in known | above:
+        if not kinds.in_tbox(kind.iri):
+            about = Description(kind.iri)
+            about.say(W3C.RDF_TYPE, iri(W3C.OWL_CLASS))
+            about.say(W3C.RDFS_LABEL, text(kind.label))
+            about.say(W3C.RDFS_SUB_CLASS_OF, iri(kinds.parent(kind).iri))
+            yield from about
 
 
 def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:

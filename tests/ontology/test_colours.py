@@ -20,11 +20,14 @@ BASIC = {"black", "white", "grey", "red", "green", "yellow", "blue", "brown", "o
 PREFIXES = """@prefix dx: <https://w3id.org/deixis/onto#> . @prefix dcterms: <http://purl.org/dc/terms/> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> . @prefix skos: <http://www.w3.org/2004/02/skos/core#> .
 """
-TEAL = 'dx:teal a dx:Colour ; rdfs:label "teal" ; dx:prototype "#008080" ; dx:spread "100 0 0 100 0 100" .'
+TEAL = 'dx:petrol a dx:Colour ; rdfs:label "petrol" ; dx:prototype "#008080" ; dx:spread "100 0 0 100 0 100" .'
 
 
-def test_the_colours_are_the_eleven_basic_terms() -> None:
-    assert {colour.label for colour in COLOURS} == BASIC
+def test_there_are_eleven_basic_terms_and_narrower_ones_of_them() -> None:
+    assert {colour.label for colour in COLOURS.basic} == BASIC
+    narrower = [colour for colour in COLOURS if colour not in COLOURS.basic]
+    assert {COLOURS[str(colour.broader)].label for colour in narrower} < BASIC
+    assert len(narrower) == 12
 
 
 @pytest.mark.parametrize(
@@ -50,8 +53,8 @@ def test_no_word_is_both_a_colour_and_a_kind() -> None:
         ("red_thingummy", None, "red"),
         ("red_wine_glass", "RedWineGlass", None),
         ("white_wine_glass_2", "WhiteWineGlass", None),
-        ("orange", None, None),
-        ("orange_2", None, None),
+        ("orange", "Orange", None),
+        ("orange_2", "Orange", None),
         ("dark_blue", None, None),
         ("mug_red", None, None),
         ("redmug", None, None),
@@ -74,17 +77,28 @@ def test_text_that_is_not_a_colour_gives_none(text: str) -> None:
 
 
 def named(term: Colour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Return the CIELAB values of the survey's names that end in a word, shape (n, 3); the table is matplotlib's."""
-    found = [rgb_of_hex(str(value)) for name, value in XKCD_COLORS.items() if name[5:].split()[-1] == term.label]
+    """Return the CIELAB values of the survey's names that end in a term, shape (n, 3); the table is matplotlib's."""
+    words = term.words if term.broader else (term.label,)
+    found = [rgb_of_hex(str(value)) for name, value in XKCD_COLORS.items() if name[5:].split()[-1] in words]
     return lab_of_srgb(np.array(found, dtype=np.float64))
 
 
-@pytest.mark.parametrize("term", [c for c in COLOURS if c.label not in ("black", "white")], ids=lambda c: c.label)
+@pytest.mark.parametrize("term", [c for c in COLOURS.basic if c.label not in ("black", "white")], ids=lambda c: c.label)
 def test_prototype_and_spread_are_those_of_the_survey(term: Colour) -> None:
     seen = named(term)
     assert len(seen) >= 25
     assert np.abs(lab_of_srgb(np.array(term.prototype, dtype=np.float64)) - seen.mean(axis=0)).max() < 0.5
     assert np.abs(term.matrix() - np.cov(seen.T)).max() <= 0.5 + 1e-6
+
+
+def test_narrower_terms_share_the_pooled_spread_of_the_survey() -> None:
+    narrower = [colour for colour in COLOURS if colour.broader]
+    seen = [named(term) for term in narrower]
+    for term, colours in zip(narrower, seen, strict=True):
+        assert np.abs(lab_of_srgb(np.array(term.prototype, dtype=np.float64)) - colours.mean(axis=0)).max() < 0.5
+    apart = np.concatenate([colours - colours.mean(axis=0) for colours in seen])
+    pooled = apart.T @ apart / (len(apart) - len(seen))
+    assert all(np.abs(term.matrix() - pooled).max() <= 0.5 + 1e-6 for term in narrower)
 
 
 def test_black_and_white_have_the_spread_of_grey() -> None:
@@ -98,7 +112,7 @@ def test_black_and_white_have_the_spread_of_grey() -> None:
 
 def test_a_colour_may_be_added() -> None:
     more = load_ontology(PREFIXES + TEAL, PREFIXES + 'dx:red skos:altLabel "ruby" .')
-    found, ruby = more.colours.of_word("teal"), more.colours.of_word("ruby")
+    found, ruby = more.colours.of_word("petrol"), more.colours.of_word("ruby")
     assert found is not None and ruby is not None
     assert (found.prototype, ruby.label) == ((0, 128, 128), "red")
 

@@ -23,7 +23,7 @@ def test_a_kind_is_found_however_its_name_is_written(word: str) -> None:
 
 
 def test_an_unknown_word_gives_no_kind() -> None:
-    assert KINDS.of_word("spaceship") is None
+    assert KINDS.of_word("thingummy") is None
     assert KINDS.of_word("") is None
 
 

@@ -1,8 +1,8 @@
 """Evidence of colours: the likelihood of a thing's colour given the described colour, against chance.
 
-A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`). Chance is a mixture of all terms by their
-shares in the scene, with equal prior shares: *red* is strong evidence for the only red thing, and none where all things
-are red.
+A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`). Chance is a mixture of the basic terms,
+and of the narrower ones that are described, by their shares in the scene, with equal prior shares: *red* is strong
+evidence for the only red thing, and none where all things are red.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
     known = np.flatnonzero(~np.isnan(seen).any(axis=1))
     if not len(known) or not any(described):
         return evidence
-    lab, terms = lab_of_srgb(seen[known]), list(colours)
+    lab, terms = lab_of_srgb(seen[known]), _terms(described, colours)
     densities = np.stack([_log_density(lab, term) for term in terms], axis=1)
     # the share (k,) of each term among the things of the scene, from the log densities of things with a known colour
     things = len(seen)
@@ -100,7 +100,7 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
     other things of the scene do not matter.
     """
     found: list[Colour | None] = [None] * len(described)
-    terms = list(colours)
+    terms = _terms(described, colours)
     column = {term.iri: position for position, term in enumerate(terms)}
     for place, iri in enumerate(described):
         if iri is not None and not np.isnan(seen[place]).any():
@@ -109,6 +109,12 @@ def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], co
             if densities[column[iri]] - densities.max() <= np.log(MAX_OTHER_RATIO):
                 found[place] = terms[int(densities.argmax())]
     return found
+
+
+def _terms(described: Sequence[str | None], colours: Colours) -> list[Colour]:
+    """Return the basic terms, and the narrower terms among the described ones."""
+    narrower = (colours[iri] for iri in dict.fromkeys(described) if iri is not None and colours[iri].broader)
+    return [*colours.basic, *narrower]
 
 
 def _log_density(lab: Array, term: Colour) -> Array:

@@ -106,8 +106,8 @@ def _matched(lesson: Remembered) -> Iterator[tuple[str, int]]:
 def _labelled(lesson: Remembered, kinds: Kinds) -> Iterator[tuple[str, int]]:
     for place, thing in enumerate(lesson.scene.objects):
         if thing.label and thing.confidence >= SURE:
-            kind = kinds.of_word(plain_name(thing.label))
-            yield kind.iri if kind else category_of(thing.label), place
+            senses, _ = kinds.head_noun(plain_name(thing.label))
+            yield senses[0].iri if senses else category_of(thing.label), place
 
 
 # ---- the statistics

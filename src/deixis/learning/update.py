@@ -35,7 +35,7 @@ from deixis.memory.semantic.rdf.package import package_digest
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.lessons.shapes import layout_shapes
 from deixis.ontology.lessons.types import Lesson, WordLesson
-from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
+from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples, noun_triples
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import RelationModel
 from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
@@ -200,7 +200,10 @@ def word_triples(models: Iterable[RelationModel]) -> list[ox.Triple]:
 def _contributions(lesson: Lesson | WordLesson, ontology: Ontology) -> dict[GraphName, list[ox.Triple]]:
     said = {GraphName.ASSERTED: list(asserted_triples(lesson)), GraphName.EPISODES: list(episode_triples(lesson))}
     if isinstance(lesson, Lesson):
-        said[GraphName.LEARNED] = list(learned_triples(lesson, ontology.relations))
+        said[GraphName.LEARNED] = [
+            *learned_triples(lesson, ontology.relations),
+            *noun_triples(lesson, ontology.kinds),
+        ]
         said[GraphName.SHAPES] = list(layout_shapes(lesson.layout))
     return said
 

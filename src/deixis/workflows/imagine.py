@@ -12,7 +12,7 @@ from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kind, Kinds, plain_name, with_article
+from deixis.ontology.kinds import Kind, Kinds, with_article
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import find_conflict
@@ -151,24 +151,11 @@ def _pictures(
 
 
 def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
-    """Return every object with its kind, declared or said by the words of its name, and its usual size."""
+    """Return every object with its kind, declared or said by its name, and its usual size."""
     kinds = script.ontology.kinds
-    named = zip(graph.nodes, graph.kinds, strict=True)
-    found = [kinds[iri] if iri else kind_by_words(name, kinds) for name, iri in named]
+    found = [kinds[iri] if iri else None for iri in graph.kinds or (None,) * len(graph.nodes)]
     sizes = [script.ontology.sizes.of(kind.iri if kind else None) for kind in found]
     return tuple(Sized(*entry) for entry in zip(graph.nodes, found, sizes, strict=True))
-
-
-def kind_by_words(name: str, kinds: Kinds) -> Kind | None:
-    """Return the kind that the last words of a name stand for, as many of them as stand for one.
-
-    >>> from deixis.ontology.tbox import default_ontology
-    >>> kind_by_words("grandmother's silver_dessert_fork_2", default_ontology().kinds).name
-    'DessertFork'
-    """
-    words = plain_name(name).replace("_", " ").replace("-", " ").split()
-    tails = (kinds.of_word(" ".join(words[start:])) for start in range(len(words)))
-    return next((kind for kind in tails if kind is not None), None)
 
 
 def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:

@@ -86,6 +86,24 @@ def test_a_category_says_which_lessons_showed_it(taught: Path) -> None:
         ]
 
 
+def test_a_kind_of_the_lexicon_is_learned_with_those_above_it(tmp_path: Path) -> None:
+    boxes = {"a": [0, 0], "b": [2, 0]}
+    things = [
+        {"id": name, "min": low, "max": [low[0] + 1, 1], "label": label}
+        for (name, low), label in zip(boxes.items(), ("ottoman", "rice_bowl"), strict=True)
+    ]
+    scene = tmp_path / "room.scene.json"
+    scene.write_text(json.dumps({"unit": "px", "objects": things}), encoding="utf-8")
+    with Session(tmp_path / "memory") as session:
+        session.learn(read_script(text="layout room. ottoman left of rice_bowl"), scene)
+        classes = "ASK { ?ottoman rdfs:label 'ottoman' ; rdfs:subClassOf dx:Seat }"
+        assert session.query(classes).boolean is True
+        assert session.query("ASK { ?thing a dx:Furniture . ?other a dx:Bowl }").boolean is True
+        assert session.layout("room").roles[0].kind == read_script(text="ottoman left of a").graph().kinds[0]
+        session.forget("room-1")
+        assert session.query(classes).boolean is False
+
+
 def test_what_follows_is_in_the_inferred_graph_and_only_there(taught: Path) -> None:
     with Session(taught) as session:
         memory = session.memory()

@@ -19,7 +19,7 @@ from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answer import Outcome
 from deixis.session import Session
 from deixis.workflows.ground import ground
-from deixis.workflows.imagine import ImaginedTable, imagine, kind_by_words
+from deixis.workflows.imagine import ImaginedTable, imagine
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 POSSIBLE = ["formal_dinner", "script1", "script2"]
@@ -121,13 +121,6 @@ def test_what_lies_on_a_plate_lies_in_its_middle() -> None:
     found = table("napkin on dinner_plate")
     (napkin, plate) = found.scene.boxes
     assert napkin.mean(axis=0) == pytest.approx(plate.mean(axis=0), abs=0.001)
-
-
-def test_a_name_is_of_the_kind_that_its_last_words_stand_for() -> None:
-    kinds = default_ontology().kinds
-    for name, kind in (("old_silver_fish_fork_2", "FishFork"), ("blue cup", "Cup"), ("thingummy", None)):
-        found = kind_by_words(name, kinds)
-        assert (found and found.name) == kind
 
 
 def test_a_declared_kind_decides_over_the_name() -> None:

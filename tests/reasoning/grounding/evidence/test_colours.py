@@ -61,10 +61,12 @@ def test_each_word_speaks_for_the_thing_that_people_call_so() -> None:
 
 
 def test_most_names_of_the_survey_get_the_word_that_they_end_in() -> None:
-    labels = [colour.label for colour in COLOURS]
+    labels = [colour.label for colour in COLOURS.basic]
     known = [(name.split()[-1], value) for name, value in XKCD_COLORS.items()]
     known = [(word.removeprefix("xkcd:"), value) for word, value in known if word.removeprefix("xkcd:") in labels]
-    found = colour_evidence([colour.iri for colour in COLOURS], seen(*(str(value) for _, value in known)), COLOURS)
+    found = colour_evidence(
+        [colour.iri for colour in COLOURS.basic], seen(*(str(value) for _, value in known)), COLOURS
+    )
     right = [labels[best] == word for best, (word, _) in zip(found.argmax(axis=0), known, strict=True)]
     assert len(right) == 558
     assert np.mean(right) > 0.88
@@ -77,10 +79,18 @@ def test_other_colour_needs_a_clear_difference() -> None:
 
 
 def test_each_prototype_differs_from_all_other_colours() -> None:
-    prototypes = np.array([colour.prototype for colour in COLOURS], dtype=np.float64)
-    for said in COLOURS:
+    prototypes = np.array([colour.prototype for colour in COLOURS.basic], dtype=np.float64)
+    for said in COLOURS.basic:
         found = other_colours([said.iri] * len(prototypes), prototypes, COLOURS)
-        assert found == [None if seen_as == said else seen_as for seen_as in COLOURS]
+        assert found == [None if seen_as == said else seen_as for seen_as in COLOURS.basic]
+
+
+def test_a_narrower_term_speaks_for_its_shade() -> None:
+    blues = seen("#042451", "#5b7abf", "#c02020")
+    navy, blue = colour_evidence([iri("navy"), iri("blue")], blues, COLOURS)
+    assert navy[0] > 0 > navy[1] > navy[2] - 0.5
+    assert blue.argmax() == 1
+    assert colour_evidence([iri("blue")], blues, COLOURS)[0, 0] > 0
 
 
 def test_impure_whites_are_about_equally_white() -> None:
@@ -117,11 +127,11 @@ def test_colour_evidence_is_bounded_both_ways(rgb: NDArray[np.float64]) -> None:
 def test_evidence_is_the_ratio_of_densities_as_scipy_gives_them() -> None:
     lab = lab_of_srgb(TABLE)
     dense = np.array(
-        [multivariate_normal(lab_of_srgb(np.array(c.prototype, float)), c.matrix()).pdf(lab) for c in COLOURS]
+        [multivariate_normal(lab_of_srgb(np.array(c.prototype, float)), c.matrix()).pdf(lab) for c in COLOURS.basic]
     )
     shares = ((dense / dense.sum(axis=0)).sum(axis=1) + 2 / 11) / 7  # a sixth thing is of no known colour
     wanted = np.log((1 - OUTLIERS) * dense / (shares @ dense) + OUTLIERS)
-    found = colour_evidence([c.iri for c in COLOURS], np.concatenate([TABLE, seen(None)]), COLOURS)
+    found = colour_evidence([c.iri for c in COLOURS.basic], np.concatenate([TABLE, seen(None)]), COLOURS)
     assert found[:, :5] == pytest.approx(wanted)
 
 

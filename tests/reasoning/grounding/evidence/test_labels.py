@@ -53,6 +53,24 @@ def test_what_a_label_names(label: str, named: list[str], table: RelationGraph) 
     assert names(table, label) == [named]
 
 
+@pytest.mark.parametrize(
+    ("label", "named"),
+    [
+        ("rice_bowl", ["bowl", "red_bowl"]),
+        ("soup_bowl", ["bowl", "noodle_bowl", "red_bowl"]),
+        ("noodle bowl", ["noodle_bowl"]),
+        ("couch", ["settee_1"]),
+        ("love seat", ["settee_1"]),
+        ("seat", ["settee_1"]),
+    ],
+)
+def test_a_label_names_by_its_head_noun(label: str, named: list[str], graph_of: MakeGraph) -> None:
+    objects = "bowl noodle_bowl red_bowl settee_1"
+    kinds = [default_ontology().of_name(name)[0] for name in objects.split()]
+    graph = graph_of(nodes=objects, kinds=[kind.iri if kind else None for kind in kinds])
+    assert names(graph, label) == [named]
+
+
 def test_an_accent_may_be_written_in_two_ways(graph_of: MakeGraph) -> None:
     assert names(graph_of(nodes=["cafe\u0301"]), "CAF\u00c9") == [["cafe\u0301"]]
 
