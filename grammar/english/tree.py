@@ -59,6 +59,23 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """Place and direction of a viewer: *facing the bed*, *from the door*, *standing at the sink with your back to it*.
+
+    ``at`` is where the viewer stands, ``facing`` what the viewer looks at, ``back`` what is behind the viewer. ``own``
+    is the owner of a side: *to your left* (pronoun ``you``), *to the chair's left*. ``entering`` is True for *as you
+    walk in through the door* (``at`` is the door, and the viewer looks into the room).
+    """
+
+    span: Span
+    at: NounPhrase | None = None
+    facing: NounPhrase | None = None
+    back: NounPhrase | None = None
+    own: NounPhrase | None = None
+    entering: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class NounPhrase:
     """A phrase that stands for one or more objects.
 
@@ -92,7 +109,22 @@ class Predicate:
 
     ``relation`` is a name of the ontology (``left``, ``near``, ``between``, ``corner``, ``bigger``, ``colour``) or, for
     a property, the dimension of its ``value``. ``reversed`` is True where the subject and the first argument change
-    places: *with a napkin on it*, *holding a pen*, and the relative clause *that the cup stands on*.
+    places: *with a napkin on it*, *that contains a pen*, and the relative clause *that the cup stands on*.
+
+    Further relations:
+
+    - ``kind`` (*is a chair*, *it is the one on the left*: the argument is the noun phrase) and ``with`` (*with the
+      monitor*, *has a lamp*);
+    - ``corner``, ``edge``, ``end``, ``side``, ``middle`` and ``part``, of the argument, or of the whole table or room
+      if there is none; *on the left* is ``left`` without arguments, with the part ``left``, *on the left side* has the
+      part ``side``, and *to the left* has none;
+    - ``ordinal`` (*second from the left*: ``value.rank`` 2, ``part`` ``left``) and ``row`` (part ``left to right``);
+    - ``near`` and ``far`` with the degree superlative (*closest to the door*) or comparative with ``than``; a
+      comparison (*taller than the jug*) has the jug as its argument and the adjective as its ``value``;
+    - ``material`` (*made of wood*), ``like`` (*looks like a bowl*), ``share`` (*share one saucer*), ``as`` after
+      *the same* (*on the same wall as the sink*), ``to`` after a door (*the door to the bathroom*);
+    - ``one_each`` (*one each*: the two groups of the clause are matched), and ``there`` (*over there*, *anywhere*: the
+      subject is present).
     """
 
     relation: str
@@ -107,7 +139,7 @@ class Predicate:
     adverbs: tuple[str, ...] = ()  # 'directly', 'right', 'slightly', 'usually'
     positive: bool = True
     reversed: bool = False
-    viewpoint: NounPhrase | None = None  # 'from your side', 'when facing the sink', 'to the chair's left'
+    viewpoint: Viewpoint | None = None  # 'to your left', 'to the chair's left'; see also Sentence.viewpoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +186,7 @@ class Sentence:
     words_understood: int
     misunderstood: tuple[Misunderstood, ...] = ()
     heading: bool = False
+    viewpoint: Viewpoint | None = None  # 'facing the bed, …', 'from the door, …': holds of the whole sentence
 
     @property
     def understood(self) -> float:

@@ -1,0 +1,426 @@
+"""Put the parsed clauses of a sentence together: subjects, viewpoints, conditions, alternatives, fragments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from deixis.grammar.english.build import Built, Noun, Said, Verb, misunderstood, notes, viewpoint_of
+from deixis.grammar.english.chunks import Chunk, VerbGroup
+from deixis.grammar.english.joints import Segment
+from deixis.grammar.english.places import HOURS
+from deixis.grammar.english.tokens import RawSentence
+from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
+from deixis.grammar.english.words import ENTER_VERBS, FACE_VERBS, HEDGES
+
+_PEOPLE = frozenset({"you", "me", "we", "someone"})
+_FRAMES = frozenset({"facing", "from"})
+_PLACING = frozenset({"put", "place", "keep", "leave", "set", "lay", "store", "spread", "position"})
+_OWNING = frozenset(
+    {"have", "see", "find", "keep", "notice", "place", "put", "leave", "set", "lay", "stand", "hang", "store"}
+)
+
+
+@dataclass(slots=True)
+class Found:
+    """Result of a sentence: its clauses, or the noun phrase that it consists of, and the viewpoint."""
+
+    clauses: tuple[Clause, ...]
+    fragment: NounPhrase | None
+    viewpoint: Viewpoint | None
+
+
+@dataclass(slots=True)
+class Assembly:
+    """The clauses of one sentence while it is read."""
+
+    text: str
+    raw: RawSentence
+    asks: bool
+    clauses: list[Clause] = field(default_factory=list)
+    fragments: list[NounPhrase] = field(default_factory=list)
+    sought: NounPhrase | None = None  # 'choose the chair …'
+    viewpoint: Viewpoint | None = None
+    condition: str | None = None
+    front: tuple[Predicate, ...] = ()  # places before a command: 'on the desk, choose the monitor'
+    clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
+
+    def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
+        """Return the verb of a main clause such as *it could be that*, and the clause without it."""
+        for i, chunk in enumerate(segment.chunks):
+            if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
+                return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
+            if chunk.type == "COMPLEMENT":
+                verbs = [c.value for c in segment.chunks[:i] if isinstance(c.value, VerbGroup)]
+                return (verbs[-1] if verbs else None), replace(segment, chunks=segment.chunks[i + 1 :])
+        return None, segment
+
+    def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:
+        """Take in a parsed clause that stands after the joint ``link``."""
+        span = (start, end)
+        frame = self._frame(built, link, span)
+        if frame is not None:
+            self.viewpoint = _joined(self.viewpoint, frame)
+            return
+        if built.shape == "existential":
+            built, looking = _looking(built, start)
+            self.viewpoint = self.viewpoint if looking is None else _joined(self.viewpoint, looking)
+        said, fronted = _split_frames(built.said)
+        if fronted is not None:
+            self.viewpoint = _joined(self.viewpoint, fronted)
+            link = ""
+        elif built.said and link in ("when", "if", "while", "as"):
+            frame = viewpoint_of(tuple(p for part in built.said for p in part.predicates))
+            if frame is not None:
+                self.viewpoint, said, link = _joined(self.viewpoint, frame), (), ""
+        if link in ("before", "after") and built.shape == "statement":
+            return
+        if link == "if" and self._is_clock(built):
+            return
+        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
+            built.verbs or (built.shape == "fragment" and not built.said and link != "as")
+        ):
+            self._conditional(span, link)
+            return
+        mood = self._mood(built)
+        subject = built.subject
+        if built.shape == "other" and subject is not None and not subject.phrase.predicates:
+            verb = built.verbs[0]
+            misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
+            return
+        if built.shape in ("fragment", "search", "other"):
+            self._fragment(built, subject, said, link, span, mood)
+            return
+        if built.shape == "said" and subject is None:
+            self._said(built, said, link, span, mood)
+            return
+        if subject is None:
+            return
+        if subject.phrase.negated and not subject.phrase.members:
+            misunderstood(span, "a denial of all does not say which", "say it of each of them")
+            return
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        person = subject.phrase.pronoun in _PEOPLE
+        for i, verb in enumerate(verbs):
+            front = said if i == 0 else ()
+            if verb.thing is not None and (verb.group.lemma in _PLACING or (person and verb.group.lemma in _OWNING)):
+                moved, thing = self._of_the_thing(verb, subject)
+                if not moved.said and not front and verb.group.lemma not in ("have", "see", "find", "notice"):
+                    misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
+                    continue
+                shape = (
+                    "existential" if person and verb.group.lemma in ("have", "see", "find", "notice") else built.shape
+                )
+                self._clause(shape, thing, moved, front, span, mood, hedge, link)
+                continue
+            self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
+
+    def finish(self) -> Found:
+        """Return the clauses; a single noun phrase without a clause is the fragment of the sentence."""
+        fragment = None
+        rest = self.fragments
+        if self.sought is not None:
+            fragment = self.sought
+        elif rest:
+            fragment, *rest = rest
+        for other in rest:
+            if other.predicates:
+                self.clauses.append(Clause(replace(other, predicates=()), other.predicates, other.span))
+            else:
+                misunderstood(other.span, "nothing is said of this", "say where it is")
+        if self.front:
+            span = (self.front[0].span[0], self.front[-1].span[1])
+            front, self.front = self.front, ()
+            self._append(
+                Clause(None, front, span, Mood.QUESTION if self.asks else Mood.STATEMENT, step=self.raw.step), ""
+            )
+        if self.condition is not None and not self.clauses and fragment is None:
+            start = self.raw.start
+            misunderstood((start, self.raw.end), "a condition without what it is a condition of")
+        if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
+            misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
+        return Found(tuple(self.clauses), fragment, self.viewpoint)
+
+    # viewpoints and conditions
+
+    def _frame(self, built: Built, link: str, span: Span) -> Viewpoint | None:
+        """Return the viewpoint that a clause states and does nothing else: *if you are facing the bed*."""
+        person = built.subject is not None and built.subject.phrase.pronoun in _PEOPLE
+        said = [p for verb in built.verbs for part in verb.said for p in part.predicates]
+        said += [p for part in built.said for p in part.predicates]
+        if built.shape == "statement" and person:
+            if link in ("if", "when", "while", "as", "once", "where") or any(p.relation in _FRAMES for p in said):
+                entering = any(verb.group.lemma in ENTER_VERBS for verb in built.verbs)
+                found = viewpoint_of(tuple(said))
+                thing = next((verb.thing.phrase for verb in built.verbs if verb.thing is not None), None)
+                if thing is not None:
+                    turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
+                    found = found or Viewpoint(span)
+                    found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
+                if found is not None:
+                    return replace(found, span=span, entering=entering)
+            return None
+        subject = None if built.subject is None else built.subject.phrase
+        if (
+            subject is not None
+            and subject.head == "back"
+            and subject.owner is not None
+            and subject.owner.pronoun in (*_PEOPLE, "one")
+        ):
+            behind = next((p.arguments[0] for p in said if p.arguments), subject.of)
+            return None if behind is None else Viewpoint(span, back=behind)
+        if built.shape == "said" and said and not built.verbs:
+            framing = [p for p in said if p.relation in _FRAMES]
+            if (
+                link in ("if", "when", "while", "as")
+                or (framing and not self.clauses and not self.fragments)
+                or (framing and said[0] is framing[0] and said[0].relation == "from")
+            ):
+                found = viewpoint_of(tuple(said))
+                return None if found is None else replace(found, span=span)
+        return None
+
+    def _is_clock(self, built: Built) -> bool:
+        """Take in *if Z is the center of a clock face*; the hours that follow are directions from Z."""
+        kinds = [p.arguments[0] for verb in built.verbs for p in _flat(verb) if p.relation == "kind"]
+        if built.subject is None or not any(k.of is not None and k.of.head.startswith("clock") for k in kinds):
+            return False
+        self.clock = built.subject.phrase
+        return True
+
+    def _at_the_hour(self, predicate: Predicate) -> Predicate:
+        """Return *between 4 and 5* and *at 3* as a direction from the centre of the clock."""
+        hours = [argument.count for argument in predicate.arguments if not argument.head]
+        if self.clock is None or not hours or hours[0] is None or predicate.relation not in ("between", "at", "near"):
+            return predicate
+        relation = HOURS.get(hours[0] if len(hours) == 1 or hours[0] % 3 else hours[-1] or 0, "top")
+        return replace(predicate, relation=relation, arguments=(self.clock,))
+
+    def _conditional(self, span: Span, link: str) -> None:
+        text = self.text[span[0] : span[1]]
+        found = notes.get()
+        found[:] = [
+            note for note in found if not span[0] <= note.span[0] < span[1]
+        ]  # a condition need not be understood
+        if self.clauses and self.clauses[-1].condition is None:
+            self.clauses[-1] = replace(self.clauses[-1], condition=text)
+        else:
+            self.condition = text
+
+    def _mood(self, built: Built) -> Mood:
+        if self.asks or built.shape == "question":
+            return Mood.QUESTION
+        if built.shape in ("command", "search"):
+            return Mood.COMMAND
+        return Mood.STATEMENT
+
+    # fragments
+
+    def _fragment(
+        self, built: Built, noun: Noun | None, said: tuple[Said, ...], link: str, span: Span, mood: Mood
+    ) -> None:
+        assert noun is not None
+        phrase = noun.phrase
+        more = (*noun.extra, *(p for part in said for p in part.predicates))
+        if self.asks:
+            mood = Mood.QUESTION
+        if link == ":" and self._list(phrase, more, span):
+            return
+        if built.shape == "fragment" and (self.clauses or self.fragments or mood is Mood.QUESTION):
+            predicates = (*more, *phrase.predicates)
+            if predicates:
+                bare = replace(phrase, predicates=())
+                if self.clauses and self.clauses[-1].mood is Mood.COMMAND:
+                    mood = Mood.COMMAND
+                self._append(Clause(bare, predicates, span, mood, step=self.raw.step), link)
+                return
+            if self.clauses or phrase.pronoun in _PEOPLE:
+                if phrase.head or phrase.adjectives or phrase.members:
+                    misunderstood(phrase.span, "nothing is said of this", "say where it is")
+                return
+        more, self.front = (*self.front, *more), ()
+        if more:
+            phrase = replace(phrase, predicates=(*phrase.predicates, *more))
+        if phrase.pronoun in _PEOPLE and not phrase.predicates:
+            return
+        if built.shape == "search" and self.sought is None:
+            self.sought = phrase
+            return
+        self.fragments.append(phrase)
+
+    def _list(self, phrase: NounPhrase, more: tuple[Predicate, ...], span: Span) -> bool:
+        """Take in a list after a colon: *from left to right: a cup, a jug*, *in front of it, a row: a cup, a jug*."""
+        if self.front:
+            said, self.front = (*self.front, *more), ()
+            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            return True
+        if self.fragments and self.fragments[-1].head in ("row", "line", "circle", "list", "stack"):
+            row = self.fragments.pop()
+            relation = {"circle": "circle", "stack": "stacked"}.get(row.head, "row")
+            predicates = [*row.predicates, *more]
+            if not any(p.relation == relation for p in predicates):
+                predicates.append(Predicate(relation, (), row.span))
+            self._append(Clause(phrase, tuple(predicates), span, step=self.raw.step), ":")
+            return True
+        last = self.clauses[-1] if self.clauses else None
+        if (
+            last is not None
+            and last.subject is not None
+            and any(p.relation in ("row", "circle") for p in last.predicates)
+        ):
+            self.clauses[-1] = replace(
+                last, subject=phrase, predicates=(*last.predicates, *more), span=(last.span[0], span[1])
+            )
+            return True
+        if last is not None and (last.subject is None or (last.existential and last.subject.plural and not more)):
+            if last.subject is None:
+                self.clauses[-1] = replace(
+                    last, subject=phrase, predicates=(*last.predicates, *more), span=(last.span[0], span[1])
+                )
+            else:
+                kind = Predicate("kind", (phrase,), phrase.span)
+                self.clauses[-1] = replace(last, predicates=(*last.predicates, kind), span=(last.span[0], span[1]))
+            return True
+        return False
+
+    def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
+        """Take in predicates without a subject: they are said of the subject of the clause before."""
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        last = self.clauses[-1] if self.clauses else None
+        waits = last is None and self.sought is None and not self.fragments and not built.verbs
+        if waits and not any(part.choice for part in said):
+            self.front += tuple(p for part in said for p in part.predicates)
+            return
+        if last is None and self.sought is not None:
+            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in _flat(v))
+            self.sought = replace(self.sought, predicates=(*self.sought.predicates, *predicates))
+            return
+        if last is None and self.fragments:
+            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in _flat(v))
+            joined = self.fragments[-1]
+            self.fragments[-1] = replace(joined, predicates=(*joined.predicates, *predicates))
+            return
+        subject = None if last is None else last.subject
+        for verb in verbs:
+            noun = None if subject is None else Noun(subject)
+            self._clause("said", noun, verb, said, span, mood, None, link)
+            said = ()
+
+    # clauses
+
+    def _of_the_thing(self, verb: Verb, subject: Noun) -> tuple[Verb, Noun]:
+        """Return *I have a lamp on the desk*, *you keep it under the mug* as said of the lamp."""
+        thing = verb.thing
+        assert thing is not None
+        phrase = thing.phrase
+        here = (*thing.extra, *(() if phrase.members else phrase.predicates))
+        if here and not phrase.members:
+            phrase = replace(phrase, predicates=())
+        return replace(verb, thing=None, said=(Said(here), *verb.said) if here else verb.said), Noun(phrase)
+
+    def _clause(
+        self, shape: str, subject: Noun | None, verb: Verb, front: tuple[Said, ...], span: Span, mood: Mood,
+        hedge: VerbGroup | None, link: str,
+    ) -> None:  # fmt: skip
+        group = verb.group
+        phrase = None if subject is None else subject.phrase
+        predicates = [p for part in front for p in part.predicates]
+        if subject is not None:
+            predicates += subject.extra
+        if (
+            shape in ("question", "existential", "verbless", "inverted")
+            and phrase is not None
+            and not predicates
+            and not verb.said
+        ):
+            predicates, phrase = [*phrase.predicates], replace(phrase, predicates=())
+        choices: list[tuple[Predicate, ...]] = []
+        positive = group.positive
+        main = _flat(replace(verb, thing=None))
+        for part in verb.said:
+            if part.choice:
+                chosen = (
+                    part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
+                )
+                choices.append(chosen)
+        if self.front and phrase is not None:
+            predicates, self.front = [*self.front, *predicates], ()
+        made, absolute = _absolutes(predicates + main)
+        if verb.thing is not None:
+            made = _flat(replace(verb, said=(), nominal=None)) + made
+        hedges = tuple(a for a in group.adverbs if a in HEDGES)
+        modal = group.modal
+        past = group.past
+        if hedge is not None:
+            modal, past = modal or hedge.modal, past or hedge.past
+            hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
+            if not hedge.positive:
+                made = [replace(p, positive=not p.positive) for p in made]
+        clause = Clause(
+            phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
+        )  # fmt: skip
+        self._append(clause, link)
+        for noun, said in absolute:
+            self._append(replace(clause, subject=noun, predicates=said, choices=(), existential=False), ",")
+
+    def _append(self, clause: Clause, link: str) -> None:
+        kept = []
+        for predicate in map(self._at_the_hour, clause.predicates):
+            if predicate.relation in ("through", "to", "measured_from") or (
+                predicate.relation == "from" and predicate.measure is None
+            ):
+                misunderstood(predicate.span, "this does not say where something is")
+            elif predicate.relation not in ("diagonal", "apart"):
+                kept.append(predicate)
+        if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION:
+            self.clauses.append(replace(clause, predicates=tuple(kept)))
+
+
+def _flat(verb: Verb) -> list[Predicate]:
+    from deixis.grammar.english.build import flat
+
+    return flat(verb)
+
+
+def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple[NounPhrase, tuple[Predicate, ...]]]]:
+    """Separate *with G on the right* from what is said of the subject: it says where G is."""
+    kept, absolute = [], []
+    for predicate in predicates:
+        phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
+        if phrase is not None and phrase.predicates and predicate.positive and predicate.subject_part is None:
+            absolute.append((replace(phrase, predicates=()), phrase.predicates))
+        else:
+            kept.append(predicate)
+    return kept, absolute
+
+
+def _looking(built: Built, start: int) -> tuple[Built, Viewpoint | None]:
+    """Separate the viewpoint before *there is*: *looking towards the door, there are two closets*."""
+    verb = built.verbs[0]
+    first = verb.said[0].predicates if verb.said else ()
+    if not first or first[0].span[0] > start or first[0].relation not in _FRAMES:
+        return built, None
+    return replace(built, verbs=(replace(verb, said=verb.said[1:]), *built.verbs[1:])), viewpoint_of(first)
+
+
+def _split_frames(said: tuple[Said, ...]) -> tuple[tuple[Said, ...], Viewpoint | None]:
+    """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
+    top = [p for part in said for p in part.predicates]
+    nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
+    if not nested and not any(p.relation in _FRAMES for p in top):
+        return said, None
+    everything = tuple(p for part in said for p in part.predicates)
+    return (), viewpoint_of(everything)
+
+
+def _joined(first: Viewpoint | None, second: Viewpoint) -> Viewpoint:
+    if first is None:
+        return second
+    return Viewpoint(
+        (min(first.span[0], second.span[0]), max(first.span[1], second.span[1])), at=second.at or first.at,
+        facing=second.facing or first.facing, back=second.back or first.back, own=second.own or first.own,
+        entering=first.entering or second.entering,
+    )  # fmt: skip
+
+
+__all__ = ["Assembly", "Chunk", "Found"]

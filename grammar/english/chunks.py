@@ -1,0 +1,974 @@
+"""Cut the words of a sentence into chunks: noun phrases, verb groups, prepositions, joints.
+
+A word can have several categories (*left*, *stand*, *that*); the words beside it decide. The chunks are the terminals
+of ``english.lark``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+from deixis.grammar.english.known_nouns import KnownNouns
+from deixis.grammar.english.phrases import NounChunker, is_known
+from deixis.grammar.english.tokens import Word
+from deixis.grammar.english.tree import Degree, NounPhrase, Span
+from deixis.grammar.english.words import (
+    ADVERBS,
+    DEGREE_ADVERBS,
+    DIRECTION_WORDS,
+    FACE_VERBS,
+    FIND_VERBS,
+    GREETINGS,
+    HEDGES,
+    IDIOMS,
+    IS_FORMS,
+    MODALS,
+    NEGATIONS,
+    OTHER_UNITS,
+    PRONOUNS,
+    PUT_VERBS,
+    UNITS,
+    Preposition,
+    places_alone,
+    prepositions,
+    verb_forms,
+    word_set,
+)
+
+FINITE = frozenset({"BE", "VERB", "TVERB"})
+PAST_ONLY = word_set("stood lay sat went came began ran wore saw was were did had took gave knew")
+SUBORDINATORS = word_set(
+    "if when while because since unless although though once so where whereas until whether whenever"
+)
+_PUNCTUATION = {
+    ",": "COMMA", ";": "CUT", ":": "COLON", ".": "CUT", "!": "CUT", "?": "CUT", "(": "COMMA", ")": "COMMA",
+    "[": "COMMA", "]": "COMMA", "\u2013": "CUT", "\u2014": "CUT", "-": "CUT", "/": "OR", "\u2026": "CUT",
+}  # fmt: skip
+_CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
+
+
+@dataclass(slots=True)
+class Chunk:
+    """A terminal of the grammar: its type, the words from ``start`` to ``end`` and what was found in them."""
+
+    type: str
+    start: int
+    end: int
+    value: Any = None
+    span: Span = (0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class VerbGroup:
+    """A verb with its auxiliaries: *must not stand* has the lemma ``stand``, ``must`` and is not positive."""
+
+    lemma: str
+    kind: str
+    form: str
+    modal: str | None = None
+    positive: bool = True
+    past: bool = False
+    adverbs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Relator:
+    """A preposition or a place word with its adverbs: *slightly to the left of*, *second closest to*."""
+
+    preposition: Preposition
+    adverbs: tuple[str, ...] = ()
+    rank: int | None = None
+    positive: bool = True
+
+
+@dataclass(slots=True)
+class _Phrases:
+    """Phrases of several words by their first word, longest first."""
+
+    by_first: dict[str, list[tuple[tuple[str, ...], Preposition]]] = field(default_factory=dict)
+
+    def longest(self, norms: list[str], at: int) -> tuple[int, Preposition] | None:
+        for phrase, found in self.by_first.get(norms[at], ()):
+            end = at + len(phrase)
+            if tuple(norms[at:end]) == phrase:
+                return end, found
+        return None
+
+
+def _phrases(table: dict[str, Preposition]) -> _Phrases:
+    found = _Phrases()
+    for phrase, entry in table.items():
+        words = tuple(phrase.split())
+        found.by_first.setdefault(words[0], []).append((words, entry))
+    for entries in found.by_first.values():
+        entries.sort(key=lambda entry: -len(entry[0]))
+    return found
+
+
+@cache
+def _preposition_phrases() -> _Phrases:
+    return _phrases(prepositions())
+
+
+@cache
+def _idioms() -> dict[str, list[tuple[str, ...]]]:
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for phrase in sorted(IDIOMS, key=len, reverse=True):
+        found.setdefault(phrase[0], []).append(phrase)
+    return found
+
+
+@cache
+def _alone_phrases() -> _Phrases:
+    return _phrases(places_alone())
+
+
+class Chunker:
+    """Chunker of the words of one sentence."""
+
+    def __init__(self, words: list[Word], nouns: KnownNouns) -> None:
+        self.words = words
+        self.norms = [word.norm for word in words] + [""] * 12
+        self.nouns = NounChunker(words, self.norms, nouns)
+        self.chunks: list[Chunk] = []
+        self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
+
+    def run(self) -> list[Chunk]:
+        """Return the chunks of the sentence; every word is in one of them."""
+        at, end = 0, len(self.words)
+        while at < end:
+            chunk = self._chunk(at)
+            chunk.span = self.words[at].start, self.words[chunk.end - 1].end
+            self.chunks.append(chunk)
+            at = chunk.end
+        return self.chunks
+
+    def _previous(self) -> str:
+        return self.chunks[-1].type if self.chunks else ""
+
+    def _chunk(self, at: int) -> Chunk:
+        norm = self.norms[at]
+        fixed = _PUNCTUATION.get(norm)
+        if fixed is not None:
+            return Chunk(fixed, at, at + 1)
+        for find in (self._measure, self._idiom, self._joint, self._relator, self._verb_group, self._noun_phrase):
+            chunk = find(at)
+            if chunk is not None:
+                return chunk
+        if norm in NEGATIONS:
+            return Chunk("NOT", at, at + 1)
+        if norm in ADVERBS or norm in HEDGES or norm.endswith("ly"):
+            return Chunk("ADVERB", at, at + 1, norm)
+        return Chunk("UNKNOWN", at, at + 1)
+
+    # joints and function words
+
+    def _idiom(self, at: int) -> Chunk | None:
+        norm = self.norms[at]
+        previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
+        for phrase in _idioms().get(norm, ()):
+            end = at + len(phrase)
+            if tuple(self.norms[at:end]) == phrase and not (
+                (phrase == ("that", "is") and self.norms[at - 1] != ",")
+                or (phrase == ("above", "all") and self.norms[end] != ",")
+            ):
+                return Chunk("ADVERB", at, end, " ".join(phrase))
+        if norm == "from" or (
+            norm in DIRECTION_WORDS and self.norms[at + 1] == "to" and self.norms[at + 2] in DIRECTION_WORDS
+        ):
+            order = self._order(at)
+            if order is not None:
+                return order
+        if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:
+            return Chunk("ADVERB", at, min(at + 4, len(self.words)), "in order")
+        if norm == "from" and self.norms[at + 1] == "where" and self.norms[at + 2] in ("i", "you", "we"):
+            end = at + 3
+            while self.norms[end] in IS_FORMS or self.norms[end] in (
+                "sit",
+                "sat",
+                "stand",
+                "stood",
+                "sitting",
+                "standing",
+            ):
+                end += 1
+            return Chunk("ADVERB", at, end, "from where")
+        if norm == "had" and at == 0 and "been" in self.norms:
+            return Chunk("SUB", at, at + 1, "if")
+        if norm in ("i", "we", "it") and previous_joint:
+            opinion = self._opinion(at) if norm != "it" else self._impersonal(at)
+            if opinion is not None:
+                return Chunk("COMPLEMENT", at, opinion[0], opinion[1])
+        if norm in ("both", "all", "each") and self._previous() == "BE" and not self.nouns.starts(at + 1):
+            return Chunk("ADVERB", at, at + 1, norm)
+        if (
+            norm == "to"
+            and self.norms[at + 1] in PUT_VERBS
+            and self._previous()
+            and self.nouns.starts(at + 2)
+            and (self.nouns.is_determiner(at + 2) or self.norms[at + 2] in ("it", "them"))
+        ):
+            denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
+            return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=not denied))
+        if norm == "to" and self._previous() == "NP" and self.norms[at + 1] in FIND_VERBS:
+            return Chunk("ADVERB", at, at + 2 + (self.norms[at + 2] in ("up", "out")), "to pick")
+        if norm in ("you", "we", "i", "that"):
+            wished = self._wish(at)
+            if wished is not None:
+                alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
+                return Chunk("CUT" if alone else "ADVERB", at, wished, "you want")
+        if (
+            norm in GREETINGS
+            and self._previous() in ("", "ADVERB")
+            and (self.norms[at + 1] in (",", "!") or norm in ("hi", "oh", "hello", "hey", "ok", "okay"))
+        ):
+            end = at + 1
+            if self.norms[end] in GREETINGS:
+                end += 1
+            return Chunk("ADVERB", at, end, norm)
+        return None
+
+    def _opinion(self, at: int) -> tuple[int, VerbGroup] | None:
+        """Return the end and the verb of *I think that*, *we don't believe that*, which make a clause probable."""
+        i, positive = at + 1, True
+        while self.norms[i] in ("do", "not", "never", "really", "would", "can"):
+            positive = positive and self.norms[i] not in NEGATIONS
+            i += 1
+        if self.norms[i] not in ("think", "believe", "guess", "suppose", "assume", "imagine"):
+            return None
+        i += 1 + (self.norms[i + 1] == "that")
+        group = VerbGroup("think", "other", "base", positive=positive, adverbs=("probably",))
+        return (i, group) if self.nouns.starts(i) else None
+
+    def _impersonal(self, at: int) -> tuple[int, VerbGroup] | None:
+        """Return the end and the verb of *it seems that*, *it could be that*, *it isn't true that*."""
+        i, positive, modal, adverbs = at + 1, True, None, []
+        while self.norms[i] not in ("that", "like", "as"):
+            norm = self.norms[i]
+            if norm in NEGATIONS or norm in ("false", "wrong", "impossible", "unlikely", "untrue"):
+                positive = not positive
+            elif norm in MODALS:
+                modal = MODALS[norm]
+            elif norm in ("likely", "possible", "probable", "seems", "appears", "looks", "thought", "said"):
+                adverbs.append("probably")
+            elif norm not in IS_FORMS and norm not in ADVERBS and norm not in HEDGES and norm not in _JUDGEMENTS:
+                return None
+            i += 1
+            if i - at > 6:
+                return None
+        if (self.norms[i] != "that" and self.norms[i - 1] not in ("seems", "appears", "looks")) or i == at + 1:
+            return None
+        i += 1 + (self.norms[i + 1] == "if")
+        if not self.nouns.starts(i) or self.norms[i] in ("a", "an"):
+            return None
+        return i, VerbGroup("be", "be", "finite", modal, positive, adverbs=tuple(adverbs))
+
+    def _wish(self, at: int) -> int | None:
+        """Return the end of *you want (to pick)*, *you are looking for*: such words say nothing of places."""
+        i = at + (self.norms[at] == "that")
+        if self.norms[i] not in ("you", "we", "i"):
+            return None
+        i += 1
+        while self.norms[i] in ADVERBS or self.norms[i] in ("'ll", "will", "would", "'d", "should", "must"):
+            i += 1
+        if (
+            self.norms[i] in ("are", "'re", "am", "'m")
+            and self.norms[i + 1] in ("looking", "searching")
+            and self.norms[i + 2] == "for"
+        ):
+            return i + 3
+        if self.norms[i] in ("are", "'re") and self.norms[i + 1] == "to":
+            i += 1
+        if self.norms[i] in ("tell", "ask") and "to" in self.norms[i + 2 : i + 4]:
+            i = self.norms.index("to", i)
+        wants = self.norms[i] in ("want", "need", "have", "like") and not (
+            self.norms[i] == "have" and self.norms[i + 1] != "to"
+        )
+        if wants:
+            i += 1
+            if self.norms[i] != "to":
+                return i
+        if self.norms[i] == "to":
+            i += 1
+            while self.norms[i] in ("go", "be", "look") or self.norms[i] in ADVERBS:
+                i += 1
+        if self.norms[i] in _CHOOSE or (self.norms[i - 1] in ("to", "should", "must") and self.norms[i] in FIND_VERBS):
+            i += 1
+            return i + (self.norms[i] in ("for", "on", "out", "up"))
+        return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
+
+    def _order(self, at: int) -> Chunk | None:
+        """Return the order *from left to right*, *from the front to the back*."""
+        i, sides = at + (self.norms[at] == "from"), []
+        for stop in ("to", ""):
+            i += self.norms[i] == "the"
+            if self.norms[i] not in DIRECTION_WORDS:
+                return None
+            sides.append(self.norms[i])
+            i += 1
+            if stop and self.norms[i] != stop:
+                return None
+            i += bool(stop)
+        order = f"{sides[0]} to {sides[1]}"
+        return Chunk("ADV", at, i, Relator(Preposition(order, "row")))
+
+    def _joint(self, at: int) -> Chunk | None:
+        norm, after = self.norms[at], self.norms[at + 1]
+        previous = self._previous()
+        if norm == "that" and previous in ("NP", "COMMA", "ADV", "AND") and not self._demonstrative(at):
+            return Chunk("REL", at, at + 1)
+        if norm == "that" and previous in FINITE and (after in PRONOUNS or self.nouns.is_determiner(at + 1)):
+            return Chunk("COMPLEMENT", at, at + 1)
+        follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
+        if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
+            return Chunk("REL", at, at + 1)
+        if norm == "whose":
+            return Chunk("WHOSE", at, at + 1)
+        if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
+            return Chunk(
+                "WHERE" if norm == "where" and (after in IS_FORMS or after in MODALS) else "SUB", at, at + 1, norm
+            )
+        if norm == "there" and (
+            after in IS_FORMS
+            or (after == "used" and self.norms[at + 2] == "to")
+            or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
+            or (previous in FINITE and at == 1)
+        ):
+            return Chunk("THERE", at, at + 1)
+        if norm == "out" and after == "of" and previous in ("", "COMMA", "ADVERB", "CUT"):
+            return Chunk("PREP", at, at + 2, Relator(Preposition("out of", "among")))
+        if (
+            norm in ("to", "against", "toward", "towards")
+            and previous == "BE"
+            and len(self.chunks) > 1
+            and self._is_back(self.chunks[-2])
+        ):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "back_to")))
+        directed = bool({self.norms[at + 1], self.norms[at + 2], self.norms[at + 3]} & _LATERAL)
+        if norm in ("from", "to") and previous == "MEASURE" and self.nouns.starts(at + 1) and not directed:
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "measured_from")))
+        if norm == "to" and previous == "THAN":
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm in ("neither", "either", "both") and after in prepositions():
+            return Chunk("NOT" if norm == "neither" else "ADVERB", at, at + 1, norm)
+        if norm == "of":
+            if previous == "MEASURE":
+                return Chunk("PREP", at, at + 1, Relator(Preposition("of", "measured_from")))
+            if previous in ("", "COMMA", "CUT") or (previous == "ADVERB" and len(self.chunks) == 1):
+                return Chunk("PREP", at, at + 1, Relator(Preposition("of", "among")))
+            return Chunk("OF", at, at + 1)
+        if norm == "in" and self.nouns.is_colour_alone(at + 1):
+            return Chunk("ADVERB", at, at + 1, "in")
+        if (
+            norm == "as"
+            and previous == "NP"
+            and (
+                self.chunks[-1].value.determiner == "same"
+                or any(a.word == "same" for a in self.chunks[-1].value.adjectives)
+            )
+        ):
+            return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
+        if norm == "than":
+            return Chunk("THAN", at, at + 1)
+        if norm == "as" and after in ("you", "if", "seen", "viewed", "one", "i", "we"):
+            return Chunk("SUB", at, at + 1, "as")
+        excepting = previous == "NP" and self.chunks[-1].value.pronoun in _ALL
+        about = (
+            norm == "about"
+            and previous in ("BE", "NP")
+            and self.nouns.starts(at + 1)
+            and self.nouns.number(at + 1) is None
+        )
+        if (norm == "but" and excepting) or about:
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))
+        if norm in _CONJUNCTIONS:
+            return Chunk(_CONJUNCTIONS[norm], at, at + 1, norm)
+        if tuple(self.norms[at : at + 3]) in _SUBORDINATING:
+            return Chunk("SUB", at, at + 3, "when")
+        if tuple(self.norms[at : at + 2]) in _SUBORDINATING:
+            return Chunk("SUB", at, at + 2, "if")
+        if at == 0 and norm in ("suppose", "assume", "imagine") and any(word in IS_FORMS for word in self.norms):
+            return Chunk("SUB", at, at + 1 + (after == "that"), "if")
+        if at == 0 and norm == "let" and "be" in self.norms:
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm in SUBORDINATORS:
+            return Chunk("SUB", at, at + 1, norm)
+        if norm in ("before", "after") and (after in ("you", "we", "i") or after.endswith("ing")):
+            return Chunk("SUB", at, at + 1, norm)
+        return None
+
+    def _is_back(self, chunk: Chunk) -> bool:
+        """Return True for *your back*."""
+        return chunk.type == "NP" and chunk.value.head == "back" and chunk.value.owner is not None
+
+    def _demonstrative(self, at: int) -> bool:
+        """Return True if *that* stands for a thing or before a noun, and does not begin a relative clause."""
+        if self._previous() in ("NP", "ADV"):
+            return False
+        after = self.norms[at + 1]
+        return self._previous() == "AND" and after in IS_FORMS
+
+    def _measure(self, at: int) -> Chunk | None:
+        number = self.nouns.number(at)
+        i, hedge, bound = at, None, None
+        while number is None and self.norms[i] in _MEASURE_WORDS:
+            if self.norms[i] in _BOUNDS:
+                bound = _BOUNDS[self.norms[i]]
+            elif self.norms[i] in HEDGES:
+                hedge = self.norms[i]
+            i += 1
+            number = self.nouns.number(i)
+        if number is None:
+            attached = _ATTACHED_UNIT(self.norms[i])
+            if attached is None:
+                return None
+            return Chunk("MEASURE", at, i + 1, (attached, hedge, bound))
+        unit = self.norms[i + 1]
+        if unit in OTHER_UNITS:
+            return Chunk("ADVERB", at, i + 2 + (self.norms[i + 2] in ("old", "long", "ago", "heavy")), "quantity")
+        if unit == "a" and self.norms[i + 2] == "half":
+            unit = self.norms[i + 2]
+        scale = UNITS.get(unit) or (UNITS.get(unit[:-1]) if unit.endswith("s") else None)
+        if scale is None or (unit in ("hand", "finger", "foot", "m") and self.norms[i + 2] in IS_FORMS):
+            return None
+        end = i + 2
+        if (self.norms[end] == "of" and bound is None) or self.norms[end] in (
+            "tall",
+            "long",
+            "wide",
+            "high",
+            "thick",
+            "deep",
+        ):
+            return None
+        if self.norms[end] in ("away", "apart") and self.norms[end + 1] != "from":
+            end += 1
+        return Chunk("MEASURE", at, end, (number * scale, hedge, bound))
+
+    def _relator(self, at: int) -> Chunk | None:
+        i, adverbs, positive, rank = at, [], True, None
+        if self.norms[i] == "nowhere" or tuple(self.norms[i : i + 2]) == ("anything", "but"):
+            positive, i = False, i + 1 + (self.norms[i] == "anything")
+        if self.norms[i] == "not" and i + 1 < len(self.words):
+            positive, i = False, i + 1
+        if self.norms[i] == "a" and self.norms[i + 1] in ("bit", "little"):
+            adverbs.append("slightly")
+            i += 2
+        if self.norms[i] == "as" and self.norms[i + 1] in ("close", "far", "near"):
+            adverbs.append("as")
+            i += 1
+        while (self.norms[i] in DEGREE_ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "the") and i - at < 4:
+            if self._relations.by_first.get(self.norms[i]) and self._match(i) is not None:
+                break
+            if self.norms[i] == "the" and self.nouns.is_degree_word(i + 1) is False:
+                return None
+            if self.norms[i] != "the":
+                adverbs.append(self.norms[i])
+            i += 1
+        ranked = self.nouns.ordinal(i)
+        if ranked is not None and self.nouns.is_degree_word(i + 1):
+            rank, i = ranked, i + 1
+        found = self._match(i)
+        if found is None:
+            return None
+        end, kind, preposition = found
+        if self.norms[at] == "the" and (kind == "ADV" or preposition.degree is Degree.PLAIN):
+            return None
+        if preposition.relation == "without":
+            preposition, positive, kind = prepositions()["with"], not positive, "WITH"
+        elif preposition.relation == "with":
+            kind = "WITH"
+        return Chunk(kind, at, end, Relator(preposition, tuple(adverbs), rank, positive))
+
+    def _match(self, at: int) -> tuple[int, str, Preposition] | None:
+        """Return the end, the type and the relation of the longest phrase that the words after it allow."""
+        if self.norms[at] in ("left", "right", "close", "next", "near", "closest", "nearest", "closer") and (
+            self._previous() not in ("NP",)
+            and self.nouns.starts(at)
+            and self.nouns.adjective_before_noun(at)
+            and self.norms[at + 1] not in ("to", "of", "by")
+        ):
+            return None
+        alone = self._alone.longest(self.norms, at)
+        found = self._relations.longest(self.norms, at)
+        if self.norms[at] == "round" and not (self.nouns.is_determiner(at + 1) or self.norms[at + 1] in ("it", "them")):
+            return None
+        if self.norms[at] == "left" and (self._leaves(at) or self._is_left_behind(at)):
+            return None
+        if found is not None:
+            end, preposition = found
+            if preposition.relation == "from" and self.norms[end] == "where":
+                return None
+            if (
+                preposition.relation in ("facing", "pointing")
+                and self.norms[end] in _AIMS
+                and not self.nouns.adjective_before_noun(end)
+            ):
+                return None
+            ends_open = end == at + 1 or self.norms[end - 1] == "away"
+            if preposition.degree is not Degree.PLAIN and ends_open and not self._object_of_degree(at, end):
+                return None
+            takes_object = self.nouns.starts(end) or self.norms[end] == "which"
+            if self.norms[at] == "to" and end == at + 1 and self._infinitive(end):
+                return None
+            shorter_alone = (
+                alone is None
+                or alone[0] < end
+                or (alone[0] == end and (self._previous() == "NP" or not self._begins_clause(end)))
+            )
+            if takes_object and shorter_alone:
+                return end, "PREP", preposition
+            if alone is None or alone[0] < end:
+                if takes_object or preposition.relation in ("-",):
+                    return (end, "PREP", preposition) if takes_object else None
+                shorter = self._alone.longest(self.norms, at)
+                stranded = any(chunk.type == "REL" for chunk in self.chunks) or self.norms[end] in ("and", "or", ",")
+                stands_alone = end > at + 1 or self.norms[at] in ("near", "against", "beneath", "alongside", "beside")
+                if (
+                    shorter is None
+                    and preposition.relation not in ("from", "to", "with", "without", "at", "facing")
+                    and (stranded or stands_alone)
+                ):
+                    return end, "ADV", preposition
+        if alone is not None:
+            if (
+                self.norms[at] in ("left", "right")
+                and self.norms[alone[0]] in ("in", "on", "behind", "next", "above", "below", "under", "beside", "there")
+                and self.norms[at] == "right"
+            ):
+                return None  # an adverb: 'right behind'
+            if alone[1].relation in ("up", "down") and self.norms[alone[0]] in ("and", "or"):
+                return alone[0], "ADV", places_alone()["above" if alone[1].relation == "up" else "below"]
+            if alone[1].relation in ("up", "down", "forward", "backward"):
+                last = self.chunks[-1] if self.chunks else None
+                aims = last is not None and isinstance(last.value, VerbGroup) and last.value.kind in ("face", "point")
+                ends = self.norms[alone[0]] in ("", ",", ".", ";", "and")
+                if not aims and not (self._previous() == "NP" and ends):
+                    return None
+            if alone[1].relation == "there" and self._previous() not in FINITE | {"ADV", "ADVERB", "NP", "PART"}:
+                return None
+            return alone[0], "ADV", alone[1]
+        return None
+
+    def _object_of_degree(self, at: int, end: int) -> bool:
+        """Return True for *nearest the door* and *chair nearest door*, and False for *the nearest chair*."""
+        if self.nouns.is_determiner(end) or self.norms[end] in PRONOUNS:
+            return True
+        if not self.nouns.starts(end):
+            return self._alone.longest(self.norms, at) is not None
+        return (
+            self.norms[at - 1] != "the"
+            and self._previous() in ("NP", "BE", "REL", "VERB", "ADV", "PART", "ADJP")
+            and (not self.nouns.is_determiner(at - 1))
+        )
+
+    def _is_left_behind(self, at: int) -> bool:
+        """Return True for the participle of *leave*: *the glass left on the table*, *must not be left on it*."""
+        return self.norms[at + 1] in ("on", "in", "inside", "at", "by", "lying", "standing") and (
+            self._previous() == "BE" or (self._previous() == "NP" and self.nouns.starts(at + 2))
+        )
+
+    def _leaves(self, at: int) -> bool:
+        """Return True for the past of *leave*: *the guests left the table*."""
+        return (
+            self.norms[at] == "left"
+            and self._previous() == "NP"
+            and (self.nouns.is_determiner(at + 1) or self.norms[at + 1] in ("it", "them"))
+            and self.norms[at + 1] not in ("that", "which")
+            and (at < 2 or self.norms[at - 1] not in DIRECTION_WORDS)
+        )
+
+    def _infinitive(self, at: int) -> bool:
+        verb = self._verbs.get(self.norms[at])
+        after = self.norms[at + 1]
+        return self.norms[at] == "be" or (
+            verb is not None
+            and verb.form == "base"
+            and self.norms[at] not in _NOUNS_TOO
+            and (self.nouns.starts(at + 1) or after in ("", ".", ",", "on", "in"))
+        )
+
+    def _begins_clause(self, at: int) -> bool:
+        """Return True for a subject pronoun before a finite verb: 'over there it is'."""
+        return self.norms[at] in ("it", "they", "there", "you", "i", "we") and (
+            self.norms[at + 1] in IS_FORMS or self.norms[at + 1] in MODALS
+        )
+
+    # verbs
+
+    def _verb_group(self, at: int) -> Chunk | None:
+        i, adverbs, modal, positive, past = at, [], None, True, False
+        while self.norms[i] in ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "never":
+            if self.norms[i] == "never":
+                positive = False
+            else:
+                adverbs.append(self.norms[i])
+            i += 1
+            if i - at > 3:
+                return None
+        if self.norms[i] == "used" and self.norms[i + 1] == "to" and self._infinitive(i + 2):
+            past, i = True, i + 2
+        if (
+            i > at
+            and not past
+            and not self._auxiliary(i)
+            and self.norms[i] not in ("seems", "appears")
+            and (self.norms[i] not in self._verbs or self.nouns.is_noun(i))
+        ):
+            return None
+        if self.norms[at] in ("both", "all", "each", "either") and self._previous() != "NP":
+            return None
+        first = i
+        verb = None
+        while True:
+            norm = self.norms[i]
+            if norm == "may" and self.norms[i + 1 : i + 4] == ["or", "may", "not"]:
+                modal, i = "may", i + 3
+            elif norm in MODALS and (i == first or modal is None) and self._modal(i):
+                modal = MODALS[norm]
+                if norm == "need" or norm == "needs" or norm == "ought":
+                    i += self.norms[i + 1] == "to"
+            elif norm in ("do", "does", "did") and self._auxiliary(i):
+                past = past or norm == "did"
+            elif (norm == "no" and self.norms[i + 1] == "longer") or (
+                tuple(self.norms[i : i + 3]) in (("by", "no", "means"), ("in", "no", "way")) and i > first
+            ):
+                positive, i = False, i + (1 if norm == "no" else 2)
+            elif norm == "under" and tuple(self.norms[i + 1 : i + 3]) == ("no", "circumstances"):
+                positive, i = False, i + 2
+            elif norm in NEGATIONS and i > first:
+                positive = not positive if norm != "nor" else positive
+            elif (norm in ADVERBS or norm in HEDGES) and i > first and self._goes_on(i + 1):
+                adverbs.append(norm)
+            elif norm in ("has", "have", "had", "having", "'ve") and self._perfect(i):
+                past = past or norm == "had"
+            elif norm in ("seems", "seem", "appears", "appear", "seemed", "appeared") and self.norms[i + 1 : i + 3] == [
+                "to",
+                "be",
+            ]:
+                adverbs.append("apparently")
+                i += 1
+            elif norm == "to" and i > first and self.norms[i + 1] in ("be", "stand", "go"):
+                pass
+            elif norm == "used" and self.norms[i + 1] == "to":
+                past = True
+                i += 1
+            elif norm in ("supposed", "meant") and self.norms[i + 1] == "to":
+                modal = "should"
+            elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
+                verb, past = "be", past or norm in ("was", "were")
+            else:
+                break
+            i += 1
+        if verb == "be" and self.norms[i] == "got" and self.nouns.starts(i + 1):
+            return Chunk(
+                "TVERB", at, i + 1, VerbGroup("have", "transitive", "s", modal, positive, past, tuple(adverbs))
+            )
+        if verb == "be":
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, positive, past, tuple(adverbs)))
+        return self._lexical(at, first, i, VerbGroup("", "", "", modal, positive, past, tuple(adverbs)))
+
+    def _lexical(self, at: int, first: int, i: int, group: VerbGroup) -> Chunk | None:
+        norm = self.norms[i]
+        form = self._verbs.get(norm)
+        helped = i > first
+        if helped and (form is None or form.form not in ("base",)) and group.modal is None and not group.past:
+            form = form if form is not None and form.form in ("base", "past", "participle") else None
+            if form is None:
+                return (
+                    Chunk("VERB", at, i, _with(group, "do", "other", "s"))
+                    if self.norms[first] in ("do", "does")
+                    else None
+                )
+        if form is None:
+            if helped and group.modal is not None:  # 'the cup can', 'you should blarp'
+                return Chunk("BE", at, i, _with(group, "be", "be", "finite"))
+            if (
+                self._previous() == "REL"
+                and norm.endswith("s")
+                and len(norm) > 3
+                and (self.nouns.is_determiner(i + 1) or self.norms[i + 1] in prepositions())
+            ):
+                return Chunk(
+                    "TVERB" if self.nouns.starts(i + 1) else "VERB", at, i + 1, _with(group, norm, "unknown", "s")
+                )
+            if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
+            return self._unknown_participle(at, i, group)
+        found = _with(group, form.lemma, form.kind, form.form)
+        end = i + 1
+        if helped:
+            if self.norms[first] == "do" and self._previous() in ("", "AND", "COMMA", "THEN", "CUT", "BUT", "SUB"):
+                return Chunk("PUT" if norm not in FIND_VERBS else "FIND", at, end, found)
+            return self._finite(at, end, found)
+        if norm == "left" and self._is_left_behind(i):
+            return Chunk("PART", at, end, found)
+        if norm == "left" and not self._leaves(i):
+            return None
+        if norm == "left":
+            return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
+        if (
+            norm in ("lay", "put", "set")
+            and self._previous() in ("", "AND", "COMMA", "THEN", "CUT")
+            and (self.nouns.is_determiner(end) or self.norms[end] in ("it", "them", "out", "down", "up"))
+        ):
+            end += self.norms[end] in ("out", "down", "up")
+            return Chunk("PUT", at, end, _with(group, norm, "posture", "base"))
+        if norm in PAST_ONLY:
+            return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
+        if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
+            return Chunk("FIND", at, end, found)
+        if form.form in ("past", "participle", "ing"):
+            if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
+                return None
+            if norm in ("lay", "put", "set") and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT"):
+                return Chunk("PUT", at, end, found)
+            if self.nouns.is_noun(i) and self._previous() != "NP":
+                return None
+            return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
+        if form.form == "base":
+            subject = self._previous()
+            subject_is_you = subject == "NP" and self.norms[self.chunks[-1].start] == "you"
+            if (
+                norm in FIND_VERBS
+                and norm in ("choose", "select", "pick", "find", "click", "locate", "hit")
+                and subject == "NP"
+                and (self.nouns.is_determiner(end) and not self.chunks[-1].value.plural)
+            ):
+                return Chunk("FIND", at, end, found)
+            imperative = subject in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT", "COLON", "SUB", "BUT") or (
+                subject_is_you
+            )
+            if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
+                return Chunk("ADVERB", at, end + 1, norm)
+            if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
+                kind = "FIND" if norm in FIND_VERBS else "PUT"
+                if norm in ("pick", "point", "look", "single", "search") and self.norms[end] in (
+                    "out",
+                    "for",
+                    "to",
+                    "up",
+                ):
+                    end += 1
+                if norm == "turn" and self.norms[end] in ("on", "off"):
+                    return Chunk("DO", at, end + 1, found)
+                if (
+                    kind == "PUT"
+                    and self.norms[end] in ("out", "up", "down", "back", "away")
+                    and self.nouns.starts(end + 1)
+                ):
+                    end += 1
+                return Chunk(kind, at, end, found)
+            if imperative and norm in ("look", "search") and self.norms[end] == "for":
+                return Chunk("FIND", at, end + 1, found)
+            if imperative and norm in FACE_VERBS and not subject_is_you:
+                if norm in ("look", "turn") and self.norms[end] in ("at", "to", "toward", "towards"):
+                    end += 1
+                return Chunk("TPART", at, end, found)
+            if imperative and not subject_is_you and self.nouns.is_determiner(end):
+                return Chunk("DO", at, end, found)
+            if subject == "REL":
+                return self._finite(at, end, found)
+            if subject not in ("NP", "AND") or self.nouns.is_noun(i):
+                return None
+            return self._finite(at, end, found)
+        if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
+            return None
+        return self._finite(at, end, found)
+
+    def _finite(self, at: int, end: int, group: VerbGroup) -> Chunk:
+        if group.lemma == "look" and self.norms[end] in ("at", "toward", "towards"):
+            return Chunk("TVERB", at, end + 1, group)
+        stands = (
+            group.kind in ("posture", "lean") and group.lemma not in PUT_ONLY and group.form in ("s", "past", "base")
+        )
+        subject = self.norms[self.chunks[-1].start] if self.chunks else ""
+        if stands and subject not in ("i", "you", "we", "they"):
+            return Chunk("VERB", at, end, group)
+        return Chunk("TVERB" if self._takes_object(group.kind, end) else "VERB", at, end, group)
+
+    def _takes_object(self, kind: str, at: int) -> bool:
+        if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:
+            return False
+        if self.norms[at] in ("left", "right", "up", "down", "back", "forward", "forwards") and not self.nouns.starts(
+            at + 1
+        ):
+            return False
+        found = self.nouns.phrase(at, "TVERB")
+        return found is not None and found[1] is not None
+
+    def _unknown_participle(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
+        """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
+        norm = self.norms[i]
+        previous = self._previous()
+        if (
+            len(norm) < 5
+            or not norm.endswith(("ed", "ing"))
+            or previous not in ("NP", "BE", "COMMA", "AND", "REL", "NOT")
+        ):
+            return None
+        if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
+            return None
+        return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
+
+    def _imperative_object(self, at: int) -> bool:
+        return self.nouns.starts(at) or self.norms[at] in ("out", "for", "on", "to", "up")
+
+    def _auxiliary(self, at: int) -> bool:
+        norm = self.norms[at]
+        if norm in ("do", "does", "did"):
+            return self.norms[at + 1] in NEGATIONS or self._verbs.get(self.norms[at + 1]) is not None or at == 0
+        return norm in IS_FORMS or (norm in MODALS and self._modal(at)) or norm in ("has", "have", "had")
+
+    def _modal(self, at: int) -> bool:
+        """Return True for a modal verb; *can*, *will* and *need* are other words too."""
+        after = self.norms[at + 1]
+        if self.norms[at] == "need" or self.norms[at] == "needs":
+            return after in ("to", "not")
+        if self.norms[at] not in ("can", "may", "will", "might"):
+            return True
+        form = self._verbs.get(after)
+        if (
+            self._previous() in ("NP", "REL")
+            and self.chunks
+            and self.norms[self.chunks[-1].start] in ("you", "we", "i", "it")
+        ):
+            return True
+        return (
+            after in ("be", "not", "have", "also", "only", "you", "usually", "never", "the", "i", "it")
+            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and after in _NOUNS_TOO))
+            or after in HEDGES
+        ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
+
+    def _perfect(self, at: int) -> bool:
+        i = at + 1
+        while self.norms[i] in ADVERBS or self.norms[i] in NEGATIONS:
+            i += 1
+        if self.norms[i] == "been":
+            return True
+        form = self._verbs.get(self.norms[i])
+        if form is None:
+            return self.norms[i].endswith("ed") and not self.nouns.is_noun(i)
+        return form.form in ("past", "participle") and self.norms[i] not in ("set", "left")
+
+    def _goes_on(self, at: int) -> bool:
+        norm = self.norms[at]
+        return (
+            norm in IS_FORMS or norm in self._verbs or norm in NEGATIONS or (norm in ADVERBS and self._goes_on(at + 1))
+        )
+
+    def _unknown_imperative(self, at: int) -> bool:
+        """Return True for an unknown word before a determiner where a command can begin: *tighten the screws*."""
+        norm = self.norms[at]
+        if (
+            is_known(norm)
+            or not norm.isalpha()
+            or self.nouns.is_known_noun(norm)
+            or self.norms[at + 1] in ("that", "which")
+        ):
+            return False
+        if not self.nouns.is_determiner(at + 1) or self.nouns.is_letter(at + 1):
+            return False
+        previous = self._previous()
+        return previous in ("", "CUT") or (
+            previous in ("AND", "COMMA", "THEN", "ADVERB") and any(chunk.type in ("PUT", "DO") for chunk in self.chunks)
+        )
+
+    def _noun_phrase(self, at: int) -> Chunk | None:
+        """Return a noun phrase, or an adjective phrase."""
+        if self._unknown_imperative(at):
+            return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
+        found = self.nouns.phrase(at, self._previous())
+        if found is None:
+            return None
+        end, phrase, adjectives = found
+        if (
+            phrase is not None
+            and not phrase.head
+            and not phrase.pronoun
+            and phrase.determiner is None
+            and (
+                self._previous() in ("NP", "BE")
+                and self.norms[end] == "from"
+                and phrase.adjectives
+                and phrase.count is None
+            )
+        ):
+            return Chunk("ADJP", at, end, phrase.adjectives)  # 'the block second from the left'
+        if end == at + 1 and phrase is not None and self._previous() == "BE" and (words := self.nouns.predicative(at)):
+            return Chunk("ADJP", at, end, words)
+        if phrase is None:
+            if self._previous() in ("PREP", "TPART", "WITH", "OF", "TVERB", "FIND", "PUT") or self.norms[end] == "of":
+                span = self.words[at].start, self.words[end - 1].end
+                return Chunk("NP", at, end, NounPhrase(span, adjectives=adjectives))
+            return Chunk("ADJP", at, end, adjectives)
+        return Chunk("NP", at, end, phrase)
+
+
+PUT_ONLY = word_set("put place keep leave set lay use see find position have cover stack fold roll store")
+_JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
+_SUBORDINATING = {
+    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
+    ("provided", "that"), ("given", "that"),
+}  # fmt: skip
+_FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
+_ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
+_LATERAL = frozenset({"left", "right"})
+_CHOOSE = word_set("choose select pick click locate")
+_AIMS = word_set("left right up down forward forwards backward backwards away upward downward sideways")
+_NOUNS_TOO = word_set("stand rest set place position face point back front top bottom")
+_MEASURE_WORDS = HEDGES | frozenset(
+    {
+        "within",
+        "less",
+        "than",
+        "more",
+        "at",
+        "least",
+        "most",
+        "exactly",
+        "only",
+        "under",
+        "over",
+        "up",
+        "to",
+        "some",
+        "just",
+        "a",
+        "no",
+    }
+)
+_MEASURE_WORDS |= {"closer", "nearer", "farther", "further"}
+_BOUNDS = {
+    "closer": "<",
+    "nearer": "<",
+    "farther": ">",
+    "further": ">",
+    "within": "<",
+    "less": "<",
+    "more": ">",
+    "least": ">",
+    "most": "<",
+    "under": "<",
+    "over": ">",
+}
+
+
+def _with(group: VerbGroup, lemma: str, kind: str, form: str, past: bool | None = None) -> VerbGroup:
+    return VerbGroup(
+        lemma, kind, form, group.modal, group.positive, group.past if past is None else past, group.adverbs
+    )
+
+
+def _ATTACHED_UNIT(norm: str) -> float | None:  # noqa: N802
+    """Return the metres of a number and unit written as one word: ``10cm``."""
+    digits = norm.rstrip("abcdefghijklmnopqrstuvwxyz")
+    scale = UNITS.get(norm[len(digits) :].lstrip("-"))
+    if not digits or scale is None:
+        return None
+    try:
+        return float(digits.rstrip("-")) * scale
+    except ValueError:
+        return None

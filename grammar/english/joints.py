@@ -1,0 +1,439 @@
+"""Cut the chunks of a sentence into clauses, and say what each remaining comma or conjunction joins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from deixis.grammar.english.chunks import FINITE, Chunk, Relator, VerbGroup
+from deixis.grammar.english.places import is_place
+from deixis.grammar.english.tree import Adjective, Degree
+
+JOINTS = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
+_SUBORDINATE = frozenset({"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever"})
+PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART", "ADJP", "WITH", "MEASURE"})
+IMPERATIVES = frozenset({"PUT", "FIND", "DO"})
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Chunks of one clause, and the joint before it: empty for the first, ``,``, ``and``, ``or``, ``if`` and others."""
+
+    chunks: tuple[Chunk, ...]
+    link: str
+
+
+def segments(chunks: list[Chunk]) -> list[Segment]:
+    """Return the clauses of a sentence."""
+    types = [chunk.type for chunk in chunks]
+    found: list[Segment] = []
+    start, link = 0, ""
+    i = 0
+    while i < len(chunks):
+        if types[i] in JOINTS:
+            end, kinds = _run(types, i)
+            cut = _cuts(chunks, types, start, i, end, kinds, link)
+            if cut:
+                if i > start:
+                    found.append(Segment(tuple(chunks[start:i]), link))
+                    link = ""
+                words = {"COMMA": ",", "AND": "and", "OR": "or", "BUT": "but", "THEN": "then", "CUT": ";", "COLON": ":"}
+                names = [words.get(types[k]) or str(chunks[k].value) for k in range(i, end)]
+                link = next((n for n in reversed(names) if n not in (",", ";")), link or names[-1])
+                start = end
+            i = end
+            continue
+        if types[i] == "WITH" and i > start and _clause_of_with(types, i) and _finite_between(types, start, i):
+            found.append(Segment(tuple(chunks[start:i]), link))
+            start, link = i + 1, "with"
+        elif i > start and _runs_on(chunks, types, start, i):
+            found.append(Segment(tuple(chunks[start:i]), link))
+            start, link = i, ""
+        i += 1
+    if len(chunks) > start:
+        found.append(Segment(tuple(chunks[start:]), link))
+    return found
+
+
+def _run(types: list[str], at: int) -> tuple[int, set[str]]:
+    """Return the end of a run of joints (*, and*) and their types."""
+    end = at
+    while end < len(types) and types[end] in JOINTS:
+        end += 1
+    return end, set(types[at:end])
+
+
+def _finite_between(types: list[str], start: int, end: int) -> bool:
+    """Return True if a main verb stands between two places: a verb that is not that of a relative clause."""
+    relative = 0
+    for i in range(start, end):
+        if types[i] in ("REL", "WHOSE"):
+            relative += 1
+        elif types[i] in FINITE:
+            if relative == 0:
+                return True
+            relative -= 1
+        elif types[i] in ("PUT", "FIND", "DO", "THERE"):
+            return True
+    return False
+
+
+def _cuts(chunks: list[Chunk], types: list[str], start: int, at: int, end: int, kinds: set[str], link: str) -> bool:
+    """Return True if a clause begins after the joints from ``at`` to ``end``."""
+    if end >= len(types) or kinds & {"CUT", "SUB", "COLON", "THEN"}:
+        return True
+    if at == start:
+        return True
+    following = types[end]
+    complete = _finite_between(types, start, at)
+    if link in _SUBORDINATE and "COMMA" in kinds and following not in ("REL", "WHOSE", "TPART", "PART"):
+        return True
+    if following == "BE" and types[end + 1 : end + 2] == ["NP"] and not complete:
+        return True
+    if following in IMPERATIVES or following == "WHERE":
+        return True
+    if following == "THERE" or following == "COMPLEMENT":
+        return complete or "AND" in kinds
+    if following == "NP":
+        return _subject_follows(chunks, types, start, at, end, kinds, complete)
+    if (following in ("PREP", "ADV") and complete) or (
+        following == "PREP" and types[start] == "PREP" and "AND" in kinds
+    ):
+        return _inversion_follows(types, end)
+    if following in ("TPART", "PART") and complete and "COMMA" in kinds:
+        return _inversion_follows(types, end)
+    return False
+
+
+def _subject_follows(
+    chunks: list[Chunk], types: list[str], start: int, at: int, end: int, kinds: set[str], complete: bool
+) -> bool:
+    i, seen_noun, mods = end, False, 0
+    while i < len(types):
+        kind = types[i]
+        if kind in FINITE:
+            return complete or _verbless_before(types, start, at)
+        if kind in ("REL", "WHOSE"):
+            return complete and _main_verb_after_relative(types, i) and "OR" not in kinds
+        if kind == "COMMA" and _verb_after_aside(types, i):
+            return complete or _verbless_before(types, start, at)
+        if kind in JOINTS:
+            if not complete or not _list_then_verb(types, i):
+                break
+            return True
+        seen_noun = seen_noun or kind == "NP"
+        mods += kind in PREDICATES
+        i += 1
+    following = types[end + 1] if end + 1 < len(types) else ""
+    if complete and kinds == {"COMMA"} and following in (PREDICATES - {"WITH"}):
+        phrase = chunks[end].value
+        if (
+            phrase.pronoun == "one" and phrase.determiner in ("the", "this") and not phrase.adjectives
+        ) or phrase.negated:
+            return False
+        # an absolute construction: 'its handle pointing to the right', 'the butter next to it'
+        return not (types[at - 1] == "NP" and _in_list(chunks, types, start, at, i))
+    if (
+        kinds == {"AND"}
+        and complete
+        and following == "PREP"
+        and types[at - 1] == "NP"
+        and (is_place(chunks[at - 1].value) or (types[start] == "PUT" and "PREP" in types[start:at]))
+    ):
+        return not _in_list(chunks, types, start, at, i)
+    if kinds == {"AND"} and complete and following == "PREP" and _same_place_again(chunks, types, start, at, end + 1):
+        return True
+    if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
+        return not _in_list(chunks, types, start, at, i)
+    return False
+
+
+def _same_place_again(chunks: list[Chunk], types: list[str], start: int, at: int, preposition: int) -> bool:
+    """Return True if the verb is left out before the same preposition: 'the pan is on it and the jug on them'."""
+    places = [i for i in range(start, at) if types[i] == "PREP" and types[i - 1] in FINITE | {"PART"}]
+    return len(places) == 1 and (
+        chunks[places[0]].value.preposition.relation == chunks[preposition].value.preposition.relation
+    )
+
+
+def _verb_after_aside(types: list[str], at: int) -> bool:
+    """Return True if a verb follows after a phrase between commas: 'the cups, nested in one another, stood …'."""
+    if at + 1 >= len(types) or types[at + 1] not in PREDICATES | {"REL"} or "COMMA" not in types[at + 1 :]:
+        return False
+    end = types.index("COMMA", at + 1) + 1
+    return end < len(types) and types[end] in FINITE
+
+
+def _verbless_before(types: list[str], start: int, at: int) -> bool:
+    """Return True if the chunks before the joint make a clause without a verb: 'on the left a lamp'."""
+    if types[start] in ("PREP", "TPART", "PART"):
+        return any(types[i] == "NP" and types[i + 1] == "NP" for i in range(start, at - 1)) or "FJ" in types[start:at]
+    return False
+
+
+def _main_verb_after_relative(types: list[str], at: int) -> bool:
+    pending = 0
+    for kind in types[at:]:
+        if kind in ("REL", "WHOSE"):
+            pending += 1
+        elif kind in FINITE:
+            if pending == 0:
+                return True
+            pending -= 1
+        elif kind in ("CUT", "COLON", "SUB"):
+            return False
+    return False
+
+
+def _list_then_verb(types: list[str], at: int) -> bool:
+    """Return True if a list of noun phrases goes on after the joint and ends with a verb: 'A, B and C are …'."""
+    i = at
+    while i < len(types):
+        if types[i] in FINITE:
+            return True
+        if types[i] in JOINTS:
+            end, kinds = _run(types, i)
+            if "COMMA" in kinds and "AND" not in kinds and "OR" not in kinds:
+                return False
+            if end >= len(types) or types[end] != "NP":
+                return False
+            i = end
+            continue
+        if types[i] in ("REL", "PUT", "FIND", "THERE", "WHOSE", "COMPLEMENT"):
+            return False
+        i += 1
+    return False
+
+
+def _in_list(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
+    """Return True if the joint is in the list of a preposition that takes one: between A, B and C."""
+    for i in range(at - 1, start - 1, -1):
+        if types[i] == "PREP":
+            return chunks[i].value.preposition.relation in ("between", "among")
+        if types[i] in FINITE:
+            return False
+    return False
+
+
+def _inversion_follows(types: list[str], at: int) -> bool:
+    """Return True for a place with a subject after it: 'next to it a cactus', 'on top of it there is a basket'."""
+    i = at
+    while i < len(types):
+        kind = types[i]
+        if kind in ("THERE", "VERB", "BE"):
+            return i > at
+        if kind == "NP":
+            following = types[i + 1] if i + 1 < len(types) else ""
+            if following in ("NP", "THERE"):
+                return True
+            if following == "COMMA" and i + 2 < len(types) and types[i + 2] == "NP":
+                return True
+        if kind == "ADV" and i + 1 < len(types) and types[i + 1] in ("NP", "THERE"):
+            return True
+        if kind in JOINTS and not (kind in ("AND", "COMMA") and i > at and types[i + 1 : i + 2] == ["NP"]):
+            return False
+        if kind in ("REL", "TVERB", "PUT", "FIND", "WHOSE"):
+            return False
+        i += 1
+    return False
+
+
+def _clause_of_with(types: list[str], at: int) -> bool:
+    """Return True for a clause after *with*: 'with the cup is on the left'."""
+    for kind in types[at + 1 :]:
+        if kind in FINITE:
+            return True
+        if kind != "NP":
+            return False
+    return False
+
+
+def _runs_on(chunks: list[Chunk], types: list[str], start: int, at: int) -> bool:
+    """Return True if a clause begins without a joint: 'the chair is brown it is near the desk'."""
+    if at + 1 >= len(types) or types[at - 1] in (
+        "PREP",
+        "OF",
+        "REL",
+        "SUB",
+        "COMPLEMENT",
+        "WHOSE",
+        "THAN",
+        "WITH",
+        "TPART",
+    ):
+        return False
+    if types[at - 1] in JOINTS:
+        return False
+    if types[at] == "THERE":
+        return types[at - 1] not in FINITE and _finite_between(types, start, at)
+    if types[at] == "NP" and types[at + 1] in FINITE and types[at - 1] not in FINITE:
+        phrase = chunks[at].value
+        if phrase.pronoun in ("it", "they", "this", "these", "you", "me", "we"):
+            return _finite_between(types, start, at) or phrase.pronoun == "it" or types[start] == "FIND"
+        return (
+            _finite_between(types, start, at)
+            and types[at - 1] in ("NP", "ADJP", "ADV")
+            and (phrase.determiner in ("the", "this") and not _open_relative(types, start, at))
+        )
+    return types[at] in IMPERATIVES and types[at - 1] in ("NP", "ADV", "ADJP", "NOT", "PART", "UNKNOWN")
+
+
+def _open_relative(types: list[str], start: int, at: int) -> bool:
+    return any(kind in ("REL", "WHOSE") for kind in types[start:at])
+
+
+def classify(segment: Segment) -> list[Chunk]:
+    """Return the chunks of a clause with a type for each joint (NJ, PJ, VJ, FJ), and without empty words."""
+    source = [chunk for chunk in segment.chunks if chunk.type not in ("ADVERB", "COMPLEMENT")]
+    types = [chunk.type for chunk in source]
+    found: list[Chunk] = []
+    i, fronted = 0, False
+    while i < len(source):
+        chunk = source[i]
+        if chunk.type == "OF" and (i + 1 >= len(source) or source[i + 1].type in JOINTS):
+            i += 1
+            continue
+        if chunk.type == "NOT":
+            following = source[i + 1] if i + 1 < len(source) else None
+            if following is not None and following.type == "NP" and found and found[-1].type in ("NP", "ADV"):
+                denied = replace(following.value, negated=True)
+                source[i + 1] = Chunk("NP", following.start, following.end, denied, following.span)
+                kind = _kind(source, types, found, {"COMMA"}, i + 1, "NP", fronted)
+                found.append(Chunk(kind or "NJ", chunk.start, chunk.end, ",", chunk.span))
+                i += 1
+                continue
+            if following is not None and following.type == "NP":
+                source[i + 1] = Chunk(
+                    "NP", following.start, following.end, replace(following.value, negated=True), following.span
+                )
+            elif following is not None and following.type == "ADJP":
+                words = tuple(replace(a, positive=not a.positive) for a in following.value)
+                source[i + 1] = Chunk("ADJP", following.start, following.end, words, following.span)
+            elif following is not None and isinstance(following.value, (Relator, VerbGroup)):
+                denied = replace(following.value, positive=not following.value.positive)
+                source[i + 1] = Chunk(following.type, following.start, following.end, denied, following.span)
+            i += 1
+            continue
+        if chunk.type not in JOINTS:
+            if chunk.type == "NP" and found and _lists_without_joint(source, found, i):
+                found.append(Chunk("OJ", chunk.start, chunk.start, ",", chunk.span))
+            found.append(chunk)
+            i += 1
+            continue
+        end = i
+        while end < len(source) and source[end].type in JOINTS:
+            end += 1
+        if end < len(source) and found:
+            kinds = set(types[i:end])
+            after = types[end]
+            if any(source[k].value == "nor" for k in range(i, end)) and after in PREDICATES:
+                kinds = {"AND"}
+                denied = [c for c in found if isinstance(c.value, Relator) and not c.value.positive]
+                if denied and isinstance(source[end].value, Relator):
+                    now = replace(source[end].value, positive=False)
+                    source[end] = Chunk(source[end].type, source[end].start, source[end].end, now, source[end].span)
+            if after == "NOT" and end + 1 < len(source):
+                after = types[end + 1]
+                if after == "NP":
+                    following = source[end + 1]
+                    source[end] = source[end + 1] = Chunk(
+                        "NP", following.start, following.end, replace(following.value, negated=True), following.span
+                    )
+                    types[end] = "NP"
+                    del source[end], types[end]
+            if (
+                after == "NP"
+                and found[-1].type == "ADJP"
+                and "COMPLEMENT" not in kinds
+                and (bare := _unknown_adjective(source[end]))
+            ):
+                source[end] = bare
+                types[end] = after = "ADJP"
+            kind = _kind(source, types, found, kinds, end, after, fronted)
+            if kind is not None:
+                fronted = fronted or kind == "FJ"
+                value = "or" if "OR" in kinds else "but" if "BUT" in kinds else "and" if "AND" in kinds else ","
+                found.append(Chunk(kind, chunk.start, source[end - 1].end, value, chunk.span))
+        i = end
+    return found
+
+
+def _lists_without_joint(source: list[Chunk], found: list[Chunk], at: int) -> bool:
+    """Return True for the second of two places without a joint: 'with B at the bottom A on the top'."""
+    return (
+        found[-1].type == "NP"
+        and is_place(found[-1].value)
+        and any(chunk.type == "WITH" for chunk in found)
+        and at + 1 < len(source)
+        and source[at + 1].type == "PREP"
+    )
+
+
+def _unknown_adjective(chunk: Chunk) -> Chunk | None:
+    """Return a bare unknown word after an adjective as an adjective: *white and wavy*."""
+    phrase = chunk.value
+    if (
+        phrase.determiner
+        or phrase.plural
+        or phrase.pronoun
+        or phrase.owner
+        or phrase.adjectives
+        or not phrase.head
+        or (phrase.count is not None or " " in phrase.head)
+    ):
+        return None
+    return Chunk(
+        "ADJP", chunk.start, chunk.end, (Adjective(phrase.head, "other", Degree.PLAIN, chunk.span),), chunk.span
+    )
+
+
+def _kind(
+    source: list[Chunk], types: list[str], found: list[Chunk], kinds: set[str], end: int, after: str, fronted: bool
+) -> str | None:
+    """Return the type of a joint; None for one that can be left out."""
+    before = [chunk.type for chunk in found]
+    if after in FINITE:
+        return "VJ" if _finite_between(before, 0, len(before)) else None
+    if after in ("REL", "WHOSE", "THAN", "OF"):
+        return None
+    place_first = before[0] in ("PREP", "ADV", "TPART", "PART", "WITH") and not _finite_between(before, 0, len(before))
+    if after == "NP":
+        if place_first and not fronted and "COMMA" in kinds and not _list_goes_on(types, found, end):
+            return "FJ"
+        if source[end].value.negated:
+            nominal = any(a == "BE" and b == "NP" for a, b in pairwise(before))
+            return "OJ" if nominal or not any(k in FINITE or k == "PUT" for k in before) else "NJ"
+        if (
+            found[-1].type == "NP"
+            and found[-1].value.pronoun in ("it", "they")
+            and types[end + 1 : end + 2] == ["PREP"]
+            and ("TVERB" in before or "WITH" in before or "THERE" in before)
+        ):
+            return "OJ"
+        if (
+            found[-1].type == "NP"
+            and len(found) > 1
+            and found[-2].type == "PREP"
+            and is_place(found[-1].value)
+            and (not is_place(source[end].value))
+        ):
+            return "OJ"
+        return "NJ"
+    if after == "THERE":
+        return None
+    if place_first and not fronted and kinds == {"COMMA"} and after in PREDICATES and _subject_later(types, end):
+        return "PJ"
+    return "PJ"
+
+
+def _subject_later(types: list[str], at: int) -> bool:
+    return "NP" in types[at:]
+
+
+def _list_goes_on(types: list[str], found: list[Chunk], at: int) -> bool:
+    """Return True if the comma after a fronted place is in its list: 'between a cup, a jug and a pot stands …'."""
+    relators = [chunk.value for chunk in found if isinstance(chunk.value, Relator)]
+    if not relators or relators[0].preposition.relation not in ("between", "among"):
+        return False
+    later = types[at:]
+    return "AND" in later and any(kind in FINITE or kind == "COMMA" for kind in later[later.index("AND") :])

@@ -1,0 +1,206 @@
+"""Parse English: sentences to clauses with their predicates; what is not understood is left out and reported."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from deixis.deadline import Deadline
+from deixis.grammar.english.assemble import Assembly, Found
+from deixis.grammar.english.build import Builder, Built, notes
+from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
+from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
+from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
+from deixis.grammar.english.phrases import is_known
+from deixis.grammar.english.tokens import MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
+from deixis.grammar.english.tree import Misunderstood, Sentence
+from deixis.grammar.errors import ScriptTimeError
+from deixis.ontology.tbox import Ontology, default_ontology
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+
+LAST_LATIN_LETTER = "\u024f"
+MIN_KNOWN_SHARE = 0.16
+"""Smallest share of function words, adjectives and verbs in a sentence of English."""
+
+
+def parse_english(
+    text: str, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
+) -> tuple[Sentence, ...]:
+    """Parse an English text into its sentences.
+
+    Parameters
+    ----------
+    text
+        One description, or paragraphs with headings and numbered steps.
+    ontology
+        Nouns that are known: they decide the singular of open cases and compounds such as *light switch*. An unknown
+        word is a noun by its place. By default :func:`default_ontology`.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    The sentences in order. A phrase that is not understood is in ``Sentence.misunderstood`` and in nothing else.
+
+    Raises
+    ------
+    ScriptTimeError
+        If the time limit is reached.
+
+    Notes
+    -----
+    Chunks of words (noun phrases, verb groups, prepositions) are the terminals of an LALR(1) grammar, as in Abney's
+    chunk parser ("Parsing by chunks", 1991). A phrase is attached to the nearest noun before it.
+
+    Examples
+    --------
+    >>> sentence, = parse_english("The fork is to the left of the plate.")
+    >>> clause, = sentence.clauses
+    >>> clause.subject.head, clause.predicates[0].relation, clause.predicates[0].arguments[0].head
+    ('fork', 'left', 'plate')
+    """
+    nouns = known_nouns((ontology or default_ontology()).kinds)
+    found: list[Sentence] = []
+    for raw in sentences(text):
+        if deadline.passed:
+            raise ScriptTimeError(f"time limit reached after {len(found)} sentences were read")
+        words = words_of(text, (raw.start, raw.end))
+        first = 0
+        while first < len(words):
+            if deadline.passed:
+                raise ScriptTimeError(f"time limit reached after {len(found)} sentences were read")
+            last = min(len(words), first + MAX_SENTENCE_WORDS)
+            while last < len(words) and words[last].start < words[last - 1].end:
+                last -= 1  # keep the parts of a contraction together
+            part, first = words[first:last], last
+            whole = len(words) <= MAX_SENTENCE_WORDS
+            place = raw if whole else replace(raw, start=part[0].start, end=part[-1].end)
+            found.append(_sentence(text, place, part, nouns))
+    return tuple(found)
+
+
+def _sentence(text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns) -> Sentence:
+    unknown: list[Misunderstood] = []
+    foreign = False
+    before = notes.set(unknown)
+    try:
+        assembly = Assembly(text, raw, asks=text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?"))
+        if not raw.heading and _is_foreign(words):
+            foreign = True
+            unknown.append(
+                Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
+            )
+        elif not raw.heading:
+            chunks = Chunker(words, nouns).run()
+            for segment in segments([chunk for chunk in chunks if chunk.type != "ADVERB"]):
+                _parse_segment(segment, assembly)
+        found = Found((), None, None) if raw.heading or foreign else assembly.finish()
+    finally:
+        notes.reset(before)
+    total = [word for word in words if word.is_word]
+    spans = sorted({(note.span, note.reason): note for note in unknown}.values(), key=lambda note: note.span)
+    missed = sum(any(note.span[0] <= word.start < note.span[1] for note in spans) for word in total)
+    return Sentence(
+        text=text[raw.start : raw.end],
+        span=(raw.start, raw.end),
+        clauses=found.clauses,
+        fragment=found.fragment,
+        words=len(total),
+        words_understood=len(total) - missed,
+        misunderstood=tuple(spans),
+        heading=raw.heading,
+        viewpoint=found.viewpoint,
+    )
+
+
+def _is_foreign(words: list[Word]) -> bool:
+    """Return True for a run of words of which almost none is a function word, an adjective or a verb of the tables."""
+    longest = run = known = 0
+    for word in words:
+        run = run + 1 if word.norm[:1].isalpha() else 0
+        known += is_known(word.norm)
+        longest = max(longest, run)
+    letters = [c for word in words for c in word.norm if c.isalpha()]
+    if sum(c > LAST_LATIN_LETTER for c in letters) > len(letters) / 2:
+        return True
+    return longest >= 4 and known < MIN_KNOWN_SHARE * len(words)
+
+
+def _parse_segment(segment: Segment, assembly: Assembly) -> None:
+    """Parse one clause; at a chunk that does not fit, end the clause there and begin another one, or leave it out."""
+    hedge, segment = assembly.without_frame(segment)
+    chunks = classify(segment)
+    if not chunks:
+        return
+    first = chunks[0]
+    if (
+        (first.type == "BE" or (isinstance(first.value, VerbGroup) and first.value.lemma == "do" and assembly.asks))
+        and len(chunks) > 1
+        and chunks[1].type in ("NP", "THERE")
+        and (assembly.asks or (not segment.link and assembly.viewpoint is None))
+    ):
+        chunks[0] = Chunk("ASK", first.start, first.end, first.value, first.span)
+    at, link = 0, segment.link
+    skipped: list[Chunk] = []
+    while at < len(chunks):
+        built, end = _longest(chunks, at)
+        if built is None:
+            if chunks[at].type not in JOINTS and chunks[at].type not in ("NJ", "PJ", "VJ", "FJ"):
+                skipped.append(chunks[at])
+            at += 1
+            continue
+        assembly.add(built, link, chunks[at].span[0], chunks[end - 1].span[1], hedge)
+        link = ","
+        at = end
+    for chunk in skipped:
+        notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
+
+
+def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:
+    """Return the clause that begins at a place, and its end; None if none begins there."""
+    lark = _parser()
+    whole, end = _feed(lark, chunks, at, len(chunks))
+    if whole is not None:
+        return whole, len(chunks)
+    while end > at:
+        count = len(notes.get())
+        built, reached = _feed(lark, chunks, at, end)
+        if built is not None:
+            return built, end
+        del notes.get()[count:]
+        end = min(reached, end - 1)
+    return None, at
+
+
+def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | None, int]:
+    """Feed chunks to the parser; return the clause, or None and the place of the first chunk that does not fit."""
+    from lark import Token
+    from lark.exceptions import UnexpectedToken
+
+    state: Any = lark.parse_interactive().parser_state
+    count = len(notes.get())
+    i = at
+    try:
+        for i in range(at, end):
+            state.feed_token(chunks[i])
+        i = end
+        return state.feed_token(Token("$END", ""), True), end
+    except UnexpectedToken:
+        del notes.get()[count:]
+        return None, i
+
+
+@cache
+def _parser() -> Lark:
+    from lark import Lark
+
+    from deixis.grammar.language import NoLexer
+
+    return Lark.open(
+        "english.lark", rel_to=__file__, parser="lalr", lexer=NoLexer, start="clause", transformer=Builder(),
+        maybe_placeholders=True,
+    )  # fmt: skip

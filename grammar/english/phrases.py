@@ -1,0 +1,990 @@
+"""Find noun phrases: determiner, number, adjectives, nouns, owner; an unknown word is a noun by its position."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+from deixis.grammar.english.known_nouns import KnownNouns
+from deixis.grammar.english.tokens import Word
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
+from deixis.grammar.english.words import (
+    ADVERBS,
+    ARTICLES,
+    COLLECTIVES,
+    COLOUR_SHADES,
+    DETERMINERS,
+    DIRECTION_WORDS,
+    FIND_VERBS,
+    HEDGES,
+    IS_FORMS,
+    MODALS,
+    NEGATIONS,
+    NUMBERS,
+    ORDINALS,
+    PLACE_NOUNS,
+    PLURAL_PRONOUNS,
+    POSSESSIVES,
+    PRONOUNS,
+    PUT_VERBS,
+    adjectives,
+    degree_of,
+    is_adjective,
+    is_material_noun,
+    places_alone,
+    prepositions,
+    verb_forms,
+    word_set,
+)
+
+_GENERIC = frozenset({"object", "objects", "agent", "agents", "thing", "item", "dot"})
+_BEFORE_ADJECTIVE = word_set(
+    "very slightly quite rather really more most less least so too fairly pretty somewhat light dark much far extremely"
+    " partially partly fully completely mostly almost super bit even second third half"
+)
+_NEVER_NOUNS = word_set(
+    "and or but nor than not of to from with without at by for as if when while because that which who whom whose where"
+    " there then so too also is are was were be been being am do does did has have had having n't please let lets"
+    " into onto upon toward towards against among amongst between beside beneath underneath behind until during such"
+    " whether whenever via per through 's 're 'm 'll 've 'd it's although though since unless"
+)
+_NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
+
+
+@cache
+def _closed() -> frozenset[str]:
+    """Return the words that are never nouns."""
+    single = {phrase for phrase in (*prepositions(), *places_alone()) if " " not in phrase}
+    return frozenset(
+        (_NEVER_NOUNS | single | IS_FORMS | NEGATIONS | ADVERBS | HEDGES | MODALS.keys() | DETERMINERS
+         | PRONOUNS.keys() | POSSESSIVES.keys())
+        - _NOUN_OR_PREPOSITION - {"can", "will", "may", "need", "back", "flat", "well", "down", "over", "in"}
+        | {"in", "over", "down"}
+    )  # fmt: skip
+
+
+def is_known(word: str) -> bool:
+    """Return True for a word of the tables: a function word, a number, an adjective or a form of a verb."""
+    return (
+        word in _closed()
+        or word in NUMBERS
+        or word in ORDINALS
+        or word in PLACE_NOUNS
+        or word in verb_forms()
+        or is_adjective(word)
+    )
+
+
+@cache
+def _relating() -> frozenset[str]:
+    """Return the single words that relate two things, and pronouns; before a noun a few of them are adjectives."""
+    single = {phrase for phrase in (*prepositions(), *places_alone()) if " " not in phrase}
+    return frozenset(single | PRONOUNS.keys() | DETERMINERS | MODALS.keys() | IS_FORMS)
+
+
+class NounChunker:
+    """Finder of noun phrases in the words of a sentence."""
+
+    def __init__(self, words: list[Word], norms: list[str], nouns: KnownNouns) -> None:
+        self.words, self.norms, self._nouns = words, norms, nouns
+        self._closed, self._verbs, self._adjectives = _closed(), verb_forms(), adjectives()
+        self._relating = _relating()
+
+    # categories of words
+
+    def number(self, at: int) -> float | None:
+        """Return the value of a number."""
+        norm = self.norms[at]
+        if norm in NUMBERS:
+            return float(NUMBERS[norm])
+        if norm[:1].isdigit():
+            try:
+                return float(norm)
+            except ValueError:
+                return None
+        return None
+
+    def ordinal(self, at: int) -> int | None:
+        """Return the rank of an ordinal; -1 for *last*."""
+        return ORDINALS.get(self.norms[at])
+
+    def is_determiner(self, at: int) -> bool:
+        """Return True for a word that can begin a noun phrase before its noun."""
+        return self.norms[at] in DETERMINERS or self.norms[at] in POSSESSIVES
+
+    def is_colour_alone(self, at: int) -> bool:
+        """Return True for a colour without a noun: *the man in blue*."""
+        return (
+            self._adjectives.get(self.norms[at]) == "colour"
+            and not self._nounish(at + 1)
+            and not is_adjective(self.norms[at + 1])
+        )
+
+    def is_degree_word(self, at: int) -> bool:
+        """Return True for *closest*, *furthest*, *closer* and the like."""
+        lemma, degree = degree_of(self.norms[at])
+        return degree is not Degree.PLAIN and lemma in ("near", "far")
+
+    def is_genitive(self, at: int) -> bool:
+        """Return True if the ``'s`` at this place makes an owner, and does not stand for *is*."""
+        if self.norms[at] != "'s":
+            return False
+        if (
+            at == 0
+            or (self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
+            or (self.norms[at - 1] in ("there", "here", "where", "what", "who", "how"))
+        ):
+            return False
+        after = self.norms[at + 1]
+        if after in self._closed or after in ("", ",", "."):
+            return False
+        form = self._verbs.get(after)
+        if form is not None and form.form in ("ing", "past", "participle") and not self.is_noun(at + 1):
+            return False
+        if after in PLACE_NOUNS or self.number(at + 1) is not None or after == "o'clock":
+            return True
+        if is_adjective(after):
+            return self._nounish(at + 2) or is_adjective(self.norms[at + 2])
+        return True
+
+    def starts(self, at: int) -> bool:
+        """Return True if a noun phrase can begin here."""
+        norm = self.norms[at]
+        if not norm or at >= len(self.words):
+            return False
+        if norm in PRONOUNS or norm in DETERMINERS or norm in POSSESSIVES:
+            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and"):
+                return True
+            return (
+                norm not in ("that", "which", "who")
+                or self._nounish(at + 1)
+                or (norm == "that" and at + 1 == len(self.words))
+            )
+        if norm in NUMBERS or norm in ORDINALS or norm[0].isdigit():
+            return True
+        if norm in self._closed:
+            if norm in ("about", "around"):
+                return self.number(at + 1) is not None
+            if (
+                norm in ("very", "slightly", "more", "most", "far")
+                or norm in HEDGES
+                or norm in ("exactly", "only", "just")
+            ):
+                return self.starts(at + 1)
+            return norm in ("opposite", "near", "far") and self.adjective_before_noun(at)
+        if norm in ("left", "right") and self.norms[at + 1] in (
+            "of",
+            "to",
+            "in",
+            "next",
+            "behind",
+            "above",
+            "below",
+            "under",
+            "on",
+        ):
+            return norm == "left" and self.norms[at + 1] == "on"
+        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at)
+
+    def adjective_before_noun(self, at: int) -> bool:
+        """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*."""
+        if not is_adjective(self.norms[at]) and self.norms[at] not in DIRECTION_WORDS:
+            return False
+        i = at + 1
+        while is_adjective(self.norms[i]) and self._nounish(i + 1):
+            i += 1
+        return self._nounish(i) or self.norms[i] in ("one", "ones")
+
+    def _nounish(self, at: int) -> bool:
+        norm = self.norms[at]
+        if not norm or norm in self._closed or at >= len(self.words):
+            return norm in ("one", "ones")
+        if not norm[0].isalpha():
+            return False
+        if norm in PLACE_NOUNS:
+            return True
+        if norm in self._verbs:
+            return self.is_noun(at)
+        return not norm.endswith("ly") or norm in ("family", "assembly", "jelly", "trolley", "belly", "butterfly")
+
+    def is_noun(self, at: int) -> bool:
+        """Return True if the word, which may also be a verb, is a noun here, judged by the words beside it."""
+        norm = self.norms[at]
+        if not norm or norm in self._closed or not (norm[0].isalpha()):
+            return False
+        if at == 0 and self.norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS and norm not in HEDGES:
+            return True  # a name: Holly is …
+        if (
+            norm.endswith("ly")
+            and "-" not in norm
+            and norm not in ("family", "assembly", "jelly", "butterfly", "belly", "lily")
+        ):
+            return False
+        if norm in ("next", "near", "close", "opposite"):
+            return False
+        back = at - 1
+        while back > 0 and (
+            self.norms[back] in HEDGES or self.norms[back] in ("just", "also", "only", "now", "still", "always")
+        ):
+            back -= 1
+        before = self.norms[back] if at else ""
+        after = self.norms[at + 1]
+        form = self._verbs.get(norm)
+        after_determiner = (
+            before in DETERMINERS
+            or (at and self.number(at - 1) is not None)
+            or before in POSSESSIVES
+            or (before in ORDINALS and (form is None or form.form == "base"))
+            or (before == "'s" and self.norms[back - 1] not in PRONOUNS)
+            or (is_adjective(before) and (form is None or form.form != "s" or before not in _PREDICATIVE))
+        )
+        if norm == "can" or norm in ("will", "may", "need", "might"):
+            return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
+        if form is None:
+            if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
+                return (
+                    self._compound_ing(at, before, after)
+                    or (self._nounish(at + 1) and after not in PLACE_NOUNS)
+                    or (before in ("with", "of") and not self.starts(at + 1))
+                )
+            if norm.endswith("ed") and len(norm) > 4 and not is_adjective(norm) and norm not in _ED_NOUNS:
+                return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
+            return True
+        if form.form == "ing":
+            if form.kind in ("transitive", "face", "point") and not after_determiner:
+                return False
+            if before in ("with", "of") and not self.starts(at + 1):
+                return True
+            if before in IS_FORMS and not after_determiner:
+                return False
+            if (
+                form.kind == "posture"
+                and form.lemma not in ("stand", "sit", "lie", "hang")
+                and not self.starts(at + 2)
+                and (self._nounish(at + 1) and after not in PLACE_NOUNS and self._nouns.singular(after)[0] == after)
+            ):
+                return True
+            return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
+        if form.form in ("past", "participle") and not (
+            norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
+        ):
+            return False
+        if at and self.number(at - 1) is not None and not (self.norms[at - 1] == "one" and form.form == "s"):
+            return True
+        if form.lemma in ("lie", "sit", "hang") and form.form in ("base", "s") and not after_determiner:
+            return False
+        if form.form == "s" and form.lemma in _NEVER_PLURALS and before not in DETERMINERS:
+            return False
+        if form.form == "s" and before == "," and self.is_determiner(at + 1):
+            return False
+        if (
+            form.form == "s"
+            and form.kind in ("posture", "lean")
+            and self._predicate_follows(at)
+            and is_adjective(before)
+        ):
+            if self._nouns.knows(before):  # 'the glass stands above …'
+                return False
+            two_before = self.norms[back - 1] if back else ""
+            return two_before in DETERMINERS or two_before in POSSESSIVES or is_adjective(two_before)
+        if (after in IS_FORMS and after != "'s") or (after in MODALS and after != "can"):
+            return True
+        if after_determiner:
+            return True
+        after_noun = bool(before) and before not in self._closed and before[0].isalpha() and not is_adjective(before)
+        if after_noun:
+            plural = self._nouns.singular(before)[1]
+            if form.form == "s":
+                return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
+            return not plural and not (after in DETERMINERS or after in NUMBERS or after in POSSESSIVES)
+        if at == 0 or before in ("never", "always", "not", ",", "and", "then", ".", ";", ":", "please"):
+            if form.form == "s":
+                return not self._predicate_follows(at) or at == 0
+            imperative = norm in PUT_VERBS or norm in FIND_VERBS
+            return (
+                not self.starts(at + 1)
+                or after == "of"
+                or (not imperative and not self.is_determiner(at + 1) and (after not in PRONOUNS))
+            )
+        return before in self._closed and before not in PRONOUNS and before not in ("to", "not", "which", "that", "who")
+
+    def _predicate_follows(self, at: int) -> bool:
+        """Return True if a place follows, as after a verb: *lies on*, *stands upright*."""
+        after = self.norms[at + 1]
+        return (
+            after in prepositions()
+            or after in places_alone()
+            or after in ADVERBS
+            or after in ("in", "next", "left", "right")
+        )
+
+    def _compound_ing(self, at: int, before: str, after: str) -> bool:
+        """Return True for the first part of a compound: *rolling pin*, *washing machine*."""
+        if not self._nounish(at + 1) or is_adjective(after) or after in DIRECTION_WORDS:
+            return False
+        return (
+            at == 0 or before in self._closed or not before[0].isalpha() or is_adjective(before) or before in ORDINALS
+            or before in NUMBERS
+        )  # fmt: skip
+
+    def _takes_preposition(self, after: str) -> bool:
+        return after in prepositions()
+
+    # phrases
+
+    def phrase(self, at: int, previous: str) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]] | None:
+        """Return the end of the phrase and the noun phrase, or None and the adjectives of an adjective phrase."""
+        end, found, modifiers = self._one(at, previous, None)
+        if end == at:
+            return None
+        depth = 0
+        while found is not None and self.is_genitive(end) and depth < 20:
+            following, owned, modifiers = self._one(end + 1, "GENITIVE", found)
+            if owned is None or following == end + 1:
+                break
+            end, found, depth = following, owned, depth + 1
+        if found is not None and self.norms[end] == "'s" and self.is_genitive(end):
+            end += 1
+        return end, found, modifiers
+
+    def _span(self, at: int, end: int) -> Span:
+        return self.words[at].start, self.words[end - 1].end
+
+    def _one(
+        self, at: int, previous: str, owner: NounPhrase | None
+    ) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]]:
+        i, norms = at, self.norms
+        determiner: str | None = None
+        count: int | None = None
+        start = at
+        negated = False
+        if norms[i] == "not" and self.starts(i + 1):
+            negated, i = True, i + 1
+        while norms[i] in ("only", "just", "exactly") or (norms[i] in HEDGES and norms[i] != "about"):
+            if not self.starts(i + 1) or i - at > 2:
+                return at, None, ()
+            determiner = (
+                "only" if norms[i] == "only" else "no" if norms[i] in ("hardly", "scarcely", "barely") else None
+            )
+            i += 1
+        if norms[i] in ("neither", "either", "both") and (norms[i + 1] in DETERMINERS or norms[i + 1] in POSSESSIVES):
+            determiner = norms[i] if norms[i] != "either" else None
+            i += 1
+        letter = self._letter(i)
+        if letter is not None and owner is None:
+            return i + 1, NounPhrase(self._span(start, i + 1), head=letter, negated=negated), ()
+        if norms[i] == "no" and norms[i + 1] == "one" and not self._counts_one(i + 2):
+            return i + 2, NounPhrase(self._span(start, i + 2), pronoun="nothing"), ()
+        pronoun = self._pronoun(i, previous)
+        if pronoun is not None and owner is None:
+            plural = norms[i] in PLURAL_PRONOUNS
+            return i + 1, NounPhrase(self._span(start, i + 1), pronoun=pronoun, plural=plural, negated=negated), ()
+        while norms[i] in DETERMINERS and not (norms[i] == "another" and norms[i + 1] in self._closed):
+            if norms[i] == "single" or (
+                norms[i] == "other" and determiner and not self._continues(i + 1) and self.number(i + 1) is None
+            ):
+                break
+            if determiner in ("neither", "no"):
+                i += 1
+                continue
+            if determiner is None or norms[i] not in ("the", "a", "an", "these", "those"):
+                determiner = norms[i]
+            elif determiner in ("all", "both", "half", "only"):
+                pass
+            else:
+                determiner = norms[i]
+            i += 1
+        if norms[i] in POSSESSIVES and owner is None:
+            word = POSSESSIVES[norms[i]]
+            owner = NounPhrase(self._span(i, i + 1), pronoun=word, plural=word in PLURAL_PRONOUNS)
+            determiner, i = determiner, i + 1
+            if norms[i] == "own":
+                i += 1
+        number = self.number(i)
+        if number is not None and number == int(number) and not (norms[i] == "one" and not self._counts_one(i + 1)):
+            count, i = int(number), i + 1
+            if norms[i] == "o'clock":
+                return self._clock(start, i + 1, count, owner)
+        elif norms[i][:1].isdigit() and norms[i].endswith(":00"):
+            return self._clock(start, i + 1, int(norms[i][:-3]), owner)
+        i, found = self._modifiers(i, determiner is not None or owner is not None or count is not None)
+        if count is None:
+            number = self.number(i)
+            if number is not None and number == int(number) and norms[i] != "one" and self._nounish(i + 1):
+                count, i = int(number), i + 1
+                i, more = self._modifiers(i, True)
+                found += more
+        return self._head(start, i, determiner, count, found, owner, negated)
+
+    def _continues(self, at: int) -> bool:
+        return self._nounish(at) or is_adjective(self.norms[at]) or self.norms[at] in ("more", "other")
+
+    def _counts_one(self, at: int) -> bool:
+        """Return True if *one* is a number here: *one saucer*, and not *the one near the door*."""
+        if (
+            self.norms[at] in prepositions()
+            or self._is_relation(at)
+            or self.norms[at] in ("next", "close", "left", "right")
+        ):
+            return (
+                self.adjective_before_noun(at)
+                and not self._is_relation(at)
+                and self.norms[at] not in ("on", "in", "near", "next")
+            )
+        if self.norms[at] in ORDINALS:
+            return False
+        return self._continues(at) and (
+            self._nounish(at) or self.adjective_before_noun(at) or self.norms[at] in ("more", "other")
+        )
+
+    def _clock(
+        self, start: int, end: int, hour: int, owner: NounPhrase | None
+    ) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]]:
+        """Return the place at an hour of a clock face: *at its 3 o'clock position*."""
+        if self.norms[end] == "o'clock":
+            end += 1
+        if self.norms[end] in ("position", "direction", "angle"):
+            end += 1
+        return end, NounPhrase(self._span(start, end), head="o'clock", count=hour, owner=owner), ()
+
+    def _letter(self, at: int) -> str | None:
+        """Return a name of one capital letter: *D is left of A*; *I* and *A* only where they are names."""
+        if at >= len(self.words):
+            return None
+        text = self.words[at].text
+        if len(text) != 1 or not text.isupper():
+            return None
+        before = self.norms[at - 1] if at else ""
+        after = self.norms[at + 1]
+        if text == "A":
+            form = self._verbs.get(after)
+            named = (
+                not after[:1].isalpha() or after in self._closed or after in prepositions() or after in ("and", "or")
+            )
+            if not named and not (form is not None and form.form == "s"):
+                return None
+            if is_adjective(after) and after not in ("left", "right"):
+                return None
+        if text == "I":
+            third = after in ("is", "and", "to", "are", "'s") or (
+                after in self._verbs and self._verbs[after].form in ("s", "ing")
+            )
+            if not third and not (
+                before in ("labeled", "labelled", "named", "called")
+                or before in prepositions()
+                or before == "of"
+                or before == "and"
+                or before in _GENERIC
+            ):
+                return None
+        return text
+
+    def _pronoun(self, at: int, previous: str) -> str | None:
+        norm = self.norms[at]
+        if norm not in PRONOUNS or at >= len(self.words):
+            return None
+        if norm == "that" and previous in ("BE", "VERB", "TVERB") and not self._nounish(at + 1):
+            return None
+        if norm in DETERMINERS or norm == "one":
+            after = self.norms[at + 1]
+            if norm in ("one", "all", "both", "each", "another", "other"):
+                later = at + 1
+                if (
+                    self._continues(later)
+                    or after in ("the", "these", "those")
+                    or (self.number(at + 1) is not None and norm != "one")
+                ):
+                    form = self._verbs.get(after)
+                    goes_on = form is None or self.is_noun(later) or form.form in ("participle", "past")
+                    if goes_on and (not is_adjective(after) or self.adjective_before_noun(later)):
+                        return None
+            elif (
+                self.is_noun(at + 1)
+                or self.number(at + 1) is not None
+                or after in ORDINALS
+                or self.adjective_before_noun(at + 1)
+            ):
+                if not (after in self._verbs and self._verbs[after].form in ("s",)):
+                    return None
+            elif is_adjective(after) and norm in ("which", "what"):
+                return None
+        return PRONOUNS[norm]
+
+    def _modifiers(self, at: int, determined: bool) -> tuple[int, tuple[Adjective, ...]]:
+        i, found = at, []
+        norms = self.norms
+        while i < len(self.words) and self._nouns.compound(norms, i) is None:
+            norm = norms[i]
+            rank = ORDINALS.get(norm)
+            if norm in ("second", "third", "quarter") and not determined and not self._nounish(i + 1) and i > at:
+                break
+            if rank is not None:
+                found.append(Adjective(norm, "rank", Degree.PLAIN, self._span(i, i + 1), rank=rank))
+                i += 1
+                continue
+            if (norm == "very" and self._nounish(i + 1)) or (
+                norm == "away" and found and found[-1].word in ("far", "near") and (self._continues(i + 1))
+            ):
+                i += 1
+                continue
+            if norm.endswith("ly") and norm not in self._adjectives and is_adjective(norms[i + 1]):
+                i += 1
+                continue
+            if norms[i + 1] in (
+                "shaped",
+                "colored",
+                "coloured",
+                "sized",
+                "looking",
+                "style",
+                "styled",
+                "topped",
+                "framed",
+                "mounted",
+            ) and (self._continues(i + 2) and norm not in self._closed):
+                dimension = {"shaped": "shape", "colored": "colour", "coloured": "colour", "sized": "size"}.get(
+                    norms[i + 1], "other"
+                )
+                found.append(Adjective(degree_of(norm)[0], dimension, Degree.PLAIN, self._span(i, i + 2)))
+                i += 2
+                continue
+            if norm in _BEFORE_ADJECTIVE or norm in HEDGES or norm in ADVERBS:
+                following = norms[i + 1]
+                if norm == "very" and following in ORDINALS:
+                    i += 1
+                    continue
+                if (
+                    is_adjective(following)
+                    and (norm not in self._adjectives or norm in COLOUR_SHADES)
+                    and following
+                    not in (
+                        "next",
+                        "close",
+                        "opposite",
+                        "level",
+                        "parallel",
+                        "adjacent",
+                    )
+                ):
+                    if self._is_relation(i + 1):
+                        break
+                    degree = {"more": Degree.COMPARATIVE, "most": Degree.SUPERLATIVE}.get(norm)
+                    if degree is not None:
+                        found.append(self._adjective(i + 1, degree, i))
+                        i += 2
+                        continue
+                    if norm not in self._adjectives:
+                        i += 1
+                        continue
+                elif norm not in self._adjectives:
+                    break
+            if norm in ("other", "same", "another", "different") and (determined or found or self._continues(i + 1)):
+                if not self._continues(i + 1) and norms[i + 1] not in NUMBERS:
+                    break
+                found.append(Adjective(norm, "other", Degree.PLAIN, self._span(i, i + 1)))
+                i += 1
+                continue
+            if norm == "non" or norm in ("-",):
+                i += 1
+                continue
+            if found and norm in ("and", ",", "/", "or", "but") and self._joins_adjectives(i):
+                i += 1
+                continue
+            if not self._modifies(i, determined or bool(found)):
+                break
+            found.append(self._adjective(i, None, i))
+            i += 1
+            if norms[i] == "most" and found[-1].dimension == "position":
+                found[-1] = replace(found[-1], degree=Degree.SUPERLATIVE, span=self._span(i - 1, i + 1))
+                i += 1
+            elif norms[i] in ("hand", "side") and found[-1].dimension == "position" and self._nounish(i + 1):
+                i += 1
+        return i, tuple(found)
+
+    def _adjective(self, at: int, degree: Degree | None, start: int) -> Adjective:
+        norm = self.norms[at]
+        lemma, own = degree_of(norm)
+        dimension = self._adjectives.get(norm) or self._adjectives.get(lemma)
+        if dimension is None:
+            if norm.endswith(("colored", "coloured")):
+                dimension, lemma = "colour", norm.rpartition("-")[0] or lemma
+            elif norm.endswith("shaped"):
+                dimension = "shape"
+            else:
+                dimension = "state" if norm.endswith("ed") else "other"
+        return Adjective(lemma, dimension, degree or own, self._span(start, at + 1))
+
+    def _is_relation(self, at: int) -> bool:
+        """Return True if a relation phrase of several words begins here: *close to*, *next to*, *level with*."""
+        return f"{self.norms[at]} {self.norms[at + 1]}" in prepositions()
+
+    def _modifies(self, at: int, determined: bool) -> bool:
+        norm, after = self.norms[at], self.norms[at + 1]
+        if norm[:1].isdigit() and "-" in norm:
+            return self._nounish(at + 1)
+        if not norm or not norm[0].isalpha() or norm in ("there", "here"):
+            return False
+        if is_adjective(norm):
+            if (
+                norm in PLACE_NOUNS
+                or is_material_noun(norm)
+                or norm
+                in (
+                    "light",
+                    "orange",
+                    "cream",
+                    "flat",
+                    "rectangle",
+                    "glass",
+                    "double",
+                    "square",
+                    "chocolate",
+                    "peach",
+                    "lime",
+                    "main",
+                    "twin",
+                    "gold",
+                    "silver",
+                )
+            ):
+                if (is_material_noun(norm) and after in ("left", "right")) or self._letter(at + 1) is not None:
+                    return False
+                if norm in ("left", "right") and after in ("of", "to", "from"):
+                    return False
+                if self._nounish(at + 1) or after in ("one", "ones", "hand", "most"):
+                    return True
+                if (
+                    after in ("and", "or")
+                    and is_material_noun(norm)
+                    and is_adjective(self.norms[at + 2])
+                    and self._nounish(at + 3)
+                ):
+                    return True
+                if is_adjective(after) and (self._nounish(at + 2) or after in PLACE_NOUNS):
+                    return True
+                return norm in ("gold", "silver", "square", "flat", "orange", "cream") and not self._noun_by_position(
+                    at
+                )
+            if self._is_relation(at):
+                return False
+            if (
+                norm in self._relating
+                and degree_of(norm)[1] is Degree.PLAIN
+                and norm
+                not in (
+                    "round",
+                    "opposite",
+                    "near",
+                    "far",
+                    "inside",
+                    "outside",
+                    "close",
+                    "next",
+                    "adjacent",
+                    "second",
+                    "same",
+                    "most",
+                    "single",
+                    "only",
+                )
+            ):
+                return False
+            if norm in ("near", "far", "opposite", "close", "next", "inside", "outside"):
+                return (self.adjective_before_noun(at) and (determined or at == 0 or after in PLACE_NOUNS)) or (
+                    norm == "far" and after in DIRECTION_WORDS
+                )
+            return True
+        form = self._verbs.get(norm)
+        if (
+            form is not None
+            and form.form == "ing"
+            and form.kind == "posture"
+            and determined
+            and self.adjective_before_noun(at + 1)
+        ):
+            return True
+        if not self._nounish(at + 1) and after not in ("one", "ones"):
+            return False
+        if form is not None and form.form in ("past", "participle"):
+            return (determined and norm not in ("set",)) or (
+                form.form == "past" and norm.endswith("ed") and self._free(at)
+            )
+        return (
+            norm.endswith("ed")
+            and len(norm) > 4
+            and norm not in _ED_NOUNS
+            and (determined or self._free(at))
+            and (norm not in self._closed)
+        ) or (norm.endswith(("-ed", "ish")) and norm not in ("fish", "dish", "radish"))
+
+    def _free(self, at: int) -> bool:
+        """Return True if no noun stands before this word."""
+        before = self.norms[at - 1] if at else ""
+        return not before or before in self._closed or not before[0].isalpha()
+
+    def _noun_by_position(self, at: int) -> bool:
+        before = self.norms[at - 1] if at else ""
+        return (
+            before in DETERMINERS and self.norms[at] in ("orange", "square", "cream", "flat") and before in ("a", "an")
+        )
+
+    def _joins_adjectives(self, at: int) -> bool:
+        """Return True for *and* or a comma between adjectives of one noun: *blue and white bowl*, *small, red cup*."""
+        i = at + 1
+        if self.norms[at] == "," and self.norms[i] in ("and", "but"):
+            i += 1
+        if self.norms[i] in _BEFORE_ADJECTIVE and not is_adjective(self.norms[i]):
+            i += 1
+        if self.norms[i].endswith("ed") and self._nounish(i + 1) and not is_adjective(self.norms[i]):
+            return self.norms[i] not in _ED_NOUNS and self.norms[at] != "or"
+        if (
+            not is_adjective(self.norms[i])
+            or (self.norms[i] in self._closed and self.norms[i] != "round")
+            or self._is_relation(i)
+        ):
+            return False
+        if self.norms[at] == "or" and self.norms[i] in PLACE_NOUNS:
+            return False
+        j = i + 1
+        while self.norms[j] in ("and", ",") or (
+            is_adjective(self.norms[j])
+            and (self._nounish(j + 1) or is_adjective(self.norms[j + 1]) or self.norms[j + 1] in ("one", "ones"))
+        ):
+            j += 1
+        noun_after = self._nounish(j) or self.norms[j] in ("one", "ones")
+        return noun_after if self.norms[i] not in PLACE_NOUNS else noun_after and j == i + 1
+
+    def _head(
+        self,
+        start: int,
+        at: int,
+        determiner: str | None,
+        count: int | None,
+        modifiers: tuple[Adjective, ...],
+        owner: NounPhrase | None,
+        negated: bool,
+    ) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]]:
+        i, norms = at, self.norms
+        nouns: list[str] = []
+        while i < len(self.words):
+            compound = None if nouns else self._nouns.compound(norms, i)
+            if compound is not None:
+                nouns += norms[i:compound]
+                i = compound
+                continue
+            norm = norms[i]
+            if norm in ("one", "ones") and not nouns and (modifiers or determiner or owner):
+                phrase = NounPhrase(
+                    self._span(start, i + 1), "", determiner, count, norm == "ones", "one", modifiers, owner=owner,
+                    negated=negated,
+                )  # fmt: skip
+                return i + 1, phrase, ()
+            if norm in ("other", "others", "former", "latter") and not nouns and determiner is not None:
+                pronoun = PRONOUNS[norm]
+                phrase = NounPhrase(
+                    self._span(start, i + 1), "", determiner, count, norm == "others" or (count or 1) > 1, pronoun,
+                    modifiers, owner=owner, negated=negated,
+                )  # fmt: skip
+                return i + 1, phrase, ()
+            if norm in PLACE_NOUNS:
+                if (
+                    (
+                        norm in _NOUN_OR_PREPOSITION
+                        and not nouns
+                        and determiner is None
+                        and owner is None
+                        and not modifiers
+                    )
+                    and norm in ("left", "right", "next")
+                    and norms[i + 1] in ("of", "to")
+                ):
+                    break
+                if nouns and (
+                    f"{norm} {norms[i + 1]}" in places_alone()
+                    or f"{norm} {norms[i + 1]} {norms[i + 2]}" in places_alone()
+                ):
+                    break
+                if nouns and norm == "top" and norms[i + 1] != "of" and determiner is not None:
+                    pass
+                elif nouns and (
+                    norm in ("left", "right", "inside", "outside")
+                    or (is_adjective(norm) and norms[i + 1] not in ("of",))
+                ):
+                    break
+            letter = self._letter(i)
+            if letter is None and norm not in PLACE_NOUNS and (norm in self._closed or not self._noun_here(i, nouns)):
+                break
+            if letter is not None and nouns and nouns[-1] in PLACE_NOUNS:
+                break
+            if letter is not None and ((nouns and nouns[-1] in _GENERIC) or not nouns):
+                return (
+                    i + 1,
+                    NounPhrase(
+                        self._span(start, i + 1),
+                        letter,
+                        determiner,
+                        count,
+                        False,
+                        None,
+                        modifiers,
+                        owner=owner,
+                        negated=negated,
+                    ),
+                    (),
+                )
+            nouns.append(norm)
+            i += 1
+            if nouns[-1] in _GENERIC and norms[i] in ("labeled", "labelled", "called", "named", "marked"):
+                named = self._letter(i + 1)
+                if named is not None:
+                    return (
+                        i + 2,
+                        NounPhrase(
+                            self._span(start, i + 2),
+                            named,
+                            determiner,
+                            count,
+                            False,
+                            None,
+                            modifiers,
+                            owner=owner,
+                            negated=negated,
+                        ),
+                        (),
+                    )
+        if not nouns:
+            if determiner is None and owner is None and count is None:
+                if len(modifiers) and any(a.dimension != "rank" for a in modifiers):
+                    return at, None, modifiers
+                if not modifiers:
+                    return start, None, ()
+            if not modifiers and count is None and determiner in ("a", "an", "the", None) and owner is None:
+                return start, None, ()
+            if determiner in ("this", "that", "these", "those", "each", "every", "all", "both") and not modifiers:
+                return start, None, ()
+            phrase = NounPhrase(
+                self._span(start, i),
+                "",
+                determiner,
+                count,
+                (count or 1) > 1,
+                None,
+                modifiers,
+                owner=owner,
+                negated=negated,
+            )
+            return i, phrase, ()
+        one, plural = self._nouns.singular(nouns[-1])
+        if determiner in ("a", "an", "one", "this", "that", "each", "every") or count == 1:
+            plural = False if one == nouns[-1] else plural
+        if self.words[i - 1].text[:1].isupper() and len(nouns[-1]) <= 2 and nouns[-1] == one:
+            pass
+        head = " ".join([*nouns[:-1], one])
+        if (count or 0) > 1 and not plural and nouns[-1] in COLLECTIVES:
+            plural = True
+        phrase = NounPhrase(
+            self._span(start, i), head, determiner, count, plural or (count or 1) > 1, None, modifiers, owner=owner,
+            negated=negated,
+        )  # fmt: skip
+        return i, phrase, ()
+
+    def predicative(self, at: int) -> tuple[Adjective, ...]:
+        """Return a word after *is* as an adjective: *light*, *wood*; nothing for another word."""
+        if not is_adjective(self.norms[at]) or self.norms[at] in PLACE_NOUNS:
+            return ()
+        return (self._adjective(at, None, at),)
+
+    def is_letter(self, at: int) -> bool:
+        """Return True for a name of one capital letter."""
+        return self._letter(at) is not None
+
+    def is_known_noun(self, noun: str) -> bool:
+        """Return True for a noun of the ontology."""
+        return self._nouns.knows(noun)
+
+    def ends_as_verb(self, at: int) -> bool:
+        """Return True for an unknown verb right after a noun phrase."""
+        nouns = [self.norms[at - 1]]
+        return self._is_unknown_verb(at, nouns) or (at > 1 and self._is_unknown_verb(at, [self.norms[at - 2], *nouns]))
+
+    def _is_unknown_verb(self, at: int, nouns: list[str]) -> bool:
+        """Return True for an unknown word that looks like a verb after a known noun: *the lamp blorps at the desk*."""
+        norm, after = self.norms[at], self.norms[at + 1]
+        if not nouns or not norm.endswith("s") or norm.endswith("ss") or is_known(norm) or self._nouns.knows(norm):
+            return False
+        if not (after in prepositions() or after in ARTICLES) or self._nouns.singular(nouns[-1])[1]:
+            return False
+        start = at - len(nouns)
+        determined = any(
+            self.norms[k] in ("a", "an", "the", "this", "each", "every") for k in range(max(0, start - 3), start)
+        )
+        if any(self.number(k) is not None for k in range(max(0, start - 3), start)):
+            return False
+        ends = (k for k in range(at, len(self.norms)) if self.norms[k] in (",", ".", ";", "and", "but", ""))
+        verbs_later = any(norm in IS_FORMS for norm in self.norms[at : next(ends)])
+        return determined and self._nouns.knows(" ".join(nouns)) and not verbs_later
+
+    def _noun_here(self, at: int, nouns: list[str]) -> bool:
+        norm = self.norms[at]
+        if self._is_unknown_verb(at, nouns):
+            return False
+        if nouns and norm in ORDINALS:
+            return False
+        if norm[0].isdigit():
+            return (
+                bool(nouns) and norm.isdigit() and self.norms[at + 1] not in ("cm", "mm", "m", "inches", "inch", "feet")
+            )
+        if not norm[0].isalpha():
+            return False
+        if nouns and norm in ("left", "right"):
+            return False
+        if (
+            nouns
+            and is_adjective(norm)
+            and norm
+            in (
+                "open",
+                "empty",
+                "closed",
+                "high",
+                "low",
+                "parallel",
+                "tall",
+                "closest",
+                "farthest",
+                "furthest",
+                "nearest",
+                "closer",
+                "further",
+                "farther",
+                "upright",
+                "next",
+                "opposite",
+                "far",
+                "near",
+                "close",
+                "level",
+                "nested",
+                "folded",
+                "rolled",
+                "stacked",
+                "adjacent",
+                "flat",
+            )
+        ):
+            return False
+        if (
+            nouns
+            and is_adjective(norm)
+            and norm not in self._verbs
+            and not is_material_noun(norm)
+            and norm not in _ADJECTIVE_NOUNS
+        ):
+            return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
+        return self.is_noun(at)
+
+
+_NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
+_PREDICATIVE = frozenset({"left", "right", "close", "level", "parallel", "open"})
+_ED_NOUNS = word_set("bed shed sled weed seed reed bread thread spread bunkbed daybed flatbed waterbed")
+_ADJECTIVE_NOUNS = word_set("light glass square orange cream double metal wood plastic gold silver round inside main")

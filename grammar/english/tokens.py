@@ -1,0 +1,214 @@
+"""Cut a text into sentences, and a sentence into words: contractions, hyphens and frequent misspellings."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from deixis.grammar.english.tree import Degree, Span
+from deixis.grammar.english.words import DIRECTION_WORDS, ORDINALS, TYPOS, adjectives, degree_of, word_set
+
+MAX_SENTENCE_WORDS = 400
+"""Number of words after which a text without a full stop is cut."""
+
+_ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
+_WORD = re.compile(
+    r"\b[wW]/(?:o\b)?|"  # with, without
+    r"[^\W\d_]+(?:['\u2019][^\W\d_]+)*(?:-[^\W_]+(?:['\u2019][^\W\d_]+)*)*"  # words, with apostrophes and hyphens
+    r"|\d+(?:[.,:]\d+)*(?:st|nd|rd|th)?(?:-[^\W\d_]+)*"  # numbers, ordinals, 3-level
+    r"|['\u2019](?:s|re|m|ll|d|ve)\b"
+    r"|[^\s\w]|_",
+    re.UNICODE,
+)
+_CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
+_ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
+_STEP = re.compile(
+    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013]|step\s+\d+[.:]?|\d{1,3}[.:]\d+)[ \t]+", re.I
+)
+
+
+@dataclass(slots=True)
+class Word:
+    """A word or a punctuation mark: ``norm`` is its form in lower case with straight apostrophes."""
+
+    text: str
+    norm: str
+    start: int
+    end: int
+    is_word: bool  # counts as a word of the sentence: not punctuation, not the second part of a split word
+
+
+@dataclass(frozen=True, slots=True)
+class RawSentence:
+    """A sentence before parsing: its place, the number or letter of a list item, and whether it is a heading."""
+
+    start: int
+    end: int
+    step: str | None = None
+    heading: bool = False
+
+
+def sentences(text: str) -> Iterator[RawSentence]:
+    """Yield the sentences of a text.
+
+    Full stops, question marks and blank lines end a sentence. A line end does, where the next line is a list item or
+    the line is short and ends without punctuation (a heading); otherwise the lines of a paragraph are joined.
+    """
+    start, length = 0, len(text)
+    step: str | None = None
+    while start < length:
+        while start < length and text[start].isspace():
+            start += 1
+        if start >= length:
+            return
+        if start == 0 or text[start - 1] == "\n" or not text[:start].rsplit("\n", 1)[-1].strip():
+            mark = _STEP.match(text, start)
+            if mark is not None and mark.end() < length and text[mark.end() : mark.end() + 1] != "\n":
+                step = mark[0].strip()
+                start = mark.end()
+        end, heading = _end_of_sentence(text, start)
+        shown = end
+        while shown > start and text[shown - 1].isspace():
+            shown -= 1
+        if any(character.isalnum() for character in text[start:shown]):
+            yield RawSentence(start, shown, step, heading and step is None)
+        step = None
+        start = max(end, start + 1)
+
+
+def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
+    for match in _ENDS.finditer(text, start):
+        mark = match[0]
+        if mark.startswith("\n"):
+            if mark.count("\n") > 1:
+                line = text[start : match.start()]
+                more = bool(text[match.end() :].strip())
+                return match.end(), _is_heading(line) or (more and _is_title(line))
+            line = text[start : match.start()]
+            following = text[match.end() : match.end() + 80]
+            if _STEP.match(following) or line.rstrip().endswith((":", ";")) or _is_heading(line.rsplit("\n", 1)[-1]):
+                return match.end(), _is_heading(line)
+            if "\n" not in line and following[:1].isupper() and len(line) < 60 and not line.rstrip().endswith(","):
+                return match.end(), False
+            continue
+        if mark == "." or mark.startswith("."):
+            before = text[max(start, match.start() - 8) : match.start()].rsplit(None, 1)
+            last = before[-1].casefold().lstrip("(") if before else ""
+            following = text[match.end() : match.end() + 2].strip()
+            if last in _ABBREVIATIONS and not following[:1].isupper():
+                continue
+        return match.end(), False
+    return len(text), _is_heading(text[start:])
+
+
+def _is_heading(line: str) -> bool:
+    words = line.split()
+    if not words or len(words) > 8 or line.rstrip()[-1] in ".,;!?":
+        return False
+    letters = [word for word in words if word[0].isalpha()]
+    return (line.upper() == line and any(c.isalpha() for c in line) and len(words) > 1) or bool(
+        line.rstrip().endswith(":") and len(words) <= 3 and len(letters) == len(words) and "\n" not in line
+    )
+
+
+def _is_title(line: str) -> bool:
+    """Return True for a short line without a full stop before an empty line."""
+    return "\n" not in line.strip() and len(line.split()) <= 8 and line.rstrip()[-1:] not in (".", "!", "?", ",", ";")
+
+
+def words_of(text: str, span: Span) -> list[Word]:
+    """Return the words and the punctuation marks of a sentence.
+
+    >>> [word.norm for word in words_of("The cup isn't on the left-hand side.", (0, 36))]
+    ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
+    """
+    found: list[Word] = []
+    for match in _WORD.finditer(text, *span):
+        raw = match[0]
+        start, end = match.span()
+        norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
+        norm = TYPOS.get(norm, norm)
+        if not raw[0].isalnum() and norm not in _CLITICS:
+            if norm in ("and", "at"):
+                found.append(Word(raw, norm, start, end, True))
+            elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|":
+                found.append(Word(raw, raw, start, end, False))
+            continue
+        for piece, is_first in _pieces(norm):
+            shown = raw[: len(piece)] if is_first else piece
+            found.append(Word(shown, piece, start, end, is_first))
+    for i in range(len(found) - 2, -1, -1):
+        if found[i].norm == found[i + 1].norm and found[i].norm in ("to", "the", "is", "a", "of", "on", "in", "and"):
+            found[i].end = found[i + 1].end
+            del found[i + 1]
+    for i in range(len(found) - 2, 0, -1):
+        if (
+            found[i].norm == "it"
+            and found[i + 1].norm == "'s"
+            and found[i - 1].norm in ("to", "on", "with", "of", "in", "at")
+        ):
+            found[i].norm, found[i].end = "its", found[i + 1].end
+            del found[i + 1]
+    for i in range(len(found) - 1):
+        if found[i].norm == "closet" and found[i + 1].norm == "to":
+            found[i].norm = "closest"
+        if found[i].norm == "its" and found[i + 1].norm in ("the", "a", "an", "not", "on", "in", "next", "to", "it"):
+            found[i].norm = "it"
+            found.insert(i + 1, Word(found[i].text, "'s", found[i].start, found[i].end, False))
+    return found
+
+
+def _folded(raw: str) -> str:
+    return unicodedata.normalize("NFKC", raw).casefold().replace("\u2019", "'")
+
+
+def _pieces(norm: str) -> Iterator[tuple[str, bool]]:
+    """Yield the words that were written as one: contractions, *left-hand*, *top-right*."""
+    if norm.isalpha():
+        if norm == "cannot":
+            yield "can", True
+            yield "not", False
+        else:
+            yield norm, True
+        return
+    if "\u00a0" in norm:
+        for i, part in enumerate(norm.split("\u00a0")):
+            yield part, i == 0
+        return
+    if norm.endswith("n't"):
+        stem = {"ca": "can", "wo": "will", "sha": "shall"}.get(norm[:-3], norm[:-3])
+        yield stem, True
+        yield "not", False
+        return
+    for clitic in _CLITICS:
+        if norm.endswith(clitic):
+            if norm != clitic:
+                yield from _pieces(norm[: -len(clitic)])
+            yield clitic, norm == clitic
+            return
+    if norm.endswith("s'"):
+        yield norm[:-1], True
+        yield "'s", False
+        return
+    if "-" in norm:
+        parts = norm.split("-")
+        if all(part in DIRECTION_WORDS or part in ("most", "hand", "side") for part in parts):
+            parts = [part for i, part in enumerate(parts) if i == 0 or part not in ("hand",)]
+            for i, part in enumerate(parts):
+                yield part, i == 0
+            return
+        if (parts[0] == "in" and parts[-1] in ("between",)) or parts[0] == "next":
+            for i, part in enumerate(parts):
+                yield part, i == 0
+            return
+        if len(parts) == 2 and parts[0] in ORDINALS and degree_of(parts[1])[1] is not Degree.PLAIN:
+            yield parts[0], True
+            yield parts[1], False
+            return
+        if len(parts) == 3 and parts[1] == "and" and parts[0] in adjectives():
+            for i, part in enumerate(parts):
+                yield part, i == 0
+            return
+    yield norm, True

@@ -1,0 +1,180 @@
+"""Any text: the parser answers in bounded time, with spans inside the text and counts that add up."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.deadline import Deadline
+from deixis.grammar.english.parse import parse_english
+from deixis.grammar.english.tree import NounPhrase, Predicate, Sentence
+from deixis.grammar.errors import ScriptTimeError
+
+WORDS = st.sampled_from(
+    [
+        "the",
+        "a",
+        "fork",
+        "plates",
+        "cup",
+        "left",
+        "right",
+        "of",
+        "to",
+        "on",
+        "in",
+        "not",
+        "isn't",
+        "is",
+        "are",
+        "and",
+        "or",
+        "but",
+        ",",
+        ".",
+        ";",
+        ":",
+        "?",
+        "that",
+        "which",
+        "with",
+        "it",
+        "its",
+        "one",
+        "ones",
+        "two",
+        "second",
+        "closest",
+        "taller",
+        "than",
+        "between",
+        "there",
+        "if",
+        "you",
+        "facing",
+        "from",
+        "put",
+        "choose",
+        "stands",
+        "corner",
+        "10",
+        "cm",
+        "'s",
+        "next",
+        "blue",
+        "each",
+        "no",
+        "only",
+        "so",
+        "at",
+        "most",
+        "12",
+        "o'clock",
+        "left-hand",
+        "A",
+        "B",
+        "\n",
+        "(",
+        ")",
+        "never",
+        "either",
+        "both",
+        "nor",
+    ]
+)
+SENTENCES = st.lists(WORDS, max_size=40).map(" ".join)
+
+
+def nouns(phrase: NounPhrase | None) -> Iterator[NounPhrase]:
+    """Yield a noun phrase and all phrases in it."""
+    if phrase is None:
+        return
+    yield phrase
+    for inner in (phrase.of, phrase.owner, *phrase.members):
+        yield from nouns(inner)
+    for predicate in phrase.predicates:
+        for argument in predicate.arguments:
+            yield from nouns(argument)
+
+
+def predicates(sentence: Sentence) -> Iterator[Predicate]:
+    """Yield the predicates of all clauses."""
+    for clause in sentence.clauses:
+        yield from clause.predicates
+
+
+def check(text: str) -> None:
+    end = 0
+    for sentence in parse_english(text):
+        assert end <= sentence.span[0] < sentence.span[1] <= len(text)
+        end = sentence.span[1]
+        assert sentence.text == text[slice(*sentence.span)]
+        assert 0 <= sentence.words_understood <= sentence.words
+        assert 0 <= sentence.understood <= 1
+        spans = [predicate.span for predicate in predicates(sentence)]
+        spans += [phrase.span for phrase in nouns(sentence.fragment)]
+        spans += [clause.span for clause in sentence.clauses]
+        spans += [note.span for note in sentence.misunderstood]
+        for start, stop in spans:
+            assert sentence.span[0] <= start < stop <= sentence.span[1]
+        for clause in sentence.clauses:
+            assert all(len(phrase.head) < 200 for phrase in nouns(clause.subject))
+            assert all(predicate.relation.isidentifier() for predicate in clause.predicates)
+
+
+@given(st.text(max_size=200))
+@settings(max_examples=60, deadline=None)
+def test_any_text(text: str) -> None:
+    check(text)
+
+
+@given(SENTENCES)
+@settings(max_examples=250, deadline=None)
+def test_any_words(text: str) -> None:
+    check(text)
+
+
+@given(SENTENCES)
+@settings(max_examples=50, deadline=None)
+def test_parsing_twice_gives_the_same(text: str) -> None:
+    assert parse_english(text) == parse_english(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["x" * 100_000, "the cup on " * 1000 + "the plate", "the cup that is on the plate " * 300, "the cup and " * 1000,
+     "the cup's " * 1000 + "handle", "not " * 3000, "the end of " * 1000 + "it", "." * 100_000, "(" * 10_000,
+     "very " * 2000 + "red", "\n" * 100_000, "1 " * 3000],
+    ids=lambda text: text[:12],
+)  # fmt: skip
+def test_long_texts_end_soon(text: str) -> None:
+    began = time.process_time()
+    check(text)
+    assert time.process_time() - began < 10
+
+
+def test_a_time_limit_holds() -> None:
+    with pytest.raises(ScriptTimeError, match="time limit reached"):
+        parse_english("The cup is on the tray. " * 10, deadline=Deadline.after(-1))
+
+
+@pytest.mark.parametrize("text", ["", " \n\t ", "...", "?!"])
+def test_a_text_without_words_has_no_sentences(text: str) -> None:
+    assert parse_english(text) == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Der Teller steht neben dem Glas.", "La fourchette est à gauche de l'assiette.", "叉子在盘子的左边。",
+     "Вилка слева от тарелки."],
+)  # fmt: skip
+def test_other_languages_are_refused(text: str) -> None:
+    (sentence,) = parse_english(text)
+    assert not sentence.clauses
+    assert sentence.fragment is None
+    assert sentence.understood == 0
+    assert "known as English" in sentence.misunderstood[0].reason
