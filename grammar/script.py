@@ -158,7 +158,7 @@ class Script(Answer):
         """Objects in the order and the spelling of their first mention."""
         found: dict[str, None] = {}
         for statement in self.all_statements():
-            for mention in _mentions(statement):
+            for mention in mentions(statement):
                 found.update(dict.fromkeys(mention.names))
         return tuple(found)
 
@@ -227,7 +227,8 @@ def _flat(statements: tuple[Statement, ...]) -> Iterator[Statement]:
             yield from _flat(statement.statements)
 
 
-def _mentions(statement: Statement) -> tuple[Mention, ...]:
+def mentions(statement: Statement) -> tuple[Mention, ...]:
+    """Return the mentions of objects in a statement, in order."""
     match statement:
         case Declaration(subjects=subjects):
             return subjects

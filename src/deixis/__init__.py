@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from deixis.workflows.ground import ground
     from deixis.workflows.imagine import Imagination, imagine
     from deixis.workflows.infer import Inference, infer
+    from deixis.workflows.lint import Lint, lint
     from deixis.workflows.perceive import perceive, write_scene
     from deixis.workflows.read import read_script
     from deixis.workflows.retrieve import Retrieval, retrieve
@@ -54,6 +55,7 @@ __all__ = [
     "Imagination",
     "Inference",
     "LayoutConcept",
+    "Lint",
     "Match",
     "OrientedBox",
     "PerceivedObject",
@@ -71,6 +73,7 @@ __all__ = [
     "ground",
     "imagine",
     "infer",
+    "lint",
     "perceive",
     "read_scene",
     "read_script",
@@ -87,6 +90,7 @@ _HOMES = {
     "Imagination": "deixis.workflows.imagine",
     "Inference": "deixis.workflows.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",
+    "Lint": "deixis.workflows.lint",
     "Match": "deixis.ontology.lessons.types",
     "OrientedBox": "deixis.perception.scene",
     "PerceivedObject": "deixis.perception.scene",
@@ -104,6 +108,7 @@ _HOMES = {
     "ground": "deixis.workflows.ground",
     "imagine": "deixis.workflows.imagine",
     "infer": "deixis.workflows.infer",
+    "lint": "deixis.workflows.lint",
     "perceive": "deixis.workflows.perceive",
     "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.workflows.read",

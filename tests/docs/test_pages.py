@@ -22,6 +22,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/descriptor_and_engine",
     "guides/robot",
     "reference/scenes",
+    "reference/lint",
 )
 
 pytestmark = pytest.mark.skipif(not DOCS.exists(), reason="there is no docs folder")
