@@ -10,7 +10,7 @@ FIND_PYTHON = for p in $(PYTHON) $(PYTHONS); do \
 	"$$p" -c 'import sys, venv, ensurepip; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 13))' >/dev/null 2>&1 \
 	&& { command -v "$$p"; break; }; done
 
-.PHONY: demo test lint docs lock bench clean
+.PHONY: demo test lint docs lock bench report clean
 
 demo: $(STAMP)
 	@$(BIN)/deixis demo
@@ -31,8 +31,13 @@ docs: $(STAMP)
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going --builder html docs docs/_build/html
 	$(BIN)/python tools/documentation/site_links.py docs/_build/html
 
+# Runs all benchmarks one after the other (hours) and records their figures; `make report` makes the page of them.
 bench: $(STAMP)
-	@for b in benchmarks/bench_*.py; do echo "== $$b"; $(BIN)/python "$$b" || exit 1; done
+	@$(BIN)/python benchmarks/records.py --list | while read -r python command; do \
+		echo "== $$command"; $(BIN)/python $$command || exit 1; done
+
+report: $(STAMP)
+	@$(BIN)/python benchmarks/records.py
 
 $(STAMP): requirements.lock pyproject.toml setup.py
 	@python=$$($(FIND_PYTHON)); \

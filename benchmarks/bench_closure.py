@@ -22,6 +22,7 @@ import numpy as np
 from common import medians
 from numba import njit
 from numpy.typing import NDArray
+from records import command_line, count, ratio, recorded
 
 from deixis.grammar.formats.networks import write_networks
 from deixis.reasoning.geometry.allen import allen_relations
@@ -143,8 +144,10 @@ def compare(name: str, nets: list[Network], table: Masks, converses: Masks) -> N
     )
     seconds, straightly = medians(partial(ours, nets), partial(peer, nets, table, converses), runs=5)
     verdict = "same result" if same else "RESULTS DIFFER"
-    ratio = f"{straightly / seconds:.1f} times"
-    print(f"{name:<42} deixis {seconds:.3f} s   straight numba {straightly:.3f} s ({ratio})   {verdict}")
+    times = f"{straightly / seconds:.1f} times"
+    ratio(f"{name}, plain compiled path consistency", straightly, seconds, "numba")
+    count(f"{name}: networks with another result than the plain algorithm", 0 if same else len(nets))
+    print(f"{name:<42} deixis {seconds:.3f} s   straight numba {straightly:.3f} s ({times})   {verdict}")
     if nets[0].calculus is ALLEN:
         with tempfile.TemporaryDirectory() as folder:
             process = gqr(Path(folder), nets)
@@ -155,13 +158,15 @@ def compare(name: str, nets: list[Network], table: Masks, converses: Masks) -> N
 
 
 def main() -> None:
-    table, converses = tables()
-    for things, facts in ((200, 500), (500, 1_000)):
-        nets = [network(things, facts, 2, seed=1)]
-        compare(f"rectangle algebra, {things} things, {facts:,} facts", nets, table, converses)
-    for facts in (1_000, 10_000):
-        nets = [network(80, facts, 1, seed) for seed in range(100)]
-        compare(f"100 Allen networks, 80 things, {facts:,} facts", nets, table, converses)
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        table, converses = tables()
+        for things, facts in ((200, 500), (500, 1_000)):
+            nets = [network(things, facts, 2, seed=1)]
+            compare(f"rectangle algebra, {things} things, {facts:,} facts", nets, table, converses)
+        for facts in (1_000, 10_000):
+            nets = [network(80, facts, 1, seed) for seed in range(100)]
+            compare(f"100 Allen networks, 80 things, {facts:,} facts", nets, table, converses)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from common import data_folder, medians
+from records import command_line, ratio, recorded
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
@@ -54,6 +55,7 @@ def measure(folder: Path, cloud: PointCloud) -> None:
             runs=5,
         )
         best = min(legacy, tensor)
+        ratio(f"{suffix[1:].upper()} {encoding}, the faster of two readers", best, ours, "open3d-cpu")
         print(
             f"{suffix[1:].upper()} {encoding:<18} {file.stat().st_size / 2**20:5.1f} MiB  deixis {ours * 1e3:6.1f} ms"
             f"   open3d {legacy * 1e3:6.1f} ms, tensor {tensor * 1e3:6.1f} ms   {best / ours:5.1f} times as fast"
@@ -61,13 +63,15 @@ def measure(folder: Path, cloud: PointCloud) -> None:
 
 
 def main() -> None:
-    try:
-        import open3d  # noqa: F401
-    except ImportError as error:
-        print(f"skipped: Open3D is not installed ({error})", file=sys.stderr)
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        measure(Path(folder), scene())
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        try:
+            import open3d  # noqa: F401
+        except ImportError as error:
+            print(f"skipped: Open3D is not installed ({error})", file=sys.stderr)
+            return
+        with tempfile.TemporaryDirectory() as folder:
+            measure(Path(folder), scene())
 
 
 if __name__ == "__main__":

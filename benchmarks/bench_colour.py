@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from common import data_folder
 from numpy.typing import NDArray
+from records import command_line, figure, recorded, share
 
 from deixis.learning.views import COLOUR, FORM, SPIN_IMAGE_ROOTS, UPRIGHT, Comparison, known_by
 from deixis.perception.clouds.cloud import PointCloud
@@ -123,6 +124,10 @@ def answers(views: Views, way: Comparison) -> Iterator[tuple[float, ...]]:
 def report(said: str, rows: Sequence[tuple[float, ...]]) -> None:
     nearest, named, least, others, sure, right, alone, unknown, weight = np.array(rows, np.float64).T
     error = expected_calibration_error(np.concatenate([sure, alone]), np.concatenate([right, unknown]) > 0)
+    share(f"{said}: nearest category right", int(nearest.sum()), len(nearest))
+    share(f"{said}: named right", int(named.sum()), len(named))
+    figure(f"{said}: AUROC of the unknown", auroc(least, others), "share")
+    figure(f"{said}: calibration error", error, "share")
     print(
         f"{said:22}  {nearest.mean():7.3f}  {named.mean():5.3f}  {auroc(least, others):5.3f}  {error:17.3f}"
         f"  {np.median(weight):.2f}",
@@ -131,14 +136,16 @@ def report(said: str, rows: Sequence[tuple[float, ...]]) -> None:
 
 
 def main() -> None:
-    folder = data_folder(FOLDER)
-    if folder is None:
-        return
-    views = seen(folder)
-    print(f"{len(views)} views of {len(SAME)} things on {len({table for _, table, _ in views})} tables")
-    print("way                     nearest  named  AUROC  calibration error  weight of the last")
-    for said, way in WAYS.items():
-        report(said, list(answers(views, way)))
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        folder = data_folder(FOLDER)
+        if folder is None:
+            return
+        views = seen(folder)
+        print(f"{len(views)} views of {len(SAME)} things on {len({table for _, table, _ in views})} tables")
+        print("way                     nearest  named  AUROC  calibration error  weight of the last")
+        for said, way in WAYS.items():
+            report(said, list(answers(views, way)))
 
 
 if __name__ == "__main__":

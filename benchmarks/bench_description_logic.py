@@ -14,6 +14,7 @@ from pathlib import Path
 import owlrl  # type: ignore[import-untyped]
 import pyoxigraph as ox
 import rdflib
+from records import command_line, recorded, seconds
 
 from deixis.ontology.vocabulary import BASE
 from deixis.reasoning.description_logic.justification import justify
@@ -90,49 +91,53 @@ ENGINES: dict[str, Callable[[str], int]] = {
 }
 
 
-def measure(name: str, job: Callable[[], object]) -> None:
+def measure(what: str, name: str, job: Callable[[], object]) -> None:
     started = time.perf_counter()
     try:
         told = f"{job():9,} triples"
     except LimitError:
         told = "undecided"
-    print(f"  {name:42} {time.perf_counter() - started:9.3f} s  {told}", flush=True)
+    taken = time.perf_counter() - started
+    seconds(f"{what}: {name}", taken)
+    print(f"  {name:42} {taken:9.3f} s  {told}", flush=True)
 
 
-def grown(text: str, stated: list[Triple]) -> None:
+def grown(what: str, text: str, stated: list[Triple]) -> None:
     """Time adding a few facts to a materialised graph, beside materialising it from scratch."""
     known = Materialisation(read_ntriples(text))
     new = [Triple("<urn:new>", TYPE, f"<{BASE}Fork>")]
     new += [Triple("<urn:new>", f"<{BASE}left>", stated[2 * i].subject) for i in range(ADDED - 1)]
-    measure(f"deixis OWL 2 RL, {ADDED} facts added", lambda: len(known.add(new)))
-    measure(f"deixis OWL 2 RL, {ADDED} facts added, from scratch", lambda: by_rules(text + write_ntriples(new)))
+    measure(what, f"deixis OWL 2 RL, {ADDED} facts added", lambda: len(known.add(new)))
+    measure(what, f"deixis OWL 2 RL, {ADDED} facts added, from scratch", lambda: by_rules(text + write_ntriples(new)))
 
 
 def main() -> None:
-    schema = core()
-    for engine in ENGINES.values():
-        engine(schema)  # compiled and loaded, with the disk's cache warm
-    for size in SIZES:
-        stated = facts(size)
-        text = schema + write_ntriples(declared(stated))
-        print(f"the core ontology and {size:,} facts")
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        schema = core()
+        for engine in ENGINES.values():
+            engine(schema)  # compiled and loaded, with the disk's cache warm
+        for size in SIZES:
+            stated = facts(size)
+            text = schema + write_ntriples(declared(stated))
+            print(f"the core ontology and {size:,} facts")
+            for name, engine in ENGINES.items():
+                if name == "owlrl" and size > OWLRL_AT_MOST:
+                    print(f"  {name:42} left out: see docs/reference/description_logic.md")
+                    continue
+                measure(f"{size:,} facts", name, lambda engine=engine, text=text: engine(text))  # type: ignore[misc]
+            grown(f"{size:,} facts", text, stated)
+        text = chain(CHAIN)
+        print(f"a transitive chain of {CHAIN} objects, to triples")
         for name, engine in ENGINES.items():
-            if name == "owlrl" and size > OWLRL_AT_MOST:
-                print(f"  {name:42} left out: see docs/reference/description_logic.md")
-                continue
-            measure(name, lambda engine=engine, text=text: engine(text))  # type: ignore[misc]
-        grown(text, stated)
-    text = chain(CHAIN)
-    print(f"a transitive chain of {CHAIN} objects, to triples")
-    for name, engine in ENGINES.items():
-        if name != "owlrl":
-            measure(name, lambda engine=engine: engine(text))  # type: ignore[misc]
-    # ---- the row of the spatial calculus goes here: measure("deixis calculus", …)
-    print("justifications")
-    spork = Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING)
-    said = [Triple("<urn:Spork>", SUB_CLASS_OF, f"<{BASE}{name}>") for name in ("Fork", "Spoon")]
-    text = schema + write_ntriples([Triple("<urn:Spork>", TYPE, term("owl:Class")), *said])
-    measure("an impossible class (axioms)", lambda: len(justify(text, spork).axioms))
+            if name != "owlrl":
+                measure("a transitive chain", name, lambda engine=engine: engine(text))  # type: ignore[misc]
+        # ---- the row of the spatial calculus goes here: measure("deixis calculus", …)
+        print("justifications")
+        spork = Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING)
+        said = [Triple("<urn:Spork>", SUB_CLASS_OF, f"<{BASE}{name}>") for name in ("Fork", "Spoon")]
+        text = schema + write_ntriples([Triple("<urn:Spork>", TYPE, term("owl:Class")), *said])
+        measure("justification", "an impossible class (axioms)", lambda: len(justify(text, spork).axioms))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ case (4); ``--quick`` two and one. LCCP is built against the library if that is 
 
 from __future__ import annotations
 
-import argparse
 import sys
 import tempfile
 import time
@@ -24,6 +23,7 @@ from common import data_folder
 from hard_tables import CASES, LAYOUT, LEAST
 from numpy.typing import NDArray
 from peers import lccp_pcl
+from records import command_line, mean, recorded, share
 
 from deixis.grammar.parser import read_script
 from deixis.perception.clouds.cloud import PointCloud
@@ -166,6 +166,9 @@ def real_scenes(folder: Path, compared: dict[str, Method]) -> None:
             rows[name].append((found / len(wanted), of_objects, found, len(middles), taken))
             line += f"{found:8}/{len(wanted)} of {len(middles):3} {taken:5.2f} s"
         print(line, flush=True)
+    for name, row in rows.items():
+        mean(f"Kinect scenes, {name}: segments found", [one[0] for one in row])
+        mean(f"Kinect scenes, {name}: whole objects found", [one[1] for one in row])
     for place, what in enumerate(("segments, mean", "objects, mean", "segments", "reported", "median seconds")):
         columns = [np.array(row)[:, place] for row in rows.values()]
         fold = (np.mean, np.mean, np.sum, np.sum, np.median)[place]
@@ -188,9 +191,10 @@ def simulated(seeds: range, compared: dict[str, Method]) -> None:
             totals[name] += (found, placed, placed == count, taken)
     things = len(seeds) * len(look.truth.objects)
     for name, total in totals.items():
-        share = total / (things, things, len(seeds), len(seeds))
-        rates = f"found {share[0]:6.1%}  placed {share[1]:6.1%}  whole tables {share[2]:4.0%}"
-        print(f"{name:16} {rates}  {share[3]:5.2f} s")
+        each = total / (things, things, len(seeds), len(seeds))
+        share(f"simulated settings, {name}: objects placed within 1 cm", int(total[1]), things)
+        rates = f"found {each[0]:6.1%}  placed {each[1]:6.1%}  whole tables {each[2]:4.0%}"
+        print(f"{name:16} {rates}  {each[3]:5.2f} s")
 
 
 def hard_cases(count: int, compared: dict[str, Method]) -> None:
@@ -241,24 +245,24 @@ def _right(look: Simulation, labels: Labels, middles: NDArray[np.float64]) -> tu
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--hard", type=int, default=4, help="number of tables of each hard case")
     parser.add_argument("--quick", action="store_true")
-    given = parser.parse_args()
-    folder = data_folder("mosd-tabletop")
-    with tempfile.TemporaryDirectory() as built:
-        compared = methods(Path(built))
-        if folder is not None:
-            detect(read_cloud(next(folder.glob("*.pcd"))))  # compiles
-            real_scenes(folder, compared)
-        simulated(range(given.first, given.first + (2 if given.quick else given.seeds)), compared)
-        hard_cases(
-            1 if given.quick else given.hard,
-            {name: method for name, method in compared.items() if not name.startswith("cluster")},
-        )
-        odd_clouds(given.first)
+    with recorded(parser) as given:
+        folder = data_folder("mosd-tabletop")
+        with tempfile.TemporaryDirectory() as built:
+            compared = methods(Path(built))
+            if folder is not None:
+                detect(read_cloud(next(folder.glob("*.pcd"))))  # compiles
+                real_scenes(folder, compared)
+            simulated(range(given.first, given.first + (2 if given.quick else given.seeds)), compared)
+            hard_cases(
+                1 if given.quick else given.hard,
+                {name: method for name, method in compared.items() if not name.startswith("cluster")},
+            )
+            odd_clouds(given.first)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ logistic regression is fitted to held-out kinds, and reported on other splits of
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,6 +23,7 @@ from bench_naming import Views, distances, left_out, seen, split
 from bench_recognition import TABLES, found_on_table
 from common import data_folder
 from numpy.typing import NDArray
+from records import command_line, figure, recorded
 from scipy.interpolate import PchipInterpolator
 from scipy.linalg import eigh
 from scipy.spatial.distance import cdist
@@ -292,42 +292,51 @@ def tell_unknown(held: Views, meshes: Views | None) -> None:
 
 
 def main() -> None:
-    folder = data_folder(FOLDER)
-    kinds = int(sys.argv[sys.argv.index("--kinds") + 1]) if "--kinds" in sys.argv else 240
-    ridge = float(sys.argv[sys.argv.index("--ridge") + 1]) if "--ridge" in sys.argv else 1.0
-    meshes = None if folder is None else seen(folder, False, 12)
-    held = procedural(2 * kinds // 3, kinds)
-    if "--unknown" in sys.argv:
-        tell_unknown(held, meshes)
-        return
-    taught = procedural(0, 2 * kinds // 3)
-    tables = described(
-        [
-            (name, f"{seed} {name}", cloud)
-            for seeds in TABLES[:2]
-            for seed in seeds
-            for name, cloud in found_on_table(seed)
-        ]
-    )
-    sets = {"held-out kinds, 8 views": (held, 8, 4), "laid tables, 6 views": (tables, 6, 4)}
-    if meshes is not None:
-        sets |= {f"meshes, {count} views": (meshes, count, 10) for count in (3, 24)}
-    print(f"{len(taught.clouds)} views of {2 * kinds // 3} kinds teach; accuracy and AUROC of the unknown")
-    rows = vectors(taught)
-    maps = {size: learnt(rows, taught.categories, ridge, size) for size in DIMENSIONS}
-    if "--write" in sys.argv:
-        middle, kept = maps[DIMENSIONS[1]]
-        np.savez(sys.argv[sys.argv.index("--write") + 1], mean=middle.astype(np.float32), map=kept.astype(np.float32))
-    for said, (views, count, splits) in sets.items():
-        parts = [logarithms(distances(views.described[way.name])) for way in (UPRIGHT, FORM)]
-        together = np.tensordot(SHIPPED_JOINT.weights, parts, axes=1)
-        print(f"{said:24}  upright and form     {'{:.3f}, {:.3f}'.format(*named(together, views, count, splits))}")
-        for size, (middle, turn) in maps.items():
-            embedded = (vectors(views) - middle) @ turn
-            apart = logarithms(cdist(embedded, embedded))
-            for how, scores in (("alone", apart), ("beside", (1 - SHARE) * together + SHARE * apart)):
-                result = "{:.3f}, {:.3f}".format(*named(scores, views, count, splits))
-                print(f"{said:24}  {size} numbers, {how:8} {result}", flush=True)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--kinds", type=int, default=240, help="number of procedural kinds")
+    parser.add_argument("--ridge", type=float, default=1.0, help="ridge of the discriminant analysis")
+    parser.add_argument("--unknown", action="store_true", help="measure only the signals of the unknown")
+    parser.add_argument("--write", metavar="FILE", help="write the learned projection (.npz)")
+    with recorded(parser) as options:
+        folder = data_folder(FOLDER)
+        kinds = options.kinds
+        ridge = options.ridge
+        meshes = None if folder is None else seen(folder, False, 12)
+        held = procedural(2 * kinds // 3, kinds)
+        if options.unknown:
+            tell_unknown(held, meshes)
+            return
+        taught = procedural(0, 2 * kinds // 3)
+        tables = described(
+            [
+                (name, f"{seed} {name}", cloud)
+                for seeds in TABLES[:2]
+                for seed in seeds
+                for name, cloud in found_on_table(seed)
+            ]
+        )
+        sets = {"held-out kinds, 8 views": (held, 8, 4), "laid tables, 6 views": (tables, 6, 4)}
+        if meshes is not None:
+            sets |= {f"meshes, {count} views": (meshes, count, 10) for count in (3, 24)}
+        print(f"{len(taught.clouds)} views of {2 * kinds // 3} kinds teach; accuracy and AUROC of the unknown")
+        rows = vectors(taught)
+        maps = {size: learnt(rows, taught.categories, ridge, size) for size in DIMENSIONS}
+        if options.write:
+            middle, kept = maps[DIMENSIONS[1]]
+            np.savez(options.write, mean=middle.astype(np.float32), map=kept.astype(np.float32))
+        for said, (views, count, splits) in sets.items():
+            parts = [logarithms(distances(views.described[way.name])) for way in (UPRIGHT, FORM)]
+            together = np.tensordot(SHIPPED_JOINT.weights, parts, axes=1)
+            print(f"{said:24}  upright and form     {'{:.3f}, {:.3f}'.format(*named(together, views, count, splits))}")
+            for size, (middle, turn) in maps.items():
+                embedded = (vectors(views) - middle) @ turn
+                apart = logarithms(cdist(embedded, embedded))
+                for how, scores in (("alone", apart), ("beside", (1 - SHARE) * together + SHARE * apart)):
+                    right, told = named(scores, views, count, splits)
+                    figure(f"{said}, {size} numbers, {how}: named right", right, "share")
+                    figure(f"{said}, {size} numbers, {how}: AUROC of the unknown", told, "share")
+                    result = f"{right:.3f}, {told:.3f}"
+                    print(f"{said:24}  {size} numbers, {how:8} {result}", flush=True)
 
 
 if __name__ == "__main__":

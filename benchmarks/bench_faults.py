@@ -10,7 +10,6 @@ descriptions are noticed. Intervals are Wilson's (1927), 95 per cent, as if matc
 
 from __future__ import annotations
 
-import argparse
 import math
 import time
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from records import command_line, recorded, share
 from scipy.stats import binomtest
 
 from deixis.deadline import Deadline
@@ -174,31 +174,32 @@ def print_costs(seed: int, repeats: int = 5) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--tables", type=int, default=36, help="tables for each fault")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--cost", action="store_true", help="print only the processor time of groundings")
-    options = parser.parse_args()
-    if options.cost:
-        print_costs(options.seed)
-        return
-    print(
-        f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided, of {OBJECTS} objects per table"
-    )
-    print(f"{'fault':<40}{'kinds':<44}words alone")
-    for name, fault in FAULTS.items():
-        told = []
-        for kinds in (True, False):
-            counts = np.zeros(2, dtype=int)
-            for number in range(options.tables):
-                table = generate(OBJECTS, FACTS / OBJECTS, 0.0, seed=1000 * options.seed + number)
-                seen = fault(table, np.random.default_rng([options.seed, number]))
-                if fault is shuffled and not kinds:
-                    seen = by_place(table, seen)
-                counts += decided_and_right(grounded(table, seen, kinds), seen)
-            share = counts[0] / (OBJECTS * options.tables)
-            told.append(f"{interval(int(counts[1]), int(counts[0]))} ({share:.2f} decided)")
-        print(f"{name:<40}{told[0]:<44}{told[1]}", flush=True)
+    with recorded(parser) as options:
+        if options.cost:
+            print_costs(options.seed)
+            return
+        print(f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided matches")
+        print(f"{'fault':<40}{'kinds':<44}words alone")
+        for name, fault in FAULTS.items():
+            told = []
+            for kinds in (True, False):
+                counts = np.zeros(2, dtype=int)
+                for number in range(options.tables):
+                    table = generate(OBJECTS, FACTS / OBJECTS, 0.0, seed=1000 * options.seed + number)
+                    seen = fault(table, np.random.default_rng([options.seed, number]))
+                    if fault is shuffled and not kinds:
+                        seen = by_place(table, seen)
+                    counts += decided_and_right(grounded(table, seen, kinds), seen)
+                decided = counts[0] / (OBJECTS * options.tables)
+                what = f"{name}, {'kinds known' if kinds else 'words alone'}"
+                share(f"{what}: decided matches that are right", int(counts[1]), int(counts[0]))
+                share(f"{what}: objects decided", int(counts[0]), OBJECTS * options.tables)
+                told.append(f"{interval(int(counts[1]), int(counts[0]))} ({decided:.2f} decided)")
+            print(f"{name:<40}{told[0]:<44}{told[1]}", flush=True)
 
 
 if __name__ == "__main__":

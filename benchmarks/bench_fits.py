@@ -11,7 +11,6 @@ objects whose kinds are known, with 22 facts and more.
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ import numpy as np
 from bench_faults import moved_to, shuffled
 from common import data_folder
 from numpy.typing import NDArray
+from records import command_line, figure, recorded
 
 from deixis.deadline import Deadline
 from deixis.experiments.cross_validation import folds
@@ -143,17 +143,17 @@ def curve(right: NDArray[np.float64], wrong: NDArray[np.float64]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--count", type=int, default=4, help="tables of each setting to fit to")
     parser.add_argument("--tables", type=int, default=60, help="tables for each rate of `fits`")
     parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args()
-    tables, images = list(table_pairs(options.count, options.seed)), photograph_pairs()
-    _print_powers(tables, images, options.seed)
-    _print_curves(list(table_pairs(1, options.seed + 1)), images, options.seed)  # other tables than were fitted to
-    if images:
-        _print_decided(images)
-    _print_rates(options.tables, options.seed)
+    with recorded(parser) as options:
+        tables, images = list(table_pairs(options.count, options.seed)), photograph_pairs()
+        _print_powers(tables, images, options.seed)
+        _print_curves(list(table_pairs(1, options.seed + 1)), images, options.seed)  # other tables than were fitted to
+        if images:
+            _print_decided(images)
+        _print_rates(options.tables, options.seed)
 
 
 def _print_powers(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
@@ -185,6 +185,8 @@ def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[Photograp
     print(f"other generated tables, wrong ones noticed: {curve(odds[own], odds[~own])}")
     least = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
     accused, noticed = (odds[own] < least).mean(), (odds[~own] < least).mean()
+    figure("generated tables: own descriptions with fits below 0.5", accused, "share")
+    figure("generated tables: wrong descriptions with fits below 0.5", noticed, "share")
     print(f"fits below 0.5 on {accused:.3f} of the right ones and on {noticed:.3f} of the wrong ones")
     if not images:
         return

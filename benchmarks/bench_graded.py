@@ -21,6 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 from common import data_folder
 from numpy.typing import NDArray
+from records import command_line, figure, mean, recorded
 
 from deixis.experiments.cross_validation import learned_meanings
 from deixis.experiments.generated_tables import generate
@@ -83,6 +84,7 @@ def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float6
 
 
 def report(name: str, shares: NDArray[np.float64], started: float, halves: bool) -> None:
+    mean(f"{name}: share named right", shares)
     error = shares.std(ddof=1) / np.sqrt(len(shares))
     order = np.random.default_rng(HALVES_SEED).permutation(len(shares))
     parts = [shares[part].mean() for part in np.array_split(order, 2)] if halves else []
@@ -108,6 +110,11 @@ def on_tables(count: int, first: int) -> None:
             limits.append(bayes_limit(table))
         words, pairs = (np.mean([getattr(one, name) for one in limits]) for name in ("words", "words_and_pairs"))
         error, sure, precision = calibrated(np.concatenate(probability), np.concatenate(hits))
+        what = f"{facts:g} facts per object, {off:.0%} off"
+        mean(f"{what}: share named right", right)
+        figure(f"{what}: Bayes limit of the words", words, "share")
+        figure(f"{what}: calibration error", error, "share")
+        figure(f"{what}: precision from 0.95 on", precision, "share")
         partly = "" if all(one.complete for one in limits) else " (not all maps listed)"
         print(
             f"{facts:g} facts per object, {off:.0%} off: best map {np.mean(right):.3f} "
@@ -159,7 +166,7 @@ def on_photographs(options: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--orders", type=int, default=5, help="random node orders per image")
     parser.add_argument("--folds", type=int, default=10)
     parser.add_argument("--seeds", default="0,1", help="seeds of the split into folds")
@@ -168,11 +175,11 @@ def main() -> None:
     parser.add_argument("--halves", action="store_true", help="also the two halves of the images")
     parser.add_argument("--tables", type=int, default=0, help="generated tables per setting, instead of photographs")
     parser.add_argument("--first-table", type=int, default=9000, help="the first table's seed")
-    options = parser.parse_args()
-    if options.tables > 0:
-        on_tables(options.tables, options.first_table)
-    else:
-        on_photographs(options)
+    with recorded(parser) as options:
+        if options.tables > 0:
+            on_tables(options.tables, options.first_table)
+        else:
+            on_photographs(options)
 
 
 if __name__ == "__main__":

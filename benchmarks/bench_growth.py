@@ -11,7 +11,6 @@ batch of 20.
 
 from __future__ import annotations
 
-import argparse
 import random
 import resource
 import statistics
@@ -22,6 +21,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+
+from records import command_line, figure, recorded
 
 import deixis.workflows.learn as learning
 from deixis.experiments.place_settings import formal_setting
@@ -115,6 +116,9 @@ def told(lessons: int, times: Times, base: Times | None) -> str:
     parts = []
     for what, taken in times.items():
         median = statistics.median(taken)
+        if base is not None:
+            relative = median / statistics.median(base[what])
+            figure(f"{lessons:,} lessons: {what}", relative, "times the time with the fewest")
         ratio = f" ({median / statistics.median(base[what]):.2f})" if base is not None else ""
         parts.append(f"{what} {median * 1e3:.1f} ms{ratio}")
     return f"{lessons:>6,} lessons: " + ", ".join(parts)
@@ -183,21 +187,21 @@ def forgetting(path: Path, left: int) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--runs", type=int, default=9)
     parser.add_argument("--batch", type=int, default=10_000)
     parser.add_argument("--most", type=int, default=1000, help="lessons learned one by one")
     parser.add_argument("--words", action="store_true", help="also fit relation words, and forget lessons of the fit")
     parser.add_argument("--quick", action="store_true")
-    options = parser.parse_args()
-    if options.quick:
-        options.runs, options.batch, options.most = 3, 20, 20
-    with tempfile.TemporaryDirectory() as scratch:
-        numbers = [number for number in (10, 100, 1000) if number < options.most]
-        base = singly(Path(scratch) / "singly", [*numbers, options.most], options.runs, options.words)
-        if options.batch:
-            as_batch(Path(scratch) / "batch", options.batch, options.runs, base)
-        forgetting(Path(scratch) / "singly", 10)
+    with recorded(parser) as options:
+        if options.quick:
+            options.runs, options.batch, options.most = 3, 20, 20
+        with tempfile.TemporaryDirectory() as scratch:
+            numbers = [number for number in (10, 100, 1000) if number < options.most]
+            base = singly(Path(scratch) / "singly", [*numbers, options.most], options.runs, options.words)
+            if options.batch:
+                as_batch(Path(scratch) / "batch", options.batch, options.runs, base)
+            forgetting(Path(scratch) / "singly", 10)
 
 
 if __name__ == "__main__":

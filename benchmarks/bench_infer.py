@@ -17,6 +17,7 @@ import pyoxigraph as ox
 from common import medians
 from numpy.typing import NDArray
 from rdflib import Graph, URIRef
+from records import command_line, ratio, recorded, seconds
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
@@ -105,7 +106,9 @@ def compare(title: str, case: tuple[int, Pairs], peers: list[str], runs: int) ->
     times = medians(lambda: ours(graph), *(job for _, job in jobs), runs=runs)
     print(f"{title}: {len(pairs):,} facts, {expected:,} pairs of left")
     print(f"    deixis {1e3 * times[0]:.2f} ms, one explanation {1e3 * explanation(graph):.2f} ms")
+    seconds(title, times[0])
     for (name, _), taken in zip(jobs, times[1:], strict=True):
+        ratio(title, taken, times[0], name.split()[0])
         print(f"    {name} {1e3 * taken:.0f} ms: {taken / times[0]:.0f} times as long")
 
 
@@ -127,6 +130,7 @@ def explanation(graph: RelationGraph) -> float:
 def long_chain(n: int) -> None:
     graph = graph_of(*chain(n))
     (taken,) = medians(lambda: ours(graph), runs=3)
+    seconds(f"one chain of {n:,} objects", taken)
     print(f"one chain of {n:,} objects: {taken:.2f} s for {n * (n - 1) // 2:,} pairs")
 
 
@@ -142,8 +146,10 @@ def to_triples(n: int) -> None:
     for reasoner in Reasoner:
         started = time.perf_counter()
         found = classify(ontology, reasoner, properties=True).inferred.count(f"<{LEFT.iri}>")
-        seconds = time.perf_counter() - started
-        print(f"    {reasoner.value}, left only: {seconds:.1f} s, {found:,} new: {seconds / taken:.0f} times as long")
+        seconds_taken = time.perf_counter() - started
+        ratio(f"a chain of {n} to triples", seconds_taken, taken, f"{reasoner.value} of owlready2")
+        told = f"{seconds_taken:.1f} s, {found:,} new: {seconds_taken / taken:.0f} times as long"
+        print(f"    {reasoner.value}, left only: {told}")
 
 
 def axioms(n: int) -> str:
@@ -156,11 +162,13 @@ def axioms(n: int) -> str:
 
 
 def main() -> None:
-    peers = ["pyoxigraph property path", "networkx transitive_closure_dag", "rdflib"]
-    compare("chain of 500 objects", chain(500), peers, runs=3)
-    compare("tables of 50 objects", tables(10_000, 50), peers, runs=3)
-    long_chain(5_000)
-    to_triples(200)
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        peers = ["pyoxigraph property path", "networkx transitive_closure_dag", "rdflib"]
+        compare("chain of 500 objects", chain(500), peers, runs=3)
+        compare("tables of 50 objects", tables(10_000, 50), peers, runs=3)
+        long_chain(5_000)
+        to_triples(200)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ closure excludes, and changed ones, in which some relations are replaced at rand
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from records import command_line, recorded, share
 
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import links_between
@@ -123,41 +123,47 @@ def generated(names: str, size: int, runs: int) -> Iterator[tuple[list[Network],
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--runs", type=int, default=10, help="networks of each kind")
     parser.add_argument("--sizes", type=int, nargs="+", default=[4, 8, 12, 20])
     parser.add_argument("--limit", type=float, default=10.0, help="seconds for each network")
     parser.add_argument("--only", nargs="+", default=COMBINATIONS)
-    options = parser.parse_args()
-    Tally().solve(borne("ra+rcc8", 4, np.random.default_rng(0)), options.limit)  # compiles
-    for size in options.sizes:
-        whole, contrary, mixed = Tally(), Tally(), Tally()
-        for names in options.only:
-            own = Tally()
-            for nets, rng in generated(names, size, options.runs):
-                own.solve(nets, options.limit)
-                against = contradictory(nets, rng)
-                if against is not None:
-                    contrary.solve(against, options.limit)
-                mixed.solve(changed(nets, rng), options.limit)
-            whole.verdicts += own.verdicts
-            whole.closing += own.closing
-            whole.seconds += own.seconds
-            wrong = "   REFUTED" if own.verdicts["inconsistent"] else ""
-            print(f"{size:>3} things  {names:<28} consistent {own.share('consistent'):.2f}   {own}{wrong}", flush=True)
-        count = whole.verdicts.total()
-        print(
-            f"{size:>3} things  satisfiable   consistent {whole.share('consistent'):.3f} of {count}, "
-            f"by closing alone {whole.closing / count:.3f}   {whole}"
-        )
-        wrong = f"   {contrary.verdicts['consistent']} CALLED CONSISTENT" if contrary.verdicts["consistent"] else ""
-        refuted = f"inconsistent {contrary.share('inconsistent'):.3f} of {contrary.verdicts.total()}"
-        print(f"{size:>3} things  contradictory {refuted}   {contrary}{wrong}")
-        print(
-            f"{size:>3} things  changed       consistent {mixed.share('consistent'):.3f}, inconsistent "
-            f"{mixed.share('inconsistent'):.3f}, undecided {mixed.share('undecided'):.3f}   {mixed}",
-            flush=True,
-        )
+    with recorded(parser) as options:
+        Tally().solve(borne("ra+rcc8", 4, np.random.default_rng(0)), options.limit)  # compiles
+        for size in options.sizes:
+            whole, contrary, mixed = Tally(), Tally(), Tally()
+            for names in options.only:
+                own = Tally()
+                for nets, rng in generated(names, size, options.runs):
+                    own.solve(nets, options.limit)
+                    against = contradictory(nets, rng)
+                    if against is not None:
+                        contrary.solve(against, options.limit)
+                    mixed.solve(changed(nets, rng), options.limit)
+                whole.verdicts += own.verdicts
+                whole.closing += own.closing
+                whole.seconds += own.seconds
+                wrong = "   REFUTED" if own.verdicts["inconsistent"] else ""
+                print(
+                    f"{size:>3} things  {names:<28} consistent {own.share('consistent'):.2f}   {own}{wrong}", flush=True
+                )
+            count = whole.verdicts.total()
+            share(f"{size} objects, satisfiable: proved consistent", whole.verdicts["consistent"], count)
+            share(
+                f"{size} objects, contradictory: refuted", contrary.verdicts["inconsistent"], contrary.verdicts.total()
+            )
+            print(
+                f"{size:>3} things  satisfiable   consistent {whole.share('consistent'):.3f} of {count}, "
+                f"by closing alone {whole.closing / count:.3f}   {whole}"
+            )
+            wrong = f"   {contrary.verdicts['consistent']} CALLED CONSISTENT" if contrary.verdicts["consistent"] else ""
+            refuted = f"inconsistent {contrary.share('inconsistent'):.3f} of {contrary.verdicts.total()}"
+            print(f"{size:>3} things  contradictory {refuted}   {contrary}{wrong}")
+            print(
+                f"{size:>3} things  changed       consistent {mixed.share('consistent'):.3f}, inconsistent "
+                f"{mixed.share('inconsistent'):.3f}, undecided {mixed.share('undecided'):.3f}   {mixed}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ inferred triples must be those before the write or those after it. Exits 1 other
 
 from __future__ import annotations
 
-import argparse
 import random
 import shutil
 import sys
@@ -22,6 +21,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 from both_stores import Example, example_in, findings, state
 from killing import KilledAtSteps, killed_at_steps
+from records import command_line, count, recorded
 
 
 class Writes:
@@ -59,35 +59,41 @@ class Writes:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--every-step", action="store_true")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--quick", action="store_true", help="20 kills")
-    options = parser.parse_args()
-    rng = random.Random(options.seed)
-    outcomes: dict[str, Counter[str]] = {}
-    with tempfile.TemporaryDirectory() as scratch, killed_at_steps() as kills:
-        (Path(scratch) / "example").mkdir()
-        writes = Writes(example_in(Path(scratch) / "example"), Path(scratch), kills)
-        jobs: list[tuple[str, int, float | None]]
-        if options.every_step:
-            jobs = [(write, step, None) for write, steps in writes.steps.items() for step in range(1, steps + 1)]
-        else:
-            names = [rng.choice(list(writes.steps)) for _ in range(20 if options.quick else options.kills)]
-            jobs = [
-                (name, rng.randint(1, writes.steps[name]), None)
-                if number % 2
-                else (name, 0, rng.uniform(0, writes.seconds[name]))
-                for number, name in enumerate(names)
-            ]
-        for write, step, after in jobs:
-            outcomes.setdefault(write, Counter())[writes.outcome(write, step, after)] += 1
-    for write, counts in outcomes.items():
-        print(f"{write} ({writes.steps[write]} steps): " + ", ".join(f"{n} {what}" for what, n in counts.most_common()))
-    wrong = sum(n for counts in outcomes.values() for what, n in counts.items() if what not in ("before", "after"))
-    print(f"{len(jobs)} kills, {wrong} of them wrong")
-    sys.exit(bool(wrong))
+    with recorded(parser) as options:
+        rng = random.Random(options.seed)
+        outcomes: dict[str, Counter[str]] = {}
+        with tempfile.TemporaryDirectory() as scratch, killed_at_steps() as kills:
+            (Path(scratch) / "example").mkdir()
+            writes = Writes(example_in(Path(scratch) / "example"), Path(scratch), kills)
+            jobs: list[tuple[str, int, float | None]]
+            if options.every_step:
+                jobs = [(write, step, None) for write, steps in writes.steps.items() for step in range(1, steps + 1)]
+            else:
+                names = [rng.choice(list(writes.steps)) for _ in range(20 if options.quick else options.kills)]
+                jobs = [
+                    (name, rng.randint(1, writes.steps[name]), None)
+                    if number % 2
+                    else (name, 0, rng.uniform(0, writes.seconds[name]))
+                    for number, name in enumerate(names)
+                ]
+            for write, step, after in jobs:
+                outcomes.setdefault(write, Counter())[writes.outcome(write, step, after)] += 1
+        for write, counts in outcomes.items():
+            print(
+                f"{write} ({writes.steps[write]} steps): "
+                + ", ".join(f"{n} {what}" for what, n in counts.most_common())
+            )
+        wrong = sum(n for counts in outcomes.values() for what, n in counts.items() if what not in ("before", "after"))
+        count("kills", len(jobs))
+        count("writes left half done", wrong)
+        print(f"{len(jobs)} kills, {wrong} of them wrong")
+        if wrong:
+            sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from records import command_line, figure, recorded, share
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import LAYOUTS, SETTING, generate, lay_boxes
@@ -95,29 +96,33 @@ print(f"{seconds:.2f} {time.process_time() - worked:.2f} {peak() - before:.0f} {
 
 
 def main() -> None:
-    quick = "--quick" in sys.argv
-    limit = float(_option("--limit", 10.0))
-    posterior(_case(12, 2.5, 0)[0], Deadline.after(2.0))  # compile
-    first = int(_option("--seeds", HELD_OUT))
-    columns = "right  said   calibration  right  said   calibration  decided  of which right  off, mean and most  clock"
-    print(f"layout    kinds  objects  facts  {columns}   processor")
-    for arm in QUICK_ARMS if quick else ARMS:
-        if _option("--only", "") in " ".join(map(str, arm)):
-            _calibration(*arm, limit, first)
-    if "--no-limits" in sys.argv:
-        return
-    print("\nobjects  unique labels         things  limit   clock   processor  memory  result")
-    for rare in QUICK_RARE if quick else RARE:
-        _short(rare, 500 if quick else 20_000, SHORT_LIMIT)
-    print("\nthings  limit   clock   processor  memory  result")
-    for things, seconds in QUICK_LIMITS if quick else LIMITS:
-        _limits(things, seconds)
-    print(f"\npeak memory of this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
-
-
-def _option(name: str, default: float | str) -> str:
-    """Return the value of an option on the command line, as text."""
-    return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else str(default)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--limit", type=float, default=10.0, help="time limit of a posterior, in seconds")
+    parser.add_argument("--seeds", type=int, default=HELD_OUT, help="seed of the first table")
+    parser.add_argument("--only", default="", help="only the arms whose line of ARMS contains this text")
+    parser.add_argument("--no-limits", action="store_true", help="calibration only")
+    parser.add_argument("--quick", action="store_true", help="a few cases of each")
+    with recorded(parser) as options:
+        quick = options.quick
+        limit = options.limit
+        posterior(_case(12, 2.5, 0)[0], Deadline.after(2.0))  # compile
+        first = options.seeds
+        columns = (
+            "right  said   calibration  right  said   calibration  decided  of which right  off, mean and most  clock"
+        )
+        print(f"layout    kinds  objects  facts  {columns}   processor")
+        for arm in QUICK_ARMS if quick else ARMS:
+            if options.only in " ".join(map(str, arm)):
+                _calibration(*arm, limit, first)
+        if options.no_limits:
+            return
+        print("\nobjects  unique labels         things  limit   clock   processor  memory  result")
+        for rare in QUICK_RARE if quick else RARE:
+            _short(rare, 500 if quick else 20_000, SHORT_LIMIT)
+        print("\nthings  limit   clock   processor  memory  result")
+        for things, seconds in QUICK_LIMITS if quick else LIMITS:
+            _limits(things, seconds)
+        print(f"\npeak memory of this process {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
 def _case(
@@ -151,6 +156,10 @@ def _calibration(layout: str, kinds: bool, objects: int, facts: float, tables: i
             off.append(np.abs(found.marginals - _reference(problem)).max(axis=1))
     p, r, d, t = (np.concatenate(known) for known in (said, right, decided, there))
     far = np.concatenate(off) if off else None
+    what = f"{layout}, {'kinds' if kinds else 'words alone'}, {objects} objects, {facts:g} facts each"
+    figure(f"{what}: calibration error", _calibration_error(p, r), "share")
+    share(f"{what}: decided", int(d.sum()), len(d))
+    share(f"{what}: decided matches that are right", int((d & r).sum()), int(d.sum()))
     print(
         f"{layout:8}  {'yes' if kinds else 'no':5}  {objects:7}  {facts:5}  "
         f"{r.mean():.3f}  {p.mean():.3f}  {_calibration_error(p, r):11.3f}  "

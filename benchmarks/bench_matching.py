@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 import resource
 import statistics
-import sys
 import time
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -20,6 +19,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from peers import annealing, cp_sat, faq, graph_matching
+from records import command_line, figure, recorded
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
@@ -43,16 +43,19 @@ ABSENT = math.log(0.05 / 0.95)  # as in grounding
 
 
 def main() -> None:
-    quick = "--quick" in sys.argv
-    warm()
-    annealing.solve(generate(8, seed=0).crisp(), steps=10)
-    print("seeds from 0; times are medians (the longest in brackets); proofs: 2.5 facts per object, 10 % off\n")
-    for centred in (False, True):
-        _proofs(3 if quick else 10, centred)
-    for objects, cases, settings in QUICK if quick else FULL:
-        _values(objects, cases, settings)
-    _in_a_hurry(1 if quick else 3)
-    print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--quick", action="store_true", help="a few cases of each")
+    with recorded(parser) as options:
+        quick = options.quick
+        warm()
+        annealing.solve(generate(8, seed=0).crisp(), steps=10)
+        print("seeds from 0; times are medians (the longest in brackets); proofs: 2.5 facts per object, 10 % off\n")
+        for centred in (False, True):
+            _proofs(3 if quick else 10, centred)
+        for objects, cases, settings in QUICK if quick else FULL:
+            _values(objects, cases, settings)
+        _in_a_hurry(1 if quick else 3)
+        print(f"peak memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.2f} GB")
 
 
 def _proofs(cases: int, centred: bool) -> None:
@@ -87,11 +90,12 @@ def _values(objects: int, cases: int, chosen: list[tuple[float, float]]) -> None
             out = objects // 10
             tables = [generate(objects, facts, off, missing=out, extra=out, seed=s) for s in range(cases)]
             problems = [_graded(table) if graded else table.crisp(centred=True) for table in tables]
-            print(f" {'graded' if graded else 'crisp'}, {facts} facts per object, {off:.0%} off")
-            _row(problems)
+            what = f"{'graded' if graded else 'crisp'}, {facts} facts per object, {off:.0%} off"
+            print(f" {what}")
+            _row(f"{objects} objects, {what}", problems)
 
 
-def _row(problems: list[Problem]) -> None:
+def _row(what: str, problems: list[Problem]) -> None:
     times, values = {}, {}
     for name, engine in _engines(*problems[0].unary.shape).items():
         try:
@@ -101,6 +105,7 @@ def _row(problems: list[Problem]) -> None:
         values[name] = [p.value(m) for p, m in zip(problems, maps, strict=True)]
     best = np.max(list(values.values()), axis=0)
     for name in values:
+        figure(f"{what}: {name}", float(np.mean(np.array(values[name]) / best)), "of the best value found")
         print(f"   {name:30} {np.mean(np.array(values[name]) / best):.4f}  {_span(times[name])}", flush=True)
 
 

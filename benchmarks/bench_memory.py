@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ from statistics import median
 
 import pyoxigraph as ox
 from common import medians
+from records import command_line, figure, peer_version, recorded
 
 from deixis.memory.errors import QueryError, QueryTimeoutError
 from deixis.memory.semantic.rdf.files import PREFIXES
@@ -81,6 +81,12 @@ def load(kind: str, data: list[ox.Triple], folder: Path) -> tuple[SemanticMemory
     memory = SemanticMemory.open(folder / "memory", create=True)
     theirs = seconds(fill)
     ours = seconds(lambda: memory.load({GraphName.ASSERTED: data}))
+    figure(
+        f"load of {len(data):,} triples of {kind}",
+        ours / theirs,
+        "times the time of the peer",
+        peer=peer_version("pyoxigraph"),
+    )
     times = f"deixis {ours:.2f} s, bare {theirs:.2f} s, {ours / theirs:.2f} times"
     print(f"load, {len(data):>9,} triples of {kind}: {times}")
     return memory, bare
@@ -96,6 +102,12 @@ def ask(memory: SemanticMemory, bare: ox.Store) -> None:
             return [tuple(solution) for solution in found]
 
         ours, theirs = medians(lambda query=query: memory.query(query), direct, runs=15)  # type: ignore[misc]
+        figure(
+            f"{name} in {len(bare):,} triples",
+            ours / theirs,
+            "times the time of the peer",
+            peer=peer_version("pyoxigraph"),
+        )
         print(f"    {name}: deixis {ours * 1e3:.3f} ms, bare {theirs * 1e3:.3f} ms, {ours / theirs:.2f} times")
 
 
@@ -124,17 +136,20 @@ def bounds(memory: SemanticMemory) -> None:
 
 
 def main() -> None:
-    sizes = [int(size) for size in sys.argv[1:]] or [100_000, 1_000_000]
-    for size in sizes:
-        for kind, make in (("background knowledge", background), ("scenes", scenes)):
-            folder = Path(tempfile.mkdtemp())
-            memory, bare = load(kind, list(make(size)), folder)
-            if make is background:
-                ask(memory, bare)
-                bounds(memory)
-            memory.close()
-            del bare
-            shutil.rmtree(folder)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("sizes", type=int, nargs="*", help="numbers of triples (100000 1000000)")
+    with recorded(parser) as options:
+        sizes = options.sizes or [100_000, 1_000_000]
+        for size in sizes:
+            for kind, make in (("background knowledge", background), ("scenes", scenes)):
+                folder = Path(tempfile.mkdtemp())
+                memory, bare = load(kind, list(make(size)), folder)
+                if make is background:
+                    ask(memory, bare)
+                    bounds(memory)
+                memory.close()
+                del bare
+                shutil.rmtree(folder)
 
 
 if __name__ == "__main__":

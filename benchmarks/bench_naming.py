@@ -14,7 +14,6 @@ them by N facts. ``--quick`` takes fewer views and splits.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +21,7 @@ from pathlib import Path
 import numpy as np
 from common import data_folder
 from numpy.typing import NDArray
+from records import command_line, mean, recorded
 
 import deixis
 from deixis.experiments.open_ended.mesh_list import CORRECTED, EXCLUDED
@@ -257,6 +257,8 @@ def compare(views: Views, matrices: dict[str, NDArray[np.float32]], splits: int)
                 float((top == one.truth[:, None]).any(axis=1).mean()) for top, one in zip(order, found, strict=True)
             ]
             told = [auroc(one.known.min(axis=1), one.unknown.min(axis=1)) for one in found]
+            mean(f"{said}, {count} views: named right", right)
+            mean(f"{said}, {count} views: AUROC of the unknown", told)
             line = f"{count:5}  {said:27}  {np.mean(right):.3f}  {np.mean(third):.3f}  {np.mean(told):.3f}"
             print(line + calibrated(found), flush=True)
 
@@ -343,25 +345,31 @@ def named(script: str, things: Sequence[dict[str, object]], names: Sequence[str]
 
 
 def main() -> None:
-    folder = data_folder(FOLDER)
-    if folder is None:
-        return
-    everything, quick = "--all" in sys.argv, "--quick" in sys.argv
-    for what, entries in (
-        ("corrected", {key: each.why for key, each in CORRECTED.items()}),
-        ("left out", dict(EXCLUDED)),
-    ):
-        for name, why in () if everything else entries.items():
-            print(f"{what}: {name}: {why}")
-    views = seen(folder, everything, 4 if quick else 12)
-    counted = len(np.unique(views.things)), len(np.unique(views.categories))
-    print(f"{len(views.clouds)} views of {counted[0]} things of {counted[1]} categories")
-    if "--words" in sys.argv:
-        facts = int(sys.argv[sys.argv.index("--facts") + 1]) if "--facts" in sys.argv else 20
-        words(views, 4 if quick else 12, facts)
-        return
-    matrices = {name: distances(arrays) for name, arrays in views.described.items()}
-    compare(views, matrices, 3 if quick else 10)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--all", action="store_true", help="all meshes, as they come")
+    parser.add_argument("--words", action="store_true", help="name things on tables, with a description")
+    parser.add_argument("--facts", type=int, default=20, help="facts of a description")
+    parser.add_argument("--quick", action="store_true", help="fewer views and splits")
+    with recorded(parser) as options:
+        folder = data_folder(FOLDER)
+        if folder is None:
+            return
+        everything, quick = options.all, options.quick
+        for what, entries in (
+            ("corrected", {key: each.why for key, each in CORRECTED.items()}),
+            ("left out", dict(EXCLUDED)),
+        ):
+            for name, why in () if everything else entries.items():
+                print(f"{what}: {name}: {why}")
+        views = seen(folder, everything, 4 if quick else 12)
+        counted = len(np.unique(views.things)), len(np.unique(views.categories))
+        print(f"{len(views.clouds)} views of {counted[0]} things of {counted[1]} categories")
+        if options.words:
+            facts = options.facts
+            words(views, 4 if quick else 12, facts)
+            return
+        matrices = {name: distances(arrays) for name, arrays in views.described.items()}
+        compare(views, matrices, 3 if quick else 10)
 
 
 if __name__ == "__main__":

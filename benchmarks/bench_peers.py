@@ -8,7 +8,6 @@ one table of each setting.
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import statistics
 import time
@@ -20,6 +19,7 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 from peers import annealing, faq, graph_matching
+from records import command_line, mean, recorded
 
 from deixis.experiments.scoreboard.cases import Case, Setting, generated_cases
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
@@ -49,27 +49,30 @@ class Tried:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--size", type=int, default=12)
-    options = parser.parse_args()
-    settings = [
-        Setting(options.size, off, facts, changed)
-        for off, facts, changed in itertools.product((0.0, 0.2), (1.0, 1.5, 2.5), (False, True))
-    ]
-    tried = [*_graph_matching(), *_faq(), *_annealing()]
-    for case in generated_cases(settings, 1 if options.quick else 8, SEED):
-        problem = case.evidence(SHIPPED).problem
-        for one in tried:
-            one.run(case, problem)
-    most = np.max([one.values for one in tried], axis=0)
-    print(f"{len(most)} tables of {options.size} objects; times are medians\nsolver     right  below the best  time")
-    for one in sorted(tried, key=lambda one: (one.solver, -statistics.mean(one.right))):
-        behind = float(np.mean(most - np.array(one.values)))
+    with recorded(parser) as options:
+        settings = [
+            Setting(options.size, off, facts, changed)
+            for off, facts, changed in itertools.product((0.0, 0.2), (1.0, 1.5, 2.5), (False, True))
+        ]
+        tried = [*_graph_matching(), *_faq(), *_annealing()]
+        for case in generated_cases(settings, 1 if options.quick else 8, SEED):
+            problem = case.evidence(SHIPPED).problem
+            for one in tried:
+                one.run(case, problem)
+        most = np.max([one.values for one in tried], axis=0)
         print(
-            f"{one.solver:9}  {statistics.mean(one.right):.3f}  {behind:9.2f} nats  "
-            f"{1e3 * statistics.median(one.seconds):5.0f} ms  {'*' if one.chosen else ' '} {one.settings}"
+            f"{len(most)} tables of {options.size} objects; times are medians\nsolver     right  below the best  time"
         )
+        for one in sorted(tried, key=lambda one: (one.solver, -statistics.mean(one.right))):
+            mean(f"{one.solver}, {one.settings}: share right", one.right)
+            behind = float(np.mean(most - np.array(one.values)))
+            print(
+                f"{one.solver:9}  {statistics.mean(one.right):.3f}  {behind:9.2f} nats  "
+                f"{1e3 * statistics.median(one.seconds):5.0f} ms  {'*' if one.chosen else ' '} {one.settings}"
+            )
 
 
 def _graph_matching() -> Iterator[Tried]:

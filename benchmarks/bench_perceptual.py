@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import shutil
 import statistics
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -25,6 +24,7 @@ from typing import Any
 
 import numpy as np
 import plyvel
+from records import command_line, figure, peer_version, recorded
 
 from deixis.memory.perceptual.handle import OPTIONS
 from deixis.memory.perceptual.level import LevelMemory
@@ -101,31 +101,40 @@ def ratios(times: Times, ours: str, theirs: str) -> str:
     return f"{statistics.median(each):4.0%} ({min(each):.0%} to {max(each):.0%})"
 
 
-def rows(times: Times, number: int) -> Iterator[str]:
+def rows(times: Times, number: int, title: str) -> Iterator[str]:
     """Yield the lines of the table."""
     yield f"  make  deixis {statistics.median(times['deixis make, CPU'][1:]) / number * 1e6:7.1f} us per view"
     for what in ("put", "get", "scan"):
         yield f"  {what:<5} deixis {statistics.median(times[f'deixis {what}'][1:]) / number * 1e6:7.1f} us per view"
         for other in (f"same options {what}", f"own options {what}", f"same options {what}, unverified"):
             if other in times:
+                relative = statistics.median(
+                    their / our
+                    for our, their in zip(times[f"deixis {what}, CPU"][1:], times[f"{other}, CPU"][1:], strict=True)
+                )
+                figure(f"{title}: {what}, {other}", relative, "times as long", peer=peer_version("plyvel"))
                 median = statistics.median(times[other][1:]) / number * 1e6
                 clock, cpu = (ratios(times, f"deixis {what}{kind}", f"{other}{kind}") for kind in ("", ", CPU"))
                 yield f"        {other:<30} {median:7.1f} us, deixis has {clock}; of CPU time {cpu}"
 
 
 def main() -> None:
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 400
-    for sparse in (False, True):
-        views = make_views(number, sparse)
-        values = [view.descriptors["spin"].tobytes() for view in views]
-        for batch in (1, 10):
-            times: Times = {}
-            for _ in range(ROUNDS):  # the first round only warms up
-                our_round(times, views, batch)
-                bare_round(times, "same options", OPTIONS, values, batch)
-                bare_round(times, "own options", {}, values, batch)
-            print(f"{number} {'sparse' if sparse else 'dense'} views, {batch} per batch")
-            print("\n".join(rows(times, number)), flush=True)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("views", type=int, nargs="?", default=400, help="number of views")
+    with recorded(parser) as options:
+        number = options.views
+        for sparse in (False, True):
+            views = make_views(number, sparse)
+            values = [view.descriptors["spin"].tobytes() for view in views]
+            for batch in (1, 10):
+                times: Times = {}
+                for _ in range(ROUNDS):  # the first round only warms up
+                    our_round(times, views, batch)
+                    bare_round(times, "same options", OPTIONS, values, batch)
+                    bare_round(times, "own options", {}, values, batch)
+                title = f"{number} {'sparse' if sparse else 'dense'} views, {batch} per batch"
+                print(title)
+                print("\n".join(rows(times, number, title)), flush=True)
 
 
 if __name__ == "__main__":

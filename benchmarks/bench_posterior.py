@@ -8,12 +8,12 @@ reference.
 from __future__ import annotations
 
 import math
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
+from records import command_line, figure, recorded
 
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.evidence.facts import fact_tables
@@ -26,20 +26,23 @@ LONGER = {8: 10, 12: 10, 30: 10, 100: 3}  # factor of proposals for the referenc
 
 
 def main() -> None:
-    quick = "--quick" in sys.argv
-    posterior(_problem(8, 1.0, 0))
-    print("objects  facts  exact  median time  error    difference  mean")
-    for objects, longer in LONGER.items():
-        for facts in (1.0, 1.5, 2.5):
-            problems = [_problem(objects, facts, seed) for seed in range(1 if quick or objects == 100 else 3)]
-            times, found = [], []
-            for problem in problems:
-                started = time.perf_counter()
-                found.append(posterior(problem))
-                times.append(time.perf_counter() - started)
-            with _longer(2 if quick else longer):
-                references = [posterior(problem, seed=1) for problem in problems]
-            _print(objects, facts, times, found, references)
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--quick", action="store_true", help="one case, and a shorter reference")
+    with recorded(parser) as options:
+        quick = options.quick
+        posterior(_problem(8, 1.0, 0))
+        print("objects  facts  exact  median time  error    difference  mean")
+        for objects, longer in LONGER.items():
+            for facts in (1.0, 1.5, 2.5):
+                problems = [_problem(objects, facts, seed) for seed in range(1 if quick or objects == 100 else 3)]
+                times, found = [], []
+                for problem in problems:
+                    started = time.perf_counter()
+                    found.append(posterior(problem))
+                    times.append(time.perf_counter() - started)
+                with _longer(2 if quick else longer):
+                    references = [posterior(problem, seed=1) for problem in problems]
+                _print(objects, facts, times, found, references)
 
 
 def _print(objects: int, facts: float, times: list[float], found: list[Posterior], longer: list[Posterior]) -> None:
@@ -47,6 +50,8 @@ def _print(objects: int, facts: float, times: list[float], found: list[Posterior
     likeliest = [
         d[np.arange(objects), b.marginals.argmax(axis=1)].mean() for d, b in zip(differences, longer, strict=True)
     ]
+    largest = max(float(d.max()) for d in differences)
+    figure(f"{objects} objects, {facts:g} facts each: largest difference", largest, "probability")
     print(
         f"{objects:7}  {facts:5}  {sum(f.exact for f in found)} of {len(found)}  {1e3 * np.median(times):8.0f} ms  "
         f"{max(f.error for f in found):.4f}   {max(d.max() for d in differences):.4f}      {np.mean(likeliest):.4f}",

@@ -12,7 +12,6 @@ which bounds exclude nothing. ``--calibration`` measures only that, ``--constant
 from __future__ import annotations
 
 import statistics
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -23,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from records import command_line, figure, ratio, recorded, share
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 
@@ -152,6 +152,10 @@ def compare(packs: Sequence[PackedViews], targets: Sequence[Descriptors], trees:
     each = [[processor_time(job, target) for job in jobs.values()] for target in targets]
     taken = {name: statistics.median(times) for name, times in zip(jobs, zip(*each, strict=True), strict=True)}
     for name, median in taken.items():
+        if name in ("exact", "approximate"):
+            ratio(
+                f"{views} views of {size:.0f} descriptors, {name}", taken["matrix products"], median, "matrix products"
+            )
         print(f"{name:17} {1e3 * median:8.1f} ms   {taken['matrix products'] / median:5.1f} times matrix products")
     exact, found, plain = (
         np.array([jobs[name](target) for target in targets]) for name in ("exact", "approximate", "matrix products")
@@ -305,6 +309,11 @@ def tables() -> None:
             columns = OnTable(*(np.array(column) for column in zip(*answers, strict=True)))
             sure = np.concatenate([columns.known_sure, columns.unknown_sure])
             right = np.concatenate([columns.known_right, columns.unknown_right])
+            what = f"{said}, {count} tables taught"
+            share(f"{what}: nearest category right", int(columns.nearest.sum()), len(columns.nearest))
+            share(f"{what}: named right", int(columns.named.sum()), len(columns.named))
+            share(f"{what}: never taught, called unknown", int(columns.unknown.sum()), len(columns.unknown))
+            figure(f"{what}: calibration error", expected_calibration_error(sure, right), "share")
             print(
                 f"{count:6}  {said:16}  {columns.nearest.mean():7.3f}  {columns.named.mean():5.3f}"
                 f"  {columns.wrong.mean():10.3f}  {columns.unknown.mean():12.3f}"
@@ -372,25 +381,32 @@ def _named(known: JointRecogniser, name: str, view: Sequence[Descriptors]) -> On
 
 
 def main() -> None:
-    if "--tables" in sys.argv:
-        tables()
-        return
-    if "--constants" in sys.argv:
-        constants()
-        return
-    if "--calibration" in sys.argv:
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--tables", action="store_true", help="measure naming on laid tables")
+    parser.add_argument("--constants", action="store_true", help="measure the shipped numbers")
+    parser.add_argument("--calibration", action="store_true", help="measure calibration only")
+    parser.add_argument("--random", action="store_true", help="time random descriptors")
+    parser.add_argument("--quick", action="store_true", help="1,000 views only")
+    with recorded(parser) as options:
+        if options.tables:
+            tables()
+            return
+        if options.constants:
+            constants()
+            return
+        if options.calibration:
+            calibration()
+            return
+        quick = options.quick
+        if options.random:
+            for each in (100,) if quick else (100, 1_000):
+                random(each)
+            return
+        for said, describe in (("spin images", SPIN_IMAGES), ("upright", recognising.UPRIGHT.describe)):
+            for things in (8,) if quick else (8, 79):
+                print(f"\n{said}", end="")
+                simulated(things, describe)
         calibration()
-        return
-    quick = "--quick" in sys.argv
-    if "--random" in sys.argv:
-        for each in (100,) if quick else (100, 1_000):
-            random(each)
-        return
-    for said, describe in (("spin images", SPIN_IMAGES), ("upright", recognising.UPRIGHT.describe)):
-        for things in (8,) if quick else (8, 79):
-            print(f"\n{said}", end="")
-            simulated(things, describe)
-    calibration()
 
 
 if __name__ == "__main__":

@@ -9,13 +9,13 @@ alone. Seeds are printed.
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from records import command_line, mean, recorded
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
@@ -122,7 +122,7 @@ def by_bag(scenes: list[Seen], layouts: list[Described], backwards: bool) -> lis
     return [[names[k] for k in np.argsort(-row, kind="stable")[:TOP]] for row in (scores.T if backwards else scores)]
 
 
-def figures(ranked: list[list[str]], wanted: list[str]) -> str:
+def figures(what: str, ranked: list[list[str]], wanted: list[str]) -> str:
     """Return Hits at 1, 3 and 10, and the mean reciprocal rank (0 beyond ``TOP``) with its standard error.
 
     A ranking is right at the first name that begins with the wanted one.
@@ -132,6 +132,8 @@ def figures(ranked: list[list[str]], wanted: list[str]) -> str:
         for names, start in zip(ranked, wanted, strict=True)
     ]
     reciprocal = 1 / np.array(ranks)
+    mean(f"{what}: right one first", np.array(ranks) <= 1)
+    mean(f"{what}: mean reciprocal rank", reciprocal)
     hits = "  ".join(f"Hits@{k} {np.mean(np.array(ranks) <= k):.3f}" for k in (1, 3, 10))
     error = reciprocal.std(ddof=1) / np.sqrt(len(ranks))
     return f"{hits}  MRR {reciprocal.mean():.3f} (s.e. {error:.3f})"
@@ -152,20 +154,22 @@ def measure(labelled: float, seed: int) -> None:
     by_layout = [[found.scene for found in rank_scenes(one, scenes, comparison, TOP)] for one in layouts]
     ended = time.perf_counter()
     print(f"{labelled:.0%} of the things labelled, seed {seed}: {LAYOUTS} layouts, {len(scenes)} scenes")
+    told = f"{labelled:.0%} labelled"
     wanted, kinds = [one.name[:3] for one in scenes], by_bag(scenes, layouts, backwards=False)
-    print(f"  scene to layouts  similarity    {figures(by_scene, wanted)}")
-    print(f"                    bag of kinds  {figures(kinds, wanted)}")
+    print(f"  scene to layouts  similarity    {figures(f'{told}, scene to layouts, similarity', by_scene, wanted)}")
+    print(f"                    bag of kinds  {figures(f'{told}, scene to layouts, bag of kinds', kinds, wanted)}")
     wanted, kinds = [one.name for one in layouts], by_bag(scenes, layouts, backwards=True)
-    print(f"  layout to scenes  similarity    {figures(by_layout, wanted)}")
-    print(f"                    bag of kinds  {figures(kinds, wanted)}")
+    print(f"  layout to scenes  similarity    {figures(f'{told}, layout to scenes, similarity', by_layout, wanted)}")
+    print(f"                    bag of kinds  {figures(f'{told}, layout to scenes, bag of kinds', kinds, wanted)}")
     print(f"  {middle - started:.1f} s for {len(scenes)} scenes, {ended - middle:.1f} s for {LAYOUTS} layouts")
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--seed", type=int, default=1)
-    for labelled in (1.0, 0.5, 0.0):
-        measure(labelled, parser.parse_args().seed)
+    with recorded(parser) as options:
+        for labelled in (1.0, 0.5, 0.0):
+            measure(labelled, options.seed)
 
 
 if __name__ == "__main__":

@@ -8,13 +8,13 @@ skipped with a note. ``pip install ortools pygmtools`` installs them. Options ar
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
 from peers import annealing, cp_sat, faq, graph_matching
+from records import command_line, figure, recorded
 
 from deixis.cli.common import print_json, print_lines
 from deixis.cli.experiment import progress
@@ -85,7 +85,7 @@ def _graph_matching(problem: Problem, seconds: float, settings: graph_matching.S
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--quick", action="store_true", help="a small part of the cases")
     parser.add_argument("--cases", type=int, default=10, help="tables of each setting; fewer of large ones")
     parser.add_argument("--seed", type=int, default=1)
@@ -95,20 +95,26 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("--plot", type=Path, help="draw the scoreboard (.png, .svg, .pdf)")
     parser.add_argument("--json", action="store_true")
-    options = parser.parse_args(arguments)
-    plan = ScoreboardPlan(
-        cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder()
-    )
-    plan = plan.quick() if options.quick else plan
-    plan = plan.only(options.size) if options.size else plan
-    with progress(steps(plan)) as tick:
-        found = run(plan, [*engines(), *peers()], tick)
-    if options.plot:
-        plot_scoreboard(found, options.plot)
-    if options.json:
-        print_json(to_dict(found))
-    else:
-        print_lines(lines(found))
+    with recorded(parser, arguments) as options:
+        plan = ScoreboardPlan(
+            cases=options.cases, seed=options.seed, time_limit=options.time_limit, photographs=photographs_folder()
+        )
+        plan = plan.quick() if options.quick else plan
+        plan = plan.only(options.size) if options.size else plan
+        with progress(steps(plan)) as tick:
+            found = run(plan, [*engines(), *peers()], tick)
+        for group in found.main.groups:
+            for one in found.main.contestants:
+                right = found.main.mean(one.name, group, "right")
+                if right.count:
+                    ends = right.mean - right.half, right.mean + right.half
+                    figure(f"{group}, {one.name}: share named right", right.mean, "share", ends)
+        if options.plot:
+            plot_scoreboard(found, options.plot)
+        if options.json:
+            print_json(to_dict(found))
+        else:
+            print_lines(lines(found))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ from pathlib import Path
 
 import numpy as np
 from common import data_folder
+from records import command_line, count, recorded, seconds
 
 from deixis.deadline import Deadline
 from deixis.grammar.formats.calculi import read_calculus
@@ -110,6 +111,9 @@ def report(name: str, networks: list[Network], stated: str = "", runs: int = 3) 
     consistent = [n for n, s in zip(networks, solutions, strict=True) if s.verdict is Verdict.CONSISTENT]
     proofs = sum(map(proved, consistent))
     conflicts = sum(solution.dead_ends for solution in solutions)
+    seconds(name, statistics.median(processor))
+    count(f"{name}: decided", verdicts.total() - verdicts["undecided"])
+    count(f"{name}: of them consistent, proved by a scenario", proofs)
     print(
         f"{name:<48} {statistics.median(clock):7.3f} s ({statistics.median(processor):.3f} s of processor time)   "
         + ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
@@ -120,26 +124,28 @@ def report(name: str, networks: list[Network], stated: str = "", runs: int = 3) 
 
 
 def main() -> None:
-    allen = calculus("allen")
-    started = subprocess.run([sys.executable, "-c", START], capture_output=True, text=True, check=True)
-    print(f"start-up, once per process: {float(started.stdout):.2f} s")
-    rng = np.random.default_rng(15)
-    solve(random_network(allen, 20, 9.5, 6.5, rng))  # loads
-    for things, degree, many, known in ((60, 9.5, 8, "0.11 s"), (100, 10.0, 8, "")):
-        networks = [random_network(allen, things, degree, 6.5, rng) for _ in range(many)]
-        report(f"{many} Allen networks, {things} things, degree {degree}", networks, known, runs=3 if known else 1)
-    report("8 RCC-8 networks, 80 things, degree 15", [hard_regions(80, 15.0, rng) for _ in range(8)])
-    with tempfile.TemporaryDirectory() as folder:
-        tool = Path(__file__).parents[1] / "tools" / "make_opra.py"
-        subprocess.run([sys.executable, str(tool), "2", folder], check=True, capture_output=True)
-        opra = read_calculus(folder).calculus
-    points = [random_network(opra, 40, degree, 24.0, rng) for degree in (4.0, 6.0, 8.0, 10.0)]
-    solve(points[0], Deadline.after(TIME_LIMIT))  # loads
-    report("4 OPRA networks of 72 atoms, 40 points, degree 4-10", points, runs=1)
-    data = data_folder("gqr")
-    if data is not None:
-        own = [text.network for text in read_networks(data / "example-5x320.csp", [allen])]
-        report("GQR's own five Allen networks, 320 things", own, "19 s for four of the five")
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        allen = calculus("allen")
+        started = subprocess.run([sys.executable, "-c", START], capture_output=True, text=True, check=True)
+        print(f"start-up, once per process: {float(started.stdout):.2f} s")
+        rng = np.random.default_rng(15)
+        solve(random_network(allen, 20, 9.5, 6.5, rng))  # loads
+        for things, degree, many, known in ((60, 9.5, 8, "0.11 s"), (100, 10.0, 8, "")):
+            networks = [random_network(allen, things, degree, 6.5, rng) for _ in range(many)]
+            report(f"{many} Allen networks, {things} things, degree {degree}", networks, known, runs=3 if known else 1)
+        report("8 RCC-8 networks, 80 things, degree 15", [hard_regions(80, 15.0, rng) for _ in range(8)])
+        with tempfile.TemporaryDirectory() as folder:
+            tool = Path(__file__).parents[1] / "tools" / "make_opra.py"
+            subprocess.run([sys.executable, str(tool), "2", folder], check=True, capture_output=True)
+            opra = read_calculus(folder).calculus
+        points = [random_network(opra, 40, degree, 24.0, rng) for degree in (4.0, 6.0, 8.0, 10.0)]
+        solve(points[0], Deadline.after(TIME_LIMIT))  # loads
+        report("4 OPRA networks of 72 atoms, 40 points, degree 4-10", points, runs=1)
+        data = data_folder("gqr")
+        if data is not None:
+            own = [text.network for text in read_networks(data / "example-5x320.csp", [allen])]
+            report("GQR's own five Allen networks, 320 things", own, "19 s for four of the five")
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pyshacl
 import rdflib
+from records import command_line, count, recorded
 
 Result = tuple[str, str, str]
 """Focus node, path and component, in full."""
@@ -136,31 +137,34 @@ def measured(name: str, cases: list[tuple[str, str]]) -> list[tuple[bool, Counte
 
 
 def main() -> None:
-    logging.getLogger("rdflib.term").setLevel(logging.CRITICAL)  # pyshacl warns of each ill-typed literal
-    rng = np.random.default_rng(17)
-    there = [name for name in ENGINES if importlib.util.find_spec(name) is not None]
-    print("" if "pyrudof" in there else "skipped: pyrudof is not installed")
-    for sets, nodes in ((200, 60), (5, 2000)):
-        cases = [(data(nodes, rng), shapes(rng)) for _ in range(sets)]
-        print(f"{sets} sets of shapes over {nodes:,} nodes")
-        answers = [measured(name, cases) for name in there]
-        both = [pair for pair in zip(*answers, strict=True) if all(pair) and len(pair) > 1]
-        differing = Counter[str]()
-        for one, other in both:
-            differing.update(kind.rsplit("#", 1)[-1] for _, _, kind in (one[1] - other[1]) + (other[1] - one[1]))
-        verdicts, results = (sum(one[part] == other[part] for one, other in both) for part in (0, 1))
-        if both:
-            print(f"  of {len(both)}: the same verdict {verdicts}, the same results {results}; kinds that differ:")
-            print("  " + ", ".join(f"{kind} {count}" for kind, count in differing.most_common()))
-    if len(there) < 2:
-        return
-    print("violations reported for one value by pyshacl and pyrudof")
-    for what, wanted in SINGLE.items():
-        for value in VALUES:
-            graph = f"{PREFIXES}:n0 :p0 {value} ."
-            one, other = (sum(ENGINES[name](graph, PREFIXES + wanted)[1].values()) for name in there)
-            if one != other:
-                print(f"  {what:<28} {value:<26} {one} {other}")
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        logging.getLogger("rdflib.term").setLevel(logging.CRITICAL)  # pyshacl warns of each ill-typed literal
+        rng = np.random.default_rng(17)
+        there = [name for name in ENGINES if importlib.util.find_spec(name) is not None]
+        print("" if "pyrudof" in there else "skipped: pyrudof is not installed")
+        for sets, nodes in ((200, 60), (5, 2000)):
+            cases = [(data(nodes, rng), shapes(rng)) for _ in range(sets)]
+            print(f"{sets} sets of shapes over {nodes:,} nodes")
+            answers = [measured(name, cases) for name in there]
+            both = [pair for pair in zip(*answers, strict=True) if all(pair) and len(pair) > 1]
+            differing = Counter[str]()
+            for one, other in both:
+                differing.update(kind.rsplit("#", 1)[-1] for _, _, kind in (one[1] - other[1]) + (other[1] - one[1]))
+            verdicts, results = (sum(one[part] == other[part] for one, other in both) for part in (0, 1))
+            if both:
+                count(f"{sets} sets over {nodes:,} nodes: other verdicts of pyshacl and pyrudof", len(both) - verdicts)
+                print(f"  of {len(both)}: the same verdict {verdicts}, the same results {results}; kinds that differ:")
+                print("  " + ", ".join(f"{kind} {count}" for kind, count in differing.most_common()))
+        if len(there) < 2:
+            return
+        print("violations reported for one value by pyshacl and pyrudof")
+        for what, wanted in SINGLE.items():
+            for value in VALUES:
+                graph = f"{PREFIXES}:n0 :p0 {value} ."
+                one, other = (sum(ENGINES[name](graph, PREFIXES + wanted)[1].values()) for name in there)
+                if one != other:
+                    print(f"  {what:<28} {value:<26} {one} {other}")
 
 
 VALUES = ("5", '"5"', '"t"@en', "1.5", "true", '"2026-01-01"^^xsd:date', '"x"^^xsd:integer', ":n1")

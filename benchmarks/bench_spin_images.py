@@ -18,6 +18,7 @@ import numpy as np
 from common import medians
 from numpy.typing import NDArray
 from peers import spin_images_pcl
+from records import command_line, ratio, recorded, seconds
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.blocks import available
@@ -41,20 +42,25 @@ VARIANTS: dict[str, dict[str, Any]] = {
 
 
 def main() -> None:
-    rounds = 3 if "--quick" in sys.argv else 15
-    with tempfile.TemporaryDirectory() as folder:
-        program = spin_images_pcl.build(Path(folder))
-        if program is None:
-            print("the Point Cloud Library is not installed (Debian: libpcl-dev); our own times only", file=sys.stderr)
-        print(f"{KEYPOINTS} keypoints, support {SUPPORT} m, {available()} processors; medians of {rounds} rounds")
-        print("points  threads     ours        PCL  ratio")
-        for size in SIZES:
-            cloud = bottle(size)
-            for threads in (1, 2):
-                _compare(program, cloud, threads, rounds)
-        _describers(bottle(SIZES[0])[0], rounds)
-        if program is not None:
-            _differences(program, bottle(SIZES[0]))
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--quick", action="store_true", help="few runs")
+    with recorded(parser) as options:
+        rounds = 3 if options.quick else 15
+        with tempfile.TemporaryDirectory() as folder:
+            program = spin_images_pcl.build(Path(folder))
+            if program is None:
+                print(
+                    "the Point Cloud Library is not installed (Debian: libpcl-dev); our own times only", file=sys.stderr
+                )
+            print(f"{KEYPOINTS} keypoints, support {SUPPORT} m, {available()} processors; medians of {rounds} rounds")
+            print("points  threads     ours        PCL  ratio")
+            for size in SIZES:
+                cloud = bottle(size)
+                for threads in (1, 2):
+                    _compare(program, cloud, threads, rounds)
+            _describers(bottle(SIZES[0])[0], rounds)
+            if program is not None:
+                _differences(program, bottle(SIZES[0]))
 
 
 def bottle(n: int, seed: int = 0) -> Cloud:
@@ -79,7 +85,9 @@ def _compare(program: Path | None, cloud: Cloud, threads: int, rounds: int) -> N
             theirs += spin_images_pcl.run(program, *cloud, SUPPORT, threads=threads)[0]
     mine = statistics.median(ours)
     line = f"{len(cloud[0]):6}  {threads:7}  {1e3 * mine:6.1f} ms"
+    seconds(f"{len(cloud[0]):,} points, {threads} threads", mine)
     if theirs:
+        ratio(f"{len(cloud[0]):,} points, {threads} threads", statistics.median(theirs), mine, "PCL")
         peer = statistics.median(theirs)
         line += f"  {1e3 * peer:6.1f} ms  {peer / mine:5.1f}"
     print(line, flush=True)

@@ -10,7 +10,6 @@ so that compiled code and bytecode are on disk, as they are after an installatio
 
 from __future__ import annotations
 
-import argparse
 import os
 import statistics
 import subprocess
@@ -22,6 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from records import command_line, figure, recorded
 
 from deixis.examples_data import example
 from deixis.perception.clouds.cloud import PointCloud
@@ -135,33 +135,34 @@ def prepare(folder: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("names", nargs="*", help="commands; all by default")
     parser.add_argument("--runs", type=int, default=7)
-    options = parser.parse_args()
-    chosen = {
-        name: command
-        for name, command in COMMANDS.items()
-        if not options.names or command.split()[0] in (*options.names, "--version")
-    }
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-        prepare(folder)
-        costs: dict[str, list[Cost]] = {name: [] for name in (*BESIDE, *chosen)}
-        for run in range(options.runs + 1):
-            for name in costs:
-                found = cost(BESIDE[name] if name in BESIDE else deixis(chosen[name], run), folder)
-                if found.code not in (0, 1):
-                    raise SystemExit(f"{name}: exit code {found.code}")
-                if run > 0:
-                    costs[name].append(found)
-    version = statistics.median(each.processor for each in costs["--version"])
-    print(f"{'':32} processor      wall  times --version   (medians of {options.runs} runs, s)")
-    for name, taken in costs.items():
-        processor, wall = (statistics.median(values) for values in list(zip(*taken, strict=True))[:2])
-        target = COMPILED_TARGET if name.split(",")[0] in GROUNDING else TARGET
-        above = "" if processor <= target else f"above {target}"
-        print(f"{name:32} {processor:9.3f} {wall:9.3f} {processor / version:10.1f}         {above}")
+    with recorded(parser) as options:
+        chosen = {
+            name: command
+            for name, command in COMMANDS.items()
+            if not options.names or command.split()[0] in (*options.names, "--version")
+        }
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            prepare(folder)
+            costs: dict[str, list[Cost]] = {name: [] for name in (*BESIDE, *chosen)}
+            for run in range(options.runs + 1):
+                for name in costs:
+                    found = cost(BESIDE[name] if name in BESIDE else deixis(chosen[name], run), folder)
+                    if found.code not in (0, 1):
+                        raise SystemExit(f"{name}: exit code {found.code}")
+                    if run > 0:
+                        costs[name].append(found)
+        version = statistics.median(each.processor for each in costs["--version"])
+        print(f"{'':32} processor      wall  times --version   (medians of {options.runs} runs, s)")
+        for name, taken in costs.items():
+            processor, wall = (statistics.median(values) for values in list(zip(*taken, strict=True))[:2])
+            figure(name, processor / version, "times `deixis --version`")
+            target = COMPILED_TARGET if name.split(",")[0] in GROUNDING else TARGET
+            above = "" if processor <= target else f"above {target}"
+            print(f"{name:32} {processor:9.3f} {wall:9.3f} {processor / version:10.1f}         {above}")
 
 
 if __name__ == "__main__":

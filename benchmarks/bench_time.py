@@ -10,6 +10,7 @@ from __future__ import annotations
 import networkx as nx
 import numpy as np
 from common import medians
+from records import command_line, ratio, recorded
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import floyd_warshall
 
@@ -94,6 +95,8 @@ def measure(n: int, runs: int) -> None:
     )
     built, followed = medians(lambda: Timeline(fluents, differences), timeline.chronology, runs=3)
     one = added / ADDED
+    ratio(f"one more difference in {n} fluents, Floyd-Warshall from scratch", scipys, one, "scipy")
+    ratio(f"one more difference in {n} fluents, Bellman-Ford, consistency only", networkxs, one, "networkx")
     print(f"{n} fluents, {len(network.points)} points, {len(network.constraints)} constraints")
     print(f"  one difference more changes {changed_by(network, new)} distances on average")
     print(f"  deixis, add one difference and undo it:        {one * 1e3:9.3f} ms")
@@ -104,8 +107,10 @@ def measure(n: int, runs: int) -> None:
 
 
 def main() -> None:
-    for n, runs in SIZES.items():
-        measure(n, runs)
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        for n, runs in SIZES.items():
+            measure(n, runs)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,15 @@ from deixis.perception.detection.shown import Shows, is_large, is_one_object, is
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
 from deixis.perception.detection.tables import FoundTable, tables
-from deixis.perception.detection.viewpoint import View, believed, in_frame, likely, moved, outlook_of, table_frame
+from deixis.perception.detection.viewpoint import (
+    View,
+    camera_pose_of,
+    in_frame,
+    likeliest_pose,
+    moved,
+    table_frame,
+    verified_pose,
+)
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 
@@ -128,7 +136,7 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
             f"half of the points are within {1000 * spread:.2g} mm of the middle, too near for a table;"
             " coordinates must be metres: check the unit, or the depth_scale of the intrinsics"
         )
-    view = View(points, kept, cloud.organised, outlook_of(cloud, settings))
+    view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
     if len(points) >= settings.least_points and is_small(points, settings):
         return _alone(cloud, view, settings)
     seen = list(islice(tables(view, settings), settings.table + 1))
@@ -189,10 +197,10 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
 
     table, neighbours = _neighbours(table, settings)
     points, kept, top = table.view.points, table.view.places, table.top.on
-    outlook = table.view.outlook
+    pose = table.view.pose
     few = top[:: max(1, len(top) // settings.plane.refinement_size)]
-    frame = table_frame(table.plane, points[few] if len(top) else points, outlook, settings.viewer)
-    viewer = moved(outlook.eye[None], frame)[0]
+    frame = table_frame(table.plane, points[few] if len(top) else points, pose, settings.viewer)
+    viewer = moved(pose.eye[None], frame)[0]
     at, heights, distance = in_table_frame(points, frame, viewer)
     view = _TableView(frame, at, heights, distance, viewer, top)
     rising = raised(view.heights, view.distance, neighbours, settings)
@@ -238,10 +246,10 @@ def _neighbours(table: FoundTable, settings: DetectionSettings) -> tuple[FoundTa
         return table, neighbour_table(view.points, view.places, view.organised, settings.surface)
     around = np.flatnonzero(table.top.outside <= settings.top.margin)
     points, places = view.points[around], view.places[around]
-    near = neighbour_table(points, places, None, settings.surface, view.outlook.eye if view.outlook.known else None)
-    if view.outlook.known and not has_enough(near, settings.surface):
-        outlook = likely(replace(view.outlook, known=False), points, table.plane, settings)
-        table = replace(table, view=replace(view, outlook=outlook))
+    near = neighbour_table(points, places, None, settings.surface, view.pose.eye if view.pose.known else None)
+    if view.pose.known and not has_enough(near, settings.surface):
+        pose = likeliest_pose(replace(view.pose, known=False), points, table.plane, settings)
+        table = replace(table, view=replace(view, pose=pose))
         near = neighbour_table(points, places, None, settings.surface)
     neighbours = np.full((len(view.points), NEIGHBOURS), -1, np.int32)
     neighbours[around] = np.where(near < 0, -1, around[near])
@@ -254,19 +262,19 @@ def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detect
     Its up direction is the given one, else that of the image, else the z axis of the cloud; only a given one counts as
     known.
     """
-    points, outlook = view.points, believed(view.outlook, view.points, settings)
-    ups = (outlook.upwards, outlook.up, np.array([0.0, 0.0, 1.0]))
+    points, pose = view.points, verified_pose(view.pose, view.points, settings)
+    ups = (pose.upwards, pose.up, np.array([0.0, 0.0, 1.0]))
     up = next(direction for direction in ups if direction is not None)
     below = Plane(up, float(np.percentile(points @ up, settings.scale.outlier_percent)))
-    outlook = likely(outlook, points, below, settings)
-    frame = table_frame(below, points, outlook, settings.viewer)
+    pose = likeliest_pose(pose, points, below, settings)
+    frame = table_frame(below, points, pose, settings.viewer)
     thing = moved(points, frame)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[view.places] = 0
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     notes = [f"no table was found: the whole cloud, {sides} cm, was taken for a single object"]
-    told = outlook.upwards is not None
+    told = pose.upwards is not None
     if not told:
         notes.append("its upright direction is unknown; give it with --up")
     oriented = (oriented_box(thing, settings.outlines),)

@@ -42,8 +42,8 @@ class Plane:
 
 
 @dataclass(frozen=True, eq=False)
-class Outlook:
-    """Viewpoint of a cloud.
+class CameraPose:
+    """Pose of the camera that saw a cloud.
 
     ``up`` and ``right`` (3,) are the directions of the image, or None. ``known`` is False if the position ``eye`` of
     the sensor is only assumed.
@@ -64,14 +64,14 @@ class Outlook:
         return bool(normal @ self.up > -0.1 and abs(normal @ self.right) < 0.7)
 
 
-def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: DetectionSettings) -> Plane | None:
+def table_plane(points: NDArray[np.float64], pose: CameraPose, settings: DetectionSettings) -> Plane | None:
     """Return the plane of the table in finite points (n, 3), or None if no plane could be a table."""
     rng, limits = np.random.default_rng(settings.seed), settings.plane
     size = limits.sample_size
     sample = points if len(points) <= size else points[np.sort(rng.choice(len(points), size, replace=False))]
-    tolerance = tolerance_at(sample, outlook, limits)
-    found = _planes(sample, tolerance, outlook, rng, limits)
-    planes = [plane for plane in found if outlook.could_be_table(plane.normal)]
+    tolerance = tolerance_at(sample, pose, limits)
+    found = _planes(sample, tolerance, pose, rng, limits)
+    planes = [plane for plane in found if pose.could_be_table(plane.normal)]
     if not planes:
         return None
     free = np.ones(len(sample), dtype=np.bool_)
@@ -86,11 +86,11 @@ def table_plane(points: NDArray[np.float64], outlook: Outlook, settings: Detecti
     levels += [
         level_of(plane, sample, tolerance, sample[free], limits)
         for plane in turned
-        if outlook.could_be_table(plane.normal)
+        if pose.could_be_table(plane.normal)
     ]
     best = max(levels, key=lambda level: level.score).plane
     chosen = points[:: max(1, len(points) // limits.refinement_size)]
-    return refined(best, chosen, tolerance_at(chosen, outlook, limits))
+    return refined(best, chosen, tolerance_at(chosen, pose, limits))
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,12 +128,12 @@ def level_of(
     return LevelPlane(plane, on, _standing(plane, on, free, settings))
 
 
-def tolerance_at(points: NDArray[np.float64], outlook: Outlook, settings: PlaneSettings) -> NDArray[np.float64]:
+def tolerance_at(points: NDArray[np.float64], pose: CameraPose, settings: PlaneSettings) -> NDArray[np.float64]:
     """Return the distance in metres, shape (n,), within which points (n, 3) count as on a plane.
 
     It grows with the square of the distance from the sensor.
     """
-    squared = ((points - outlook.eye) ** 2).sum(axis=1)
+    squared = ((points - pose.eye) ** 2).sum(axis=1)
     near: NDArray[np.float64] = settings.tolerance * np.clip(squared, 0.25, settings.max_noise_distance**2)
     return near
 
@@ -141,7 +141,7 @@ def tolerance_at(points: NDArray[np.float64], outlook: Outlook, settings: PlaneS
 def _planes(
     sample: NDArray[np.float64],
     tolerance: NDArray[np.float64],
-    outlook: Outlook,
+    pose: CameraPose,
     rng: np.random.Generator,
     settings: PlaneSettings,
 ) -> list[Plane]:
@@ -156,9 +156,9 @@ def _planes(
         if plane is None:
             break
         candidate = refined(plane, sample[left], tolerance[left])
-        side = float(candidate.normal @ outlook.eye - candidate.offset)
-        if outlook.upwards is not None:
-            side = float(candidate.normal @ outlook.upwards)
+        side = float(candidate.normal @ pose.eye - candidate.offset)
+        if pose.upwards is not None:
+            side = float(candidate.normal @ pose.upwards)
         elif abs(side) < 0.05:
             heights = candidate.heights(sample)
             side = float(

@@ -101,8 +101,8 @@ def _cells(view: View, plane: Plane, settings: TableTopSettings) -> tuple[NDArra
         rows, columns = view.pixels
         shape = (-(-view.organised[0] // size), -(-view.organised[1] // size))
         return rows // size * shape[1] + columns // size, shape
-    if view.outlook.known:
-        rays = directions(view.points, view.outlook.eye)
+    if view.pose.known:
+        rays = directions(view.points, view.pose.eye)
         ahead = rays.mean(axis=0)
         ahead /= max(float(np.linalg.norm(ahead)), 1e-9)
         depth = np.maximum(rays @ ahead, 0.1)  # no sensor sees more than 84 degrees aside

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.plane import Outlook, Plane
+from deixis.perception.detection.plane import CameraPose, Plane
 from deixis.perception.detection.settings import DetectionSettings, ViewpointSettings
 
 _Kind = TypeVar("_Kind", bound=np.generic)
@@ -32,7 +32,7 @@ class View:
     points: NDArray[np.float64]
     places: NDArray[np.intp]
     organised: tuple[int, int] | None
-    outlook: Outlook
+    pose: CameraPose
 
     @cached_property
     def pixels(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -46,7 +46,7 @@ class View:
         return replace(self, points=self.points[chosen], places=self.places[chosen])
 
 
-def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
+def camera_pose_of(cloud: PointCloud, settings: DetectionSettings) -> CameraPose:
     """Return the viewpoint of a cloud, with the up and right directions of its image as seen from its origin."""
     eye = np.asarray(cloud.origin, dtype=np.float64)
     upwards = None
@@ -54,19 +54,19 @@ def outlook_of(cloud: PointCloud, settings: DetectionSettings) -> Outlook:
         upwards = np.asarray(settings.up, dtype=np.float64)
         upwards = upwards / np.linalg.norm(upwards)
     if cloud.organised is None or min(cloud.organised) < 2:
-        return Outlook(eye, upwards=upwards)
+        return CameraPose(eye, upwards=upwards)
     image, limits = _without_empty_lines(cloud.points.reshape(*cloud.organised, 3)), settings.viewpoint
     if min(image.shape[:2]) < 2:
-        return Outlook(eye, upwards=upwards)
+        return CameraPose(eye, upwards=upwards)
     uneven = max(_uneven(_rays(pixels, eye, limits)) for pixels in (image, image.swapaxes(0, 1)))
     camera = _best_camera(image, eye, limits)
     if camera is None:
-        return Outlook(eye, upwards=upwards)
+        return CameraPose(eye, upwards=upwards)
     # From a wrong place the misfit is smooth; noise across the rays changes the steps far more than the misfit.
     noisy = camera.misfit < min(limits.max_pinhole_misfit, limits.max_smooth_misfit * uneven)
     if uneven > limits.max_direction_change and not noisy:
-        return Outlook(eye, upwards=upwards, known=False)
-    return Outlook(eye, -camera.down, camera.right, upwards)
+        return CameraPose(eye, upwards=upwards, known=False)
+    return CameraPose(eye, -camera.down, camera.right, upwards)
 
 
 def _without_empty_lines(image: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -139,29 +139,31 @@ def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings:
     return _Pinhole(ways[0], ways[1], float(np.quantile(np.nan_to_num(off, nan=np.inf), settings.pinhole_quantile)))
 
 
-def believed(outlook: Outlook, points: NDArray[np.float64], settings: DetectionSettings) -> Outlook:
+def verified_pose(pose: CameraPose, points: NDArray[np.float64], settings: DetectionSettings) -> CameraPose:
     """Return the viewpoint if the points (n, 3) are consistent with it, else an assumed one above them."""
-    if outlook.up is not None:  # the viewpoint of an image has been checked before
-        return outlook
+    if pose.up is not None:  # the viewpoint of an image has been checked before
+        return pose
     limits = settings.viewpoint
     few = sampled(points, settings)
-    if outlook.known and apart(few, outlook.eye, limits) < limits.max_far_share:
-        return outlook
+    if pose.known and apart(few, pose.eye, limits) < limits.max_far_share:
+        return pose
     above = np.median(few, axis=0) + np.array([0.0, 0.0, limits.assumed_distance])
-    return Outlook(above, upwards=outlook.upwards, known=False)
+    return CameraPose(above, upwards=pose.upwards, known=False)
 
 
-def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings) -> Outlook:
+def likeliest_pose(
+    pose: CameraPose, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings
+) -> CameraPose:
     """Return the viewpoint if it is known and above the table, else the most plausible one for points (n, 3).
 
     A doubtful viewpoint is replaced if another one has at most half of its share of inconsistent neighbours.
     """
     limits = settings.viewpoint
     few, told = sampled(points, settings), float(np.inf)
-    if outlook.known and plane.heights(outlook.eye[None])[0] > limits.min_eye_height:
-        told = 0.0 if outlook.up is not None else apart(few, outlook.eye, limits)
+    if pose.known and plane.heights(pose.eye[None])[0] > limits.min_eye_height:
+        told = 0.0 if pose.up is not None else apart(few, pose.eye, limits)
         if told < limits.doubtful_far_share:
-            return outlook
+            return pose
     on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
     middle = (on if len(on) else few).mean(axis=0)
     turns = np.arange(limits.assumed_azimuths) * 2 * np.pi / limits.assumed_azimuths
@@ -171,8 +173,8 @@ def likely(outlook: Outlook, points: NDArray[np.float64], plane: Plane, settings
     shares = [apart(few, place, limits) for place in places]
     eye = places[int(np.argmin(shares))]
     if told < limits.max_far_share and min(shares) > told / 2:
-        return outlook
-    return replace(outlook, eye=eye, up=None, right=None, known=False)
+        return pose
+    return replace(pose, eye=eye, up=None, right=None, known=False)
 
 
 def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kind]:
@@ -212,7 +214,7 @@ def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray
 
 
 def table_frame(
-    plane: Plane, on: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+    plane: Plane, on: NDArray[np.float64], pose: CameraPose, viewer: tuple[float, float, float] | None
 ) -> NDArray[np.float64]:
     """Return the transform (4, 4) from the frame of the cloud to that of the table.
 
@@ -221,7 +223,7 @@ def table_frame(
     origin is on the table, in the middle of the rectangle around its points.
     """
     up = plane.normal
-    away = _across(up, _away(plane, on.mean(axis=0), outlook, viewer))
+    away = _across(up, _away(plane, on.mean(axis=0), pose, viewer))
     right = np.cross(away, up)
     turn = np.stack([right, away, up])
     plan = on @ turn[:2].T
@@ -233,16 +235,16 @@ def table_frame(
 
 
 def _away(
-    plane: Plane, middle: NDArray[np.float64], outlook: Outlook, viewer: tuple[float, float, float] | None
+    plane: Plane, middle: NDArray[np.float64], pose: CameraPose, viewer: tuple[float, float, float] | None
 ) -> list[NDArray[np.float64]]:
     """Return directions away from the viewer, the best first; some may be vertical."""
     if viewer is not None:
         return [middle - np.asarray(viewer, dtype=np.float64)]
-    if not outlook.known:
+    if not pose.known:
         return []
-    if outlook.right is not None:
-        return [np.cross(plane.normal, outlook.right)]
-    return [middle - outlook.eye]
+    if pose.right is not None:
+        return [np.cross(plane.normal, pose.right)]
+    return [middle - pose.eye]
 
 
 def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArray[np.float64]:

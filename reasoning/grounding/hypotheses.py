@@ -301,7 +301,7 @@ def _maps_of(
         found, total = None, value + spread
         enough = max([not_listed, *(one[1] + math.log(NOT_LISTED) for one in seen)])
         if weight + total >= enough and (not seen or not deadline.passed):
-            found = posterior(problem, deadline, start=best, chains=not known.frugal)
+            found = posterior(problem, deadline, start=best, chains=not known.memory_limited)
             total = log_total(found, value)
             if known.whole is not None:
                 found, total = _of_shortlist(found, known.whole), total + _log_outside(known)

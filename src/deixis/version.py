@@ -1,3 +1,3 @@
 """Version of Deixis, as it is recorded in files."""
 
-VERSION = "0.1.0"
+VERSION = "0.2.0"

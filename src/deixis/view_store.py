@@ -15,7 +15,7 @@ from deixis.ontology.kinds import plain_name
 from deixis.perception.errors import SceneError
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Known, StandingWord, Taught
+    from deixis.learning.views import KeptName, Known, Taught
     from deixis.memory.perceptual.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
@@ -80,9 +80,9 @@ class ViewStore(Closing):
 
         return self._despite_damage(self.memory(create=True), change)
 
-    def but_for_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[StandingWord, ...]]:
+    def except_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[KeptName, ...]]:
         """Return the views of a grounding that no teacher has named, and the things that a teacher named otherwise."""
-        from deixis.learning.views import StandingWord, taught_by_hand
+        from deixis.learning.views import KeptName, taught_by_hand
 
         named = taught_by_hand(self.memory(), views) if self.exists() else {}
         standing = []
@@ -90,7 +90,7 @@ class ViewStore(Closing):
             taught = named.get(view.id)
             if taught is not None and taught.category != view.category:
                 thing, teacher = (str(taught.metadata.get(key, "?")) for key in ("object", "teacher"))
-                standing.append(StandingWord(thing, taught.category, teacher, view.category))
+                standing.append(KeptName(thing, taught.category, teacher, view.category))
         return [view for view in views if view.id not in named], tuple(standing)
 
     def known(

@@ -148,7 +148,7 @@ class Evidence:
         Whether the firm facts can hold together; None where that is unknown.
     deadline
         Time by which the evidence of the facts must be computed; after it, :attr:`problem` raises OutOfTimeError.
-    frugal
+    memory_limited
         True where the memory does not suffice for Markov chains, so that marginals come from belief propagation.
     whole
         Whole scene, where ``scene`` is a shortlist of it.
@@ -165,7 +165,7 @@ class Evidence:
     identified: NDArray[np.bool_] = field(default_factory=lambda: np.array(False))
     consistent: bool | None = None
     deadline: Deadline = Deadline.never()
-    frugal: bool = False
+    memory_limited: bool = False
     whole: Whole | None = None
 
     def __post_init__(self) -> None:

@@ -111,7 +111,7 @@ class Taught:
 
 
 @dataclass(frozen=True)
-class StandingWord:
+class KeptName:
     """A thing that a teacher named otherwise than a grounding; the teacher's name is kept."""
 
     thing: str

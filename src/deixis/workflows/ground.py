@@ -180,7 +180,7 @@ class GroundingRequest:
         return needed > self.memory_limit or things**2 > PAIRS_PER_SECOND * self.due.left
 
     @cached_property
-    def frugal(self) -> bool:
+    def memory_limited(self) -> bool:
         """True if the memory limit leaves no room to sample marginals.
 
         Raises OutOfMemoryError where it leaves no room for an answer.
@@ -201,9 +201,9 @@ class GroundingRequest:
                 self.graph, scene, self.script.ontology, self.effective_meaning, self.memory_limit, self.due
             )
             return replace(known, consistent=self._consistent)
-        frugal = self.frugal
+        memory_limited = self.memory_limited
         known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning, deadline=self.due)
-        return replace(known, frugal=frugal, consistent=self._consistent)
+        return replace(known, memory_limited=memory_limited, consistent=self._consistent)
 
     @cached_property
     def _consistent(self) -> bool:

@@ -21,7 +21,7 @@ from deixis.workflows.read import as_scene, as_script
 from deixis.workflows.views_of_lessons import keep_lessons
 
 if TYPE_CHECKING:
-    from deixis.learning.views import StandingWord, Taught
+    from deixis.learning.views import KeptName, Taught
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson
 
@@ -33,7 +33,7 @@ class Learned:
     lesson: Lesson
     grounding: Grounding
     seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
-    standing: tuple[StandingWord, ...] = ()  # what it would call otherwise than a teacher did
+    standing: tuple[KeptName, ...] = ()  # what it would call otherwise than a teacher did
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -70,7 +70,7 @@ def learn(
     learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in pairs]
     if not learned:
         return ()
-    groups = [views.but_for_taught(seen) for _, seen in learned]
+    groups = [views.except_taught(seen) for _, seen in learned]
     new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
     found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views))
     for (one, _), (new, standing) in zip(learned, groups, strict=True):

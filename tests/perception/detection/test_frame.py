@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.plane import Outlook, Plane
+from deixis.perception.detection.plane import CameraPose, Plane
 from deixis.perception.detection.settings import DetectionSettings
-from deixis.perception.detection.viewpoint import moved, outlook_of, table_frame
+from deixis.perception.detection.viewpoint import camera_pose_of, moved, table_frame
 
 LEVEL = Plane(np.array([0.0, 0.0, 1.0]), 0.7)
 SQUARE = np.array([[0.0, 0.0, 0.7], [1.0, 0.0, 0.7], [1.0, 1.0, 0.7], [0.0, 1.0, 0.7]])
@@ -20,7 +20,7 @@ SQUARE = np.array([[0.0, 0.0, 0.7], [1.0, 0.0, 0.7], [1.0, 1.0, 0.7], [0.0, 1.0,
 def test_the_frame_is_right_handed_with_y_away_from_the_viewer(
     viewer: tuple[float, float, float],
 ) -> None:
-    frame = table_frame(LEVEL, SQUARE, Outlook(np.array([0.5, -1.0, 1.5])), viewer)
+    frame = table_frame(LEVEL, SQUARE, CameraPose(np.array([0.5, -1.0, 1.5])), viewer)
     turn = frame[:3, :3]
     assert np.allclose(turn @ turn.T, np.eye(3), atol=1e-12) and np.linalg.det(turn) > 0
     assert np.allclose(turn[2], LEVEL.normal)
@@ -31,28 +31,28 @@ def test_the_frame_is_right_handed_with_y_away_from_the_viewer(
 
 
 def test_the_origin_is_in_the_middle_of_the_table_and_on_it() -> None:
-    frame = table_frame(LEVEL, SQUARE, Outlook(np.array([0.5, -1.0, 1.5])), None)
+    frame = table_frame(LEVEL, SQUARE, CameraPose(np.array([0.5, -1.0, 1.5])), None)
     assert np.allclose(moved(np.array([[0.5, 0.5, 0.7]]), frame), 0.0, atol=1e-9)
     assert np.allclose(moved(np.array([[0.8, 0.6, 0.9]]), frame), [[0.3, 0.1, 0.2]], atol=1e-9)
 
 
 def test_another_viewer_sees_left_and_right_the_other_way_round() -> None:
-    outlook = Outlook(np.array([0.5, -1.0, 1.5]))
-    near = moved(SQUARE, table_frame(LEVEL, SQUARE, outlook, (0.5, -1.0, 1.0)))
-    far = moved(SQUARE, table_frame(LEVEL, SQUARE, outlook, (0.5, 2.0, 1.0)))
+    pose = CameraPose(np.array([0.5, -1.0, 1.5]))
+    near = moved(SQUARE, table_frame(LEVEL, SQUARE, pose, (0.5, -1.0, 1.0)))
+    far = moved(SQUARE, table_frame(LEVEL, SQUARE, pose, (0.5, 2.0, 1.0)))
     assert np.allclose(near[:, :2], -far[:, :2], atol=1e-9)
 
 
 def test_an_image_defines_up_and_right() -> None:
     v, u = np.mgrid[:8, :10]
     points = np.stack([(u - 4.5) / 10, (v - 3.5) / 10, np.ones(u.shape)], axis=-1).reshape(-1, 3)
-    outlook = outlook_of(PointCloud(points.astype(np.float32), organised=(8, 10)), DetectionSettings())
-    assert outlook.up is not None and outlook.right is not None
-    assert np.allclose(outlook.up, [0, -1, 0], atol=0.02) and np.allclose(outlook.right, [1, 0, 0], atol=0.02)
+    pose = camera_pose_of(PointCloud(points.astype(np.float32), organised=(8, 10)), DetectionSettings())
+    assert pose.up is not None and pose.right is not None
+    assert np.allclose(pose.up, [0, -1, 0], atol=0.02) and np.allclose(pose.right, [1, 0, 0], atol=0.02)
 
 
 def test_the_image_of_a_camera_above_has_its_top_at_the_far_side() -> None:
     plane = Plane(np.array([0.0, 0.0, -1.0]), -1.0)
-    outlook = Outlook(np.zeros(3), up=np.array([0.0, -1.0, 0.0]), right=np.array([1.0, 0.0, 0.0]))
-    frame = table_frame(plane, np.array([[-1.0, -1, 1], [1, 1, 1]]), outlook, None)
+    pose = CameraPose(np.zeros(3), up=np.array([0.0, -1.0, 0.0]), right=np.array([1.0, 0.0, 0.0]))
+    frame = table_frame(plane, np.array([[-1.0, -1, 1], [1, 1, 1]]), pose, None)
     assert np.allclose(moved(np.array([[0.3, -0.2, 0.9]]), frame), [[0.3, 0.2, 0.1]])

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.perception.detection.plane import Outlook, Plane, refined, table_plane
+from deixis.perception.detection.plane import CameraPose, Plane, refined, table_plane
 from deixis.perception.detection.settings import DetectionSettings
 
 
@@ -30,7 +30,7 @@ def test_a_noisy_plane_among_outliers_is_recovered(seed: int) -> None:
     turn, shift = _turn(seed), rng.uniform(-1, 1, 3)
     points = np.concatenate([_table(rng), outliers]) @ turn.T + shift
     eye = np.array([0.0, -0.6, 0.8]) @ turn.T + shift
-    plane = table_plane(points, Outlook(eye), DetectionSettings())
+    plane = table_plane(points, CameraPose(eye), DetectionSettings())
     assert plane is not None
     assert float(plane.normal @ turn[:, 2]) > np.cos(np.radians(0.3))
     assert abs(float(plane.normal @ shift) - plane.offset) < 0.001
@@ -49,7 +49,7 @@ def test_the_table_is_found_although_the_floor_is_larger() -> None:
     floor = np.column_stack([rng.uniform(-1.5, 1.5, (9000, 2)), np.full(9000, -0.75)])
     things = rng.uniform((-0.2, -0.2, 0.02), (0.2, 0.2, 0.2), (1200, 3))
     points = np.concatenate([floor, _table(rng), things])
-    plane = table_plane(points, Outlook(np.array([0.0, -1.0, 0.9])), DetectionSettings())
+    plane = table_plane(points, CameraPose(np.array([0.0, -1.0, 0.9])), DetectionSettings())
     assert plane is not None and abs(plane.offset) < 0.005
 
 
@@ -60,7 +60,7 @@ def test_a_table_with_few_objects_is_preferred_to_a_larger_floor(wall: bool) -> 
     floor = rng.uniform((-3, 0.6, 0), (3, 3, 0), (20_000, 3)) - [0.0, 0.0, 0.75]
     behind = rng.uniform((-3, 3, -0.75), (3, 3, 1.5), (20_000, 3))
     points = np.concatenate([_table(rng), things, floor, *([behind] if wall else [])])
-    camera = Outlook(np.array([0.0, -0.7, 0.8]), up=np.array([0.0, 0.5, 0.85]), right=np.array([1.0, 0.0, 0.0]))
+    camera = CameraPose(np.array([0.0, -0.7, 0.8]), up=np.array([0.0, 0.5, 0.85]), right=np.array([1.0, 0.0, 0.0]))
     found = table_plane(points, camera, DetectionSettings())
     assert found is not None and abs(found.offset) < 0.01
 
@@ -70,13 +70,13 @@ def test_an_upright_camera_does_not_take_a_wall_for_a_table() -> None:
     wall = np.column_stack([rng.uniform(-1.5, 1.5, 9000), np.full(9000, 0.6), rng.uniform(0, 1.5, 9000)])
     points = np.concatenate([wall, _table(rng)])
     up, right = np.array([0.0, 0.6, 0.8]), np.array([1.0, 0.0, 0.0])
-    plane = table_plane(points, Outlook(np.array([0.0, -0.8, 0.8]), up, right), DetectionSettings())
+    plane = table_plane(points, CameraPose(np.array([0.0, -0.8, 0.8]), up, right), DetectionSettings())
     assert plane is not None and plane.normal[2] > 0.999
-    only_wall = table_plane(wall, Outlook(np.array([0.0, -0.8, 0.8]), up, right), DetectionSettings())
+    only_wall = table_plane(wall, CameraPose(np.array([0.0, -0.8, 0.8]), up, right), DetectionSettings())
     assert only_wall is None
 
 
 def test_points_without_a_plane_have_no_table() -> None:
-    assert table_plane(np.zeros((50, 3)), Outlook(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None
+    assert table_plane(np.zeros((50, 3)), CameraPose(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None
     line = np.outer(np.linspace(0, 1, 50), [1.0, 2.0, 3.0])
-    assert table_plane(line, Outlook(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None
+    assert table_plane(line, CameraPose(np.array([0.0, 0.0, 1.0])), DetectionSettings()) is None

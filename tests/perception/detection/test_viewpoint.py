@@ -13,7 +13,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect
 from deixis.perception.detection.neighbours import neighbour_table
 from deixis.perception.detection.settings import DetectionSettings, SurfaceSettings, ViewpointSettings
-from deixis.perception.detection.viewpoint import apart, outlook_of
+from deixis.perception.detection.viewpoint import apart, camera_pose_of
 from deixis.perception.errors import CloudError
 
 Look = Callable[..., PointCloud]
@@ -127,7 +127,7 @@ def test_the_viewpoint_is_found_despite_noise_in_all_directions(boxes_seen: Look
     cloud = boxes_seen([CUBE, PLANK])
     noise = np.random.default_rng(0).normal(0, 1e-3, cloud.points.shape)
     noisy = replace(cloud, points=(cloud.points + noise).astype(np.float32))
-    assert outlook_of(noisy, DetectionSettings()).known
+    assert camera_pose_of(noisy, DetectionSettings()).known
     assert detect(noisy).frame[0, :3] == pytest.approx([1, 0, 0], abs=0.01)
 
 

@@ -1,0 +1,118 @@
+"""Records of benchmarks: what is written, what the page shows, and which benchmarks take part."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+import records
+from records import RUNS, Run, command_line, count, figure, ratio, recorded, seconds, share
+from source_tree import ROOT
+
+BENCHMARKS = sorted((ROOT / "benchmarks").glob("bench_*.py"))
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+    """A run whose record is in a temporary folder, at a known commit of an idle machine."""
+    run = Run("tables", "Grounding", "tables", "toy", "--size 12")
+    monkeypatch.setattr(records, "FOLDER", tmp_path)
+    monkeypatch.setattr(records, "RUNS", (run,))
+    monkeypatch.setattr(records, "measured_commit", lambda: "abc1234")
+    monkeypatch.setattr(records, "is_busy", lambda: False)
+    return run
+
+
+def measure(*arguments: str, right: int = 9) -> None:
+    parser = command_line("benchmarks/bench_toy.py", "Measure a toy.")
+    parser.add_argument("--size", type=int, default=3)
+    with recorded(parser, arguments):
+        share("named right", right, 12)
+        ratio("inference", 3.0, 1.5, "numpy")
+        seconds("inference", 1.5)
+        count("tables", 4)
+        figure("undefined", float("nan"), "share")
+
+
+def test_the_page_is_what_the_records_give() -> None:
+    assert records.PAGE.read_text(encoding="utf-8") == records.page(), "run `make report`"
+
+
+@pytest.mark.parametrize("file", BENCHMARKS, ids=lambda path: path.stem)
+def test_every_benchmark_registers_and_records(file: Path) -> None:
+    assert file in [run.file for run in RUNS], f"add a line for {file.name} to RUNS in benchmarks/records.py"
+    text = file.read_text(encoding="utf-8")
+    assert "with recorded(parser" in text and "command_line(__file__, __doc__)" in text
+    (imported,) = re.findall(r"^from records import (.+)$", text, re.MULTILINE)
+    used = set(imported.split(", ")) & {"share", "mean", "ratio", "count", "seconds", "figure"}
+    assert any(re.search(rf"(?<![\w.]){name}\(", text) for name in used)
+
+
+def test_the_names_of_runs_are_distinct() -> None:
+    assert len({run.name for run in RUNS}) == len(RUNS)
+    assert all(run.file.exists() for run in RUNS)
+
+
+def test_every_record_belongs_to_a_run() -> None:
+    names = {run.name: run.command for run in RUNS}
+    for file in (ROOT / "benchmarks" / "recorded").glob("*.json"):
+        assert json.loads(file.read_text(encoding="utf-8"))["command"] == names[file.stem]
+
+
+def test_a_run_is_written_with_its_figures(here: Run) -> None:
+    measure("--record", "--size", "12")
+    (recording,) = records.read(here)
+    named, times, taken, tables = recording.figures
+    assert recording.commit == "abc1234" and "cores" in recording.machine
+    assert (named.value, named.unit) == (0.75, "share") and named.interval == (0.4677, 0.9111)
+    assert times.value == 2 and (times.peer or "").startswith("numpy ")
+    assert (taken.unit, tables.value) == ("s", 4)
+
+
+def test_nothing_is_written_without_the_option(here: Run) -> None:
+    measure("--size", "12")
+    assert records.read(here) == []
+
+
+def test_other_options_than_those_of_a_run_are_refused(here: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        measure("--record")
+    assert "add a line to RUNS" in capsys.readouterr().err
+
+
+def test_a_busy_machine_records_no_seconds(here: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(records, "is_busy", lambda: True)
+    measure("--record", "--size", "12")
+    assert [each.unit for each in records.read(here)[0].figures] == ["share", "times as long", "count"]
+
+
+def test_the_page_shows_the_change_since_the_last(here: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    measure("--record", "--size", "12")
+    assert "| named right | 0.75 (0.468 to 0.911) |  |" in records.page()
+    monkeypatch.setattr(records, "measured_commit", lambda: "def5678")
+    measure("--record", "--size", "12", right=12)
+    assert "change since `abc1234`" in records.page()
+    assert "| named right | 1 (0.757 to 1) | +0.25 |" in records.page()
+
+
+def test_an_error_leaves_the_record_alone(here: Run) -> None:
+    parser = command_line("benchmarks/bench_toy.py", "Measure a toy.")
+    parser.add_argument("--size", type=int, default=3)
+    with pytest.raises(RuntimeError), recorded(parser, ["--record", "--size", "12"]):  # noqa: PT012
+        count("tables", 4)
+        raise RuntimeError
+    assert records.read(here) == []
+
+
+@pytest.mark.parametrize("name", ["large", "matching", "recognition"])
+def test_a_benchmark_explains_its_options(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", [f"bench_{name}.py", "--help"])
+    with pytest.raises(SystemExit) as ended:
+        __import__(f"bench_{name}").main()
+    assert ended.value.code == 0
+    assert "--record" in capsys.readouterr().out
