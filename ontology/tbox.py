@@ -170,7 +170,8 @@ def _words(triples: TripleIndex, iri: str) -> tuple[str, ...]:
 
 def _kinds(triples: TripleIndex) -> Kinds:
     kinds = []
-    classes = frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS))
+    above_things = triples.ancestors(DX.THING, W3C.RDFS_SUB_CLASS_OF)
+    classes = frozenset(triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)) - above_things
     for iri in sorted(classes):
         broader = triples.ancestors(iri, W3C.RDFS_SUB_CLASS_OF)
         if DX.THING in broader or iri == DX.THING:

@@ -54,6 +54,7 @@ class DX(StrEnum):
     LAYOUT = BASE + "Layout"
     ROLE = BASE + "Role"
     RELATION_STATEMENT = BASE + "RelationStatement"
+    IMPLIED_STATEMENT = BASE + "ImpliedStatement"
     # properties
     HEDGE_WEIGHT = BASE + "hedgeWeight"
     PROTOTYPE = BASE + "prototype"
@@ -95,6 +96,8 @@ class DX(StrEnum):
     LEARNED_IN = BASE + "learnedIn"
     CATEGORY = BASE + "category"
     OF_ROLE = BASE + "ofRole"
+    RULE = BASE + "rule"
+    IMPLICATIONS_STORED = BASE + "implicationsStored"
     PERCEIVED_AS = BASE + "perceivedAs"
     COULD_BE = BASE + "couldBe"
     DECIDED = BASE + "decided"

@@ -10,7 +10,7 @@ reached (see ``complete``).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,6 +48,8 @@ class Implications:
         The facts.
     time_limit
         Time limit in seconds for deciding choices in the facts.
+    cases
+        Whether to decide the choices. Without it, only what follows without cases is computed, which takes no search.
 
     Raises
     ------
@@ -71,12 +73,13 @@ class Implications:
             on(napkin, plate)   by stated
     """
 
-    def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT) -> None:
+    def __init__(self, graph: RelationGraph, time_limit: float = TIME_LIMIT, cases: bool = True) -> None:
         self.graph = graph
         self.vocabulary: Relations = graph.vocabulary
         self.time_limit = time_limit
         self.demands: Demands = demands_of(graph)
-        self.closed: Closed = close(self.demands, Deadline.after(time_limit))
+        settled = self.demands if cases else replace(self.demands, choices=())
+        self.closed: Closed = close(settled, Deadline.after(time_limit))
 
     @property
     def consistent(self) -> bool:

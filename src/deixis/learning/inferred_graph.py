@@ -1,9 +1,10 @@
 """Content of the inferred graph: what follows from learned and asserted triples without being stated.
 
-These are the broader classes of each class, the broader classes of each thing, and the wide relations of pairs that
-follow from exact ones. After a change only some triples are looked at again: those about the classes in the change and
-the classes above and below them, about the things whose kinds change, and about the pairs that the change relates.
-Nothing else can change. Lessons use a part of OWL in which subsumption needs no reasoner
+These are the broader classes of each class, the broader classes of each thing, the wide relations of pairs that follow
+from exact ones, and what each layout implies (:mod:`deixis.learning.implied_statements`). After a change only some
+triples are looked at again: those about the classes in the change and the classes above and below them, about the
+things whose kinds change, about the pairs that the change relates, and about the layouts in it. Nothing else can
+change. Lessons use a part of OWL in which subsumption needs no reasoner
 (:mod:`deixis.reasoning.description_logic.subsumption`). In a memory with other axioms HermiT classifies everything, as
 ``deixis reason`` does on demand.
 """
@@ -16,6 +17,7 @@ from functools import lru_cache
 
 import pyoxigraph as ox
 
+from deixis.learning.implied_statements import changed_layouts, of_all_layouts
 from deixis.memory.semantic.rdf.after import After, Node
 from deixis.memory.semantic.rdf.change import Change, reconcluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
@@ -32,7 +34,9 @@ from deixis.reasoning.description_logic.subsumption import (
 )
 from deixis.reasoning.errors import InconsistencyError
 
-ENGINES = {"Deixis": "broader classes, kinds of things, and wide relations of pairs from exact ones"}
+ENGINES = {
+    "Deixis": "broader classes, kinds of things, wide relations of pairs from exact ones, and implications of layouts"
+}
 """Engines that compute the inferred graph, and what each infers."""
 
 OWL, RDFS = "http://www.w3.org/2002/07/owl#", "http://www.w3.org/2000/01/rdf-schema#"
@@ -87,6 +91,7 @@ def following(after: After, relations: Relations) -> Change:
     for subject, object in {(t.subject, t.object) for t in changed if t.predicate in said.wider}:
         old = after.triples(GraphName.INFERRED, subject, None, object)
         replace((t for t in old if t.predicate not in (TYPE, SUB_CLASS_OF)), said.wide(subject, object))
+    replace(*changed_layouts(after, relations))
     for name in STATED:
         gone |= {t for t in after.change.added.get(name, ()) if after.holds(GraphName.INFERRED, t)}
     return reconcluding(gone - come, come - gone)
@@ -99,7 +104,7 @@ def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple
     names = {_value(t.subject) for name in CLASSES for t in after.triples(name, None, SUB_CLASS_OF)}
     said.require_satisfiable(names)
     found = {triple for name in names for triple in said.class_triples(name)}
-    return found | said.of_things() | set(origin())
+    return found | said.of_things() | of_all_layouts(after, relations) | set(origin())
 
 
 def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
@@ -113,7 +118,12 @@ def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
     quads = ox.parse(classified.inferred, format=ox.RdfFormat.N_TRIPLES)
     said = _Said(after, relations, {quad.triple for quad in quads})
     found = {triple for triple in said.classified or () if not said.stated(triple)}
-    return found | said.of_things() | set(origin({**ENGINES, "HermiT": "broader classes"}))
+    return (
+        found
+        | said.of_things()
+        | of_all_layouts(after, relations)
+        | set(origin({**ENGINES, "HermiT": "broader classes"}))
+    )
 
 
 def impossible(classes: Iterable[str]) -> InconsistencyError:

@@ -46,7 +46,7 @@ from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
 from deixis.scratch import scratch_folder
 
-RULES = 1
+RULES = 2
 """Version of the rules for inferences and counts; a memory records it."""
 
 BY_HERMIT = " by HermiT"

@@ -34,7 +34,13 @@ def stale(memory: SemanticMemory) -> set[Triple]:
     """Return the inferred triples about the world that the rules of OWL 2 RL do not derive from the stated ones."""
     stated = said(memory, GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)
     known = Materialisation(stated)
-    return {t for t in said(memory, GraphName.INFERRED) if t not in known and not is_origin(t)}
+    inferred = said(memory, GraphName.INFERRED)
+    return {t for t in inferred if t not in known and not is_origin(t) and not is_of_layout(t)}
+
+
+def is_of_layout(triple: Triple) -> bool:
+    """Return whether a triple is about a layout's implications, which OWL 2 RL does not know."""
+    return triple.subject.startswith("<https://w3id.org/deixis/learned/layout/")
 
 
 def is_origin(triple: Triple) -> bool:
