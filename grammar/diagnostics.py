@@ -11,14 +11,16 @@ from deixis.grammar.draft import Draft
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, StatementError, shortened
 from deixis.grammar.names import RESERVED_FOR, is_also_noun, may_be_meant_as_name, naming_hint
 from deixis.grammar.tree import UNQUALIFIED_DECLARATION, source_of, span_of
+from deixis.grammar.words import DENIALS
 from deixis.ontology.facts import Source
 from deixis.ontology.relation import plain_phrase
 
 RELATION_EXPECTED = "expected a relation such as 'left of', or 'is a'"
 SMART_QUOTES = "“”„‟«»‘’"
 QUOTE_HINT = "if it belongs to a name, quote the name"
-NEARNESS_WORDS = {"near", "nearer", "next", "close", "closer", "beside", "besides", "between", "by", "far", "farther"}
-NEARNESS_HINT = "there is no relation for nearness; name a side: left of, right of, above, below, on"
+NEARNESS_WORDS = {"nearer", "next", "close", "closer", "besides", "far", "farther"}
+NEARNESS_HINT = "say 'near', 'next to' or 'far from' for nearness"
+DENIAL_HINT = "a denial is said with 'not': fork not left of plate"
 SEPARATOR_HINT = "';' separates two statements on one line"
 ONE_QUALITY_HINT = "an object has one kind and one colour: state the main one"
 NAMES = ("NAME", "STRING")
@@ -131,6 +133,8 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         else:
             message = f"'{shown}' is not expected here"
         return StatementError(source_of(token), message, naming_hint(tokens, at))
+    if token.casefold() in DENIALS:
+        return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", DENIAL_HINT)
     if "RELATION" in accepts and (meant := _nearest_relation(tokens, at, draft)) is not None:
         said, where, phrase = meant
         return StatementError(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?")

@@ -10,7 +10,7 @@ from deixis.grammar.names import require_short, unquote
 from deixis.grammar.script import Chain, Declaration, Header, Include, Mention, Modifiers, RelationStatement, Statement
 from deixis.grammar.words import NUMBERS, VERBS_OR_NOUNS
 from deixis.ontology.facts import Source
-from deixis.ontology.relation import Relation, plain_phrase
+from deixis.ontology.relation import Reading, Relation, plain_phrase
 
 UNQUALIFIED_DECLARATION = "the kind or colour of an object cannot be denied, optional or hedged"
 
@@ -204,8 +204,10 @@ def _twice(modifier: str, word: str, where: Source) -> StatementError:
 
 def _one_reading(relations: tuple[Relation, ...], where: Source) -> tuple[Relation, ...]:
     """Return the relations without duplicates; raise StatementError for a mix of wide and exact relations."""
-    if len({relation.reading for relation in relations}) > 1:
-        wide, exact = sorted({r.reading: r.phrase for r in relations}.values(), key=lambda p: "exactly" in p)
+    if len({relation.reading is Reading.EXACT for relation in relations}) > 1:
+        wide, exact = (
+            next(r.phrase for r in relations if (r.reading is Reading.EXACT) == is_exact) for is_exact in (False, True)
+        )
         hint = "say 'exactly' with each of them, or with none"
         raise StatementError(where, f"'or' cannot mix a wide relation ('{wide}') with an exact one ('{exact}')", hint)
     return tuple(dict.fromkeys(relations))

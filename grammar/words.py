@@ -38,7 +38,17 @@ relative roughly she should since slightly so some such than that their them the
 though through throughout till to together too toward towards until up us very via was we were what when where
 whereas whether which while who whom whose why will with without would yet you your
 """
-FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
+# Forms of verbs that state no relation of the language; "lamp hangs on monitor" is no fact about a lamp_hangs.
+_OTHER_VERBS = """
+be been appears became become becomes came comes contains faces floats gets hang hanging hangs hung holds keeps leans
+leant looks moves overlaps occupies points precedes remains seems shows stays surrounds touches
+"""
+_DENIALS = """
+cannot can't couldn't don't doesn't didn't isn't aren't wasn't weren't won't wouldn't shouldn't mustn't
+"""
+DENIALS = frozenset(_DENIALS.split())
+_DEGREES = "least less more most"  # "left most" is one word: leftmost
+FUNCTION_WORDS = frozenset(f"{_FUNCTION_WORDS} {_OTHER_VERBS} {_DEGREES}".split()) | DENIALS
 NOUNS_TOO = frozenset({"can", "mine", "till"})  # function words that can also name a thing: a watering can
 
 KEYWORDS: dict[str, str] = {

@@ -205,14 +205,16 @@ class RelationGraph:
     def paper_view(self) -> PaperGraph:
         """Return the graph of Definition 1: one word per edge and one edge per ordered pair.
 
-        It leaves out facts that are not a single affirmed relation, and rare facts, which amount to denials. Of several
-        facts about one pair, it keeps the most specific label: the one that implies the most others, and the first
-        stated of equals.
+        It leaves out facts that are not a single affirmed relation of the ten, and rare facts, which amount to denials.
+        Of several facts about one pair, it keeps the most specific label: the one that implies the most others, and the
+        first stated of equals.
         """
         labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
-        label_of = np.array([labels.index(r.word) for r in self.vocabulary.values()], dtype=np.int8)
+        words = (self.vocabulary.paper_word(r) for r in self.vocabulary.values())
+        label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
         telling = np.array([len(r.broader) for r in self.vocabulary.values()])
         plain = np.flatnonzero(self.positive & self.affirmed & (np.bitwise_count(self.relation_sets) == 1))
+        plain = plain[label_of[np.round(np.log2(self.relation_sets[plain])).astype(np.int64)] >= 0]
         relation = np.round(np.log2(self.relation_sets[plain])).astype(np.int64)
         pair = self.subjects[plain].astype(np.int64) * len(self.nodes) + self.objects[plain]
         order = np.lexsort((plain, -telling[relation], pair))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -21,10 +22,11 @@ if TYPE_CHECKING:
 
 
 class Reading(StrEnum):
-    """The two readings of a relation word."""
+    """The readings of relation words: wide and exact for the ten, graded for all others."""
 
     WIDE = "wide"  # in a script: constrains the axis that the word names, and leaves the other one open
     EXACT = "exact"  # between two boxes: one of ten names, of which each pair of boxes has exactly one
+    GRADED = "graded"  # of words beside the ten: a graded model says how well the word fits a pair
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -34,7 +36,8 @@ class Relation:
     ``x_atoms`` and ``y_atoms`` are 13-bit masks of Allen relations (bit = code); their product is the set of
     rectangle-algebra atoms that the relation admits. ``z_atoms`` decides instead where heights are known; 0 means that
     heights decide nothing. ``broader`` names the relations that this one implies, ``index`` is its bit in a relation
-    set.
+    set. The atoms of a relation in the graded reading are necessary for it, not sufficient. ``by_model`` is True
+    if only its graded model decides whether it holds, since no exact relation implies it.
     """
 
     name: str  # 'top_left', 'exactly_top_left'
@@ -50,6 +53,7 @@ class Relation:
     broader: frozenset[str] = field(compare=False)
     phrase: str = field(compare=False)
     words: tuple[str, ...] = field(compare=False)
+    by_model: bool = field(compare=False, default=False)
 
     def __repr__(self) -> str:
         return f"<Relation {self.name} ({self.reading.value})>"
@@ -61,6 +65,11 @@ class Relation:
     def bit(self) -> int:
         """Bit mask with only the bit of this relation set."""
         return 1 << self.index
+
+    @property
+    def symmetric(self) -> bool:
+        """True if the relation is its own inverse."""
+        return self.inverse == self.name
 
     def admits(self) -> NDArray[np.bool_]:
         """Return the admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
@@ -130,10 +139,21 @@ class Relations(Mapping[str, Relation]):
 
     def wide(self, exact: Relation) -> Relation:
         """Return the wide relation of the same word."""
+        if exact.reading is Reading.GRADED:
+            return exact
         return self._by_name[exact.word]
 
+    def paper_word(self, relation: Relation) -> str | None:
+        """Return the one of the ten words that a relation has or implies (*top* for *behind*), or None."""
+        if relation.reading is not Reading.GRADED:
+            return relation.word
+        wide = [name for name in sorted(relation.broader) if self._by_name[name].reading is Reading.WIDE]
+        return wide[0] if wide else None
+
     def exact(self, wide: Relation) -> Relation:
-        """Return the exact relation of the same word."""
+        """Return the exact relation of the same word; a graded word has only one reading."""
+        if wide.reading is Reading.GRADED:
+            return wide
         return next(r for r in self._all if r.word == wide.word and r.reading is Reading.EXACT)
 
     @cached_property
@@ -142,7 +162,8 @@ class Relations(Mapping[str, Relation]):
 
         ``degrees[stated, name]`` is 1 if both are the same word and ``name`` is exact, 0.5 if ``name`` implies the
         stated wide relation of another word, and 0 otherwise. Columns of wide relations are 0, since the relation of a
-        pair is always an exact one. A stated exact relation holds fully or not at all.
+        pair is always an exact one. A stated exact relation holds fully or not at all. A graded word that implies a
+        wide one (*behind*) has the degrees of that one; other graded words have none.
         """
         import numpy as np
 
@@ -152,6 +173,10 @@ class Relations(Mapping[str, Relation]):
             for broader in name.broader:
                 same_word = self._by_name[broader].word == name.word
                 table[self._by_name[broader].index, name.index] = 1.0 if same_word else 0.5
+        for word in self.of_reading(Reading.GRADED):
+            wide = [self._by_name[name] for name in word.broader if self._by_name[name].reading is Reading.WIDE]
+            if wide:
+                table[word.index] = np.min([table[relation.index] for relation in wide], axis=0)
         return table
 
 
@@ -180,25 +205,28 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:
     """Build a relation from the statements about ``iri``; raise OntologyError if a statement is missing."""
     label = triples.only(iri, W3C.RDFS_LABEL)
-    reading = Reading.WIDE if triples.only(iri, DX.READING) == DX.WIDE else Reading.EXACT
+    reading = READINGS[DX(triples.only(iri, DX.READING))]
     broader = [
         parent for parent in triples.ancestors(iri, W3C.RDFS_SUB_PROPERTY_OF) if triples.values(parent, DX.READING)
     ]
     phrase = triples.only(iri, DX.PHRASE)
-    name = _name(label)
+    name = _name(iri)
     # An exact relation has the word of its direct wide parent.
-    if reading is Reading.WIDE:
+    if reading is not Reading.EXACT:
         word = name
     else:
         direct = [p for p in triples.values(iri, W3C.RDFS_SUB_PROPERTY_OF) if p in broader]
         if len(direct) != 1:
             raise OntologyError(f"the exact relation <{iri}> must be a sub-property of exactly one wide relation")
-        word = _name(triples.only(direct[0], W3C.RDFS_LABEL))
-    # OWL may state an inverse from either side.
-    stated = {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
+        word = _name(direct[0])
+    # OWL may state an inverse from either side; a symmetric property is its own.
+    symmetric = W3C.OWL_SYMMETRIC_PROPERTY in triples.values(iri, W3C.RDF_TYPE)
+    stated = (
+        {iri} if symmetric else {*triples.values(iri, W3C.OWL_INVERSE_OF), *triples.subjects(W3C.OWL_INVERSE_OF, iri)}
+    )
     if len(stated) != 1:
         raise OntologyError(f"<{iri}> must have exactly one owl:inverseOf, got {len(stated)}")
-    inverse = _name(triples.only(stated.pop(), W3C.RDFS_LABEL))
+    inverse = _name(stated.pop())
     return Relation(
         name=name,
         word=word,
@@ -210,14 +238,25 @@ def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relatio
         x_atoms=_atoms(iri, DX.ADMITS_ON_X, triples),
         y_atoms=_atoms(iri, DX.ADMITS_ON_Y, triples),
         z_atoms=_atoms(iri, DX.DECIDED_ON_Z, triples),
-        broader=frozenset(_name(triples.only(parent, W3C.RDFS_LABEL)) for parent in broader),
+        broader=frozenset(_name(parent) for parent in broader),
         phrase=phrase,
-        words=tuple(dict.fromkeys((label, phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL)))),
+        # Of a graded relation, only the phrase and its variants are words of scripts: "above" alone means top.
+        words=tuple(
+            dict.fromkeys(
+                (*(() if reading is Reading.GRADED else (label,)), phrase, *triples.values(iri, W3C.SKOS_ALT_LABEL))
+            )
+        ),
+        by_model=reading is Reading.GRADED and all(triples.only(p, DX.READING) == DX.GRADED for p in broader),
     )
 
 
-def _name(label: str) -> str:
-    return label.replace(" ", "_")
+READINGS = {DX.WIDE: Reading.WIDE, DX.EXACT: Reading.EXACT, DX.GRADED: Reading.GRADED}
+"""Readings by the IRIs of their individuals."""
+
+
+def _name(iri: str) -> str:
+    """Return the local part of an IRI in snake case: ``top_left`` for ``…#topLeft``."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", iri.rpartition("#")[2]).lower()
 
 
 def _atoms(iri: str, prop: DX, triples: TripleIndex) -> int:

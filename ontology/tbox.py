@@ -117,7 +117,7 @@ def load_ontology(*extra: str) -> Ontology:
     """
     triples = TripleIndex(quad for text in (tbox_turtle(), *extra) for quad in _parse(text))
     relations: list[Relation] = []
-    for reading in (DX.WIDE, DX.EXACT):
+    for reading in (DX.WIDE, DX.EXACT, DX.GRADED):
         for iri in triples.subjects(DX.READING, reading):
             relations.append(relation_from_triples(iri, triples, index=len(relations)))
     colours = colours_from_triples(

@@ -44,6 +44,7 @@ class DX(StrEnum):
     # readings
     WIDE = BASE + "wide"
     EXACT = BASE + "exact"
+    GRADED = BASE + "graded"
     # classes
     HEDGE = BASE + "Hedge"
     COLOUR = BASE + "Colour"
@@ -141,6 +142,7 @@ class W3C(StrEnum):
     RDFS_SUB_PROPERTY_OF = "http://www.w3.org/2000/01/rdf-schema#subPropertyOf"
     OWL_CLASS = "http://www.w3.org/2002/07/owl#Class"
     OWL_INVERSE_OF = "http://www.w3.org/2002/07/owl#inverseOf"
+    OWL_SYMMETRIC_PROPERTY = "http://www.w3.org/2002/07/owl#SymmetricProperty"
     OWL_TRANSITIVE_PROPERTY = "http://www.w3.org/2002/07/owl#TransitiveProperty"
     SKOS_ALT_LABEL = "http://www.w3.org/2004/02/skos/core#altLabel"
     SKOS_BROADER = "http://www.w3.org/2004/02/skos/core#broader"

@@ -47,6 +47,14 @@ implies the wide relation of the same word.
 
 {exact}
 
+## Relations, the graded reading
+
+Words beside the ten. A graded model says how well each fits a pair of boxes
+(`reasoning/grounding/evidence/meaning.py`). The Allen relations are necessary for a word, not sufficient: inference
+uses them, inverses, symmetry, transitivity and broader words.
+
+{graded}
+
 ## Allen's relations
 
 {allen}
@@ -125,6 +133,7 @@ def page() -> str:
         license=value(header, DCTERMS.license),
         wide="\n\n".join(relation(term) for term in own if DX.wide in graph[term : DX.reading]),
         exact="\n\n".join(relation(term) for term in own if DX.exact in graph[term : DX.reading]),
+        graded="\n\n".join(relation(term) for term in own if DX.graded in graph[term : DX.reading]),
         allen=table({"sign": sign, "relation of interval a to b": label} | term | meaning, of_type(DX.AllenRelation)),
         kinds="\n".join(tree(DX.Thing, 0)),
         sizes=table({"kind": label, "outline": text(DX.outline)} | extents | source, having(DX.outline)),
@@ -150,7 +159,9 @@ def page() -> str:
 
 def relation(term: URIRef) -> str:
     """Return the section of a relation: its definition, its parents, the Allen relations admitted, and its words."""
-    facts = [f"inverse {codes(inverses(term))}", f"under {linked(RDFS.subPropertyOf)(term)}"]
+    symmetric = OWL.SymmetricProperty in graph[term : RDF.type]
+    inverse = "symmetric" if symmetric else f"inverse {codes(inverses(term))}"
+    facts = [inverse, f"under {linked(RDFS.subPropertyOf)(term)}"]
     if OWL.TransitiveProperty in graph[term : RDF.type]:
         facts.insert(1, "transitive")
     atoms = [f"on {axis} {admitted(list(graph[term:admits]))}" for admits, axis in AXES.items() if value(term, admits)]

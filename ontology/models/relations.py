@@ -107,7 +107,47 @@ FAMILIES: Mapping[str, str] = {
     "on": "support",
     "under": "support",
 }
-"""Model of each word, shared with its mirror images and its inverse."""
+"""Model of each of the ten words, shared with its mirror images and its inverse."""
+
+GRADED_FAMILIES: Mapping[str, str] = {
+    "near": "nearness",
+    "next_to": "adjacency",
+    "far": "farness",
+    "in_front": "vertical",
+    "behind": "vertical",
+    "above": "height",
+    "below": "height",
+    "inside": "containment",
+    "containing": "containment",
+    "touching": "contact",
+    "against": "contact",
+    "leaning": "contact",
+    "leaned_on_by": "contact",
+    "along": "along",
+    "across": "crossing",
+    "crossed_by": "crossing",
+    "stacked": "support",
+    "stacked_under": "support",
+    "around": "adjacency",
+    "ringed_by": "adjacency",
+    "parallel": "parallels",
+    "aligned": "alignment",
+    "level_with": "level",
+    "bigger": "comparison",
+    "smaller": "comparison",
+    "taller": "comparison",
+    "shorter": "comparison",
+    "longer": "comparison",
+    "less_long": "comparison",
+    "wider": "comparison",
+    "narrower": "comparison",
+    "opposite": "undecided",
+    "facing": "undecided",
+    "faced_by": "undecided",
+    "pointing": "undecided",
+    "pointed_at_by": "undecided",
+}
+"""Model of each word in the graded reading; boxes say nothing about the words of the model ``undecided``."""
 
 
 @dataclass(frozen=True)
@@ -129,11 +169,20 @@ class RelationModels:
 
     def of(self, relation: Relation) -> RelationModel:
         """Return the model of the word of a relation; raise UnknownTermError if the word has no model."""
-        if relation.word not in FAMILIES:
-            hint = nearest(relation.word, FAMILIES)
+        family = self.family(relation.word)
+        if family not in self.models:
+            raise UnknownTermError(f"the word '{relation.word}' has no graded model")
+        return self.models[family]
+
+    @staticmethod
+    def family(word: str) -> str:
+        """Return the name of the model of a word; raise UnknownTermError if the word has no model."""
+        known = {**FAMILIES, **GRADED_FAMILIES}
+        if word not in known:
+            hint = nearest(word, known)
             advice = f"; did you mean '{hint}'?" if hint else ""
-            raise UnknownTermError(f"the word '{relation.word}' has no graded model{advice}")
-        return self[FAMILIES[relation.word]]
+            raise UnknownTermError(f"the word '{word}' has no graded model{advice}")
+        return known[word]
 
     def replaced(self, *models: RelationModel) -> RelationModels:
         """Return a copy in which these models replace those of the same names."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact
-from deixis.ontology.relation import Relation
+from deixis.ontology.relation import Reading, Relation
 from deixis.reasoning.constraints.difference import STRICT, ZERO, Difference
 from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces
 
@@ -136,6 +136,8 @@ def order_differences(
 def meaning(relation: Relation) -> Alternatives:
     """Return the meaning of a relation: one conjunction of bounds if it is convex on every axis.
 
+    The conjunction is empty for a word that says nothing about the order of edges, such as *near*.
+
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> [str(Order("a", "b", bound)) for bound in meaning(r["top_left"])[0]]
@@ -172,9 +174,14 @@ def common(alternatives: Alternatives) -> Conjunction:
 
 
 def claims(fact: Fact) -> tuple[Alternatives, ...]:
-    """Return the demands of a fact, all of which must hold: one demand, or one for every relation that it denies."""
+    """Return the demands of a fact, all of which must hold: one demand, or one for every relation that it denies.
+
+    The denial of a graded word demands nothing, because its bounds are necessary for it, not sufficient.
+    """
     if not fact.positive:
-        return tuple(denial(relation) for relation in fact.relations)
+        return tuple(denial(relation) for relation in fact.relations if relation.reading is not Reading.GRADED)
+    if any(meaning(relation) == ((),) for relation in fact.relations):
+        return ()
     return (tuple(dict.fromkeys(part for relation in fact.relations for part in meaning(relation))),)
 
 

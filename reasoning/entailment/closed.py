@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Relation
+from deixis.ontology.relation import Reading, Relation
 from deixis.reasoning.constraints.paths import OrderGraph
 from deixis.reasoning.entailment.bounds import AXES, Bound, EndpointBounds, meaning
 from deixis.reasoning.errors import LimitError
@@ -110,7 +110,7 @@ class Orders:
         """Return the pairs that have the relation in every picture, as the flat bit matrices of all groups.
 
         The matrix of a group has shape (objects, objects). Its diagonal is empty. A relation that is not a single
-        conjunction of bounds has no pairs.
+        conjunction of bounds has no pairs, and neither has a graded word, for which bounds are not sufficient.
         """
         if relation not in self._found:
             self._found[relation] = self._relation_bits(relation)
@@ -126,7 +126,11 @@ class Orders:
         groups = self.groups
         alternatives = meaning(relation)
         total = int(groups.pair_start[-1])
-        if len(alternatives) != 1 or any(self.axes[bound.axis] is None for bound in alternatives[0]):
+        if (
+            relation.reading is Reading.GRADED
+            or len(alternatives) != 1
+            or any(self.axes[bound.axis] is None for bound in alternatives[0])
+        ):
             return np.zeros(total, np.uint64)
         bits = np.full(total, ~np.uint64(0))
         for bound in alternatives[0]:

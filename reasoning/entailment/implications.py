@@ -20,12 +20,13 @@ from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.ontology.export import node_iris, pairs_to_ntriples
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.bounds import meaning
 from deixis.reasoning.entailment.closing import Closed, close
 from deixis.reasoning.entailment.demands import Demands, EdgeFacts, demands_of
 from deixis.reasoning.entailment.derivations import Derivation, OrderDerivations, derive_by_cases, needed_facts
+from deixis.reasoning.entailment.graded_words import Known, facts_of_graded_words
 
 TIME_LIMIT = 10.0
 """Default time limit in seconds for deciding the choices in the facts; facts without choices need no search."""
@@ -99,6 +100,8 @@ class Implications:
     def holds(self, relation: Relation, subject: str, obj: str) -> bool:
         """Return whether the fact holds in every picture."""
         s, o = self.graph.index(subject), self.graph.index(obj)
+        if relation.reading is Reading.GRADED:
+            return (relation.name, subject, obj) in self._by_words
         alternatives = meaning(relation)
         if self.closed.orders is None or s == o or len(alternatives) != 1:
             return False
@@ -112,8 +115,23 @@ class Implications:
         """
         if not self.holds(relation, subject, obj):
             return None
+        if relation.reading is Reading.GRADED:
+            return self._by_words[relation.name, subject, obj][0]
         found = self._derivations.derive(relation, subject, obj)
         return found if found is not None else self._by_cases(Fact(subject, (relation,), obj))
+
+    @cached_property
+    def _by_words(self) -> Known:
+        """Facts of graded words that follow; none if the facts are inconsistent."""
+        edges = self.demands.firm.tolist() if self.consistent else []
+        return facts_of_graded_words(self.vocabulary, ((edge, self.graph.fact(edge)) for edge in edges))
+
+    @cached_property
+    def _pairs_by_words(self) -> dict[str, list[tuple[int, int]]]:
+        found: dict[str, list[tuple[int, int]]] = {}
+        for name, subject, obj in self._by_words:
+            found.setdefault(name, []).append((self.graph.index(subject), self.graph.index(obj)))
+        return found
 
     def _by_cases(self, goal: Fact) -> Derivation | None:
         facts = [self.graph.fact(edge) for edge in self._edges_around(goal.subject)]
@@ -137,6 +155,8 @@ class Implications:
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
         """Return the pairs of nodes that have the relation in every picture, shape (k, 2), by subject, then object."""
         orders = self.closed.orders
+        if relation.reading is Reading.GRADED:
+            return np.array(sorted(self._pairs_by_words.get(relation.name, ())), np.int64).reshape(-1, 2)
         return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
 
     def triples(self) -> Iterator[tuple[Relation, str, str]]:
@@ -187,6 +207,11 @@ class Implications:
             begins = np.flatnonzero(np.diff(pairs[:, 0], prepend=-1))
             for some in np.split(pairs, begins[1:]) if len(pairs) else ():
                 subject, objects = int(some[0, 0]), some[:, 1]
+                if relation.reading is Reading.GRADED:
+                    for obj in objects.tolist():
+                        found = self._by_words[relation.name, nodes[subject], nodes[obj]]
+                        yield Fact(nodes[subject], (relation,), nodes[obj]), len(found[1])
+                    continue
                 costs = np.stack(
                     [self._derivations.costs(bound, subject, objects) for bound in meaning(relation)[0]]
                 ).max(axis=0)
@@ -203,6 +228,9 @@ class Implications:
         relation, subject, obj = fact.relations[0], fact.subject, fact.object
         if not self.holds(relation, subject, obj):
             raise GraphError(f"{fact} does not follow")
+        if relation.reading is Reading.GRADED:
+            proof, premises = self._by_words[relation.name, subject, obj]
+            return Support(proof.rule, premises)
         chains = self._derivations.chains(relation, subject, obj)
         if chains is not None:
             used = dict.fromkeys(edge for path in chains.values() for edge in path)
@@ -215,8 +243,14 @@ class Implications:
 
     def counts(self) -> dict[Relation, int]:
         """Return the number of pairs stated or implied to have each relation."""
+        return {
+            relation: len(self.pairs(relation)) if relation.reading is Reading.GRADED else self._count(relation)
+            for relation in self.vocabulary.values()
+        }
+
+    def _count(self, relation: Relation) -> int:
         orders = self.closed.orders
-        return {relation: 0 if orders is None else orders.count(relation) for relation in self.vocabulary.values()}
+        return 0 if orders is None else orders.count(relation)
 
     def count(self) -> int:
         """Return the number of stated or implied facts."""

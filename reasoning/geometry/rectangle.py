@@ -167,7 +167,8 @@ class SceneRelations:
     def paper_view(self) -> PaperGraph:
         """Return the graph of Definition 1, with the word of every ordered pair as its edge label."""
         labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
-        label_of = np.array([labels.index(relation.word) for relation in self.vocabulary.values()], dtype=np.int8)
+        words = (self.vocabulary.paper_word(relation) for relation in self.vocabulary.values())
+        label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
         subjects, objects = np.nonzero(self.names >= 0)
         return PaperGraph(
             vertices=self.nodes,

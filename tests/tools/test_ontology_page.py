@@ -46,7 +46,7 @@ def test_a_relation_has_its_inverse_transitivity_and_atoms() -> None:
     for relation in default_ontology().relations.values():
         said = block(URIRef(relation.iri))
         inverse = default_ontology().relations[relation.inverse]
-        assert f"inverse `dx:{inverse.iri.removeprefix(BASE)}`" in said
+        assert ("- symmetric; " if relation.symmetric else f"inverse `dx:{inverse.iri.removeprefix(BASE)}`") in said
         assert ("; transitive;" in said) == relation.transitive
         assert "on x " in said
         assert "; on y " in said
@@ -54,9 +54,11 @@ def test_a_relation_has_its_inverse_transitivity_and_atoms() -> None:
 
 
 def test_a_relation_is_listed_once_under_its_reading() -> None:
-    wide, exact = TEXT.split("## Relations, the exact reading")
+    wide, rest = TEXT.split("## Relations, the exact reading")
+    exact, graded = rest.split("## Relations, the graded reading")
     assert len(re.findall("^### ", wide, re.MULTILINE)) == 10
     assert len(re.findall("^### ", exact, re.MULTILINE)) == 10
+    assert len(re.findall("^### ", graded, re.MULTILINE)) == 36
     assert "### left (`dx:left`)" in wide
     assert "- on x `<` `m`; on y any\n" in wide
     assert "### exactly left (`dx:exactlyLeft`)" in exact

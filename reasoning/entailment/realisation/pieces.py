@@ -37,8 +37,11 @@ def region(fact: Fact) -> NDArray[np.bool_]:
 
     It leaves out atoms that a relation shares with its inverse, for which only heights can decide: of two equal boxes,
     one lies on the other, but a plan does not show which. This loses no pictures: unless a chain of *on* is a cycle,
-    its boxes can be made smaller along it.
+    its boxes can be made smaller along it. The atoms of a graded word are necessary for it, and its denial denies none.
     """
+    if any(relation.by_model for relation in fact.relations):
+        necessary: NDArray[np.bool_] = np.logical_or.reduce([relation.admits() for relation in fact.relations])
+        return necessary if fact.positive else np.ones((13, 13), dtype=np.bool_)
     admitted = np.zeros((13, 13), dtype=np.bool_)
     shared = np.zeros((13, 13), dtype=np.bool_)
     for relation in fact.relations:

@@ -13,6 +13,8 @@ from deixis.reasoning.geometry.rectangle import box_relations
 def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return which edges of a graph hold of the boxes of its nodes (n, 2, 2), by the atoms that each relation admits.
 
+    Of a word that only a model decides, such as *near*, only the admitted atoms are verified.
+
     Between two equal boxes, no relation holds that says which lies on the other.
     """
     a, b = boxes[graph.subjects], boxes[graph.objects]
@@ -22,6 +24,9 @@ def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray
     for edge in range(len(graph)):
         atom = (x[edge], y[edge])
         relations = graph.vocabulary.members(int(graph.relation_sets[edge]))
+        if any(relation.by_model for relation in relations):  # atoms are necessary for such a word, and deny nothing
+            held[edge] = not graph.positive[edge] or any(relation.admits()[atom] for relation in relations)
+            continue
         admitted = [relation for relation in relations if relation.admits()[atom]]
         undecided = any(graph.vocabulary[r.inverse].admits()[atom] for r in admitted if r.inverse != r.name)
         held[edge] = not undecided and bool(admitted) == bool(graph.positive[edge])
@@ -40,7 +45,11 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
     held = np.zeros(len(graph), dtype=np.bool_)
     for edge in np.flatnonzero(graph.subjects != graph.objects):
         name = names[graph.subjects[edge], graph.objects[edge]]
-        members = [relation.index for relation in vocabulary.members(int(graph.relation_sets[edge]))]
+        relations = vocabulary.members(int(graph.relation_sets[edge]))
+        if any(relation.by_model for relation in relations):
+            held[edge] = True
+            continue
+        members = [relation.index for relation in relations]
         held[edge] = bool((degrees[members, name] > 0).any()) == bool(graph.positive[edge])
     to_itself = np.flatnonzero(graph.subjects == graph.objects)
     held[to_itself] = ~graph.positive[to_itself]

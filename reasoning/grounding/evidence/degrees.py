@@ -30,7 +30,7 @@ BLOCK = 1 << 14  # cells of a block: several arrays of this size fit in a proces
 def degree_of_view(model: RelationModel, features: View) -> Array:
     """Return exp of the sum of terms, shape (n, n), in (0, 1]; terms of missing features are ignored."""
     logs = [_log_degree(term, features[term.feature]) for term in model.terms if term.feature in features]
-    if not logs:
+    if not logs:  # the boxes say nothing about the word
         return np.ones_like(next(iter(features.values())))
     total = sum(logs[1:], start=logs[0])
     result: Array = np.exp(np.minimum(total, 0.0, out=total), out=total)
@@ -63,7 +63,7 @@ def _bends(knots: tuple[float, ...], values: tuple[float, ...]) -> list[tuple[fl
 
 
 def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
-    """Return the degree of one of the ten words for each ordered pair, wide reading, shape (n, n), in (0, 1].
+    """Return the degree of a word for each ordered pair, wide reading, shape (n, n), in (0, 1].
 
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
@@ -73,7 +73,7 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
     >>> [word_degree(pairs, word, shipped_models())[0, 1].round(2).item() for word in ("left", "bottom_left", "right")]
     [0.85, 0.01, 0.0]
     """
-    return degree_of_view(models[FAMILIES[word]], view(pairs, word))
+    return degree_of_view(models[models.family(word)], view(pairs, word))
 
 
 class WordDegrees:
@@ -95,7 +95,7 @@ class WordDegrees:
     def of_word(self, word: str) -> Array:
         """Return the degree of a word, shape (n, n), as :func:`word_degree` does."""
         if word not in self._found:
-            inverse = self.reverse._found.get(INVERSES[word])
+            inverse = self.reverse._found.get(INVERSES.get(word, ""))
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 
@@ -107,7 +107,7 @@ class WordDegrees:
         """
         self._models.of(relation)
         own = self.of_word(relation.word)
-        if relation.reading is Reading.WIDE:
+        if relation.reading is not Reading.EXACT:
             return own
         best = np.max([self.of_word(word) for word in FAMILIES], axis=0)
         exact: Array = own * (own / best)

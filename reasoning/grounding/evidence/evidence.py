@@ -22,16 +22,17 @@ from deixis.errors import GraphError
 from deixis.ontology.colours import Colours
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
-from deixis.ontology.relation import Reading
+from deixis.ontology.relation import Reading, Relation
 from deixis.ontology.sizes import Sizes
+from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
-from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import FactEvidence, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.memory_budget import different_facts
@@ -44,6 +45,9 @@ PRESENT_LOG_ODDS = -30.0
 
 SECONDS_PER_CELL = 1e-8
 """Seconds for copying one cell of the tables for an engine, which cannot be interrupted."""
+
+HELD_FROM = 0.5
+"""Degree from which a graded word counts as holding of a pair."""
 
 MAX_KEPT_THINGS = 150
 """Maximum number of things for which the likelihood ratios of all pairs are cached beside the tables."""
@@ -232,7 +236,10 @@ class Evidence:
             rows, kinds = np.unique(said, axis=0, return_inverse=True)
             exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
             tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
-            for table, row in zip(tables, rows, strict=True):
+            silent = np.isin(np.arange(len(rows)), kinds.ravel()[list(self.modelled)]) if boxes is None else ()
+            for kind, (table, row) in enumerate(zip(tables, rows, strict=True)):
+                if boxes is None and silent[kind]:
+                    continue
                 degrees = row[:-1][self.scene.names]
                 table[:] = hedged(log_likelihood_ratio(degrees, OUTLIERS, float(row[exact].mean())), float(row[-1]))
                 np.fill_diagonal(table, 0.0)
@@ -300,7 +307,51 @@ class Evidence:
         matched = (subjects != UNMATCHED) & (objects != UNMATCHED)
         names = np.where(matched, self.scene.names[subjects, objects], -1) if len(self.scene.nodes) else subjects
         degrees: NDArray[np.float64] = np.where(matched, self.degree_table[np.arange(len(self.facts)), names], 0.0)
+        for fact, table in self.modelled.items():
+            ends = subjects[..., fact], objects[..., fact]
+            degrees[..., fact] = np.where(matched[..., fact], table[ends], 0.0)
         return degrees
+
+    @cached_property
+    def modelled(self) -> dict[int, NDArray[np.float64]]:
+        """Degrees of comparable facts with a word that only its model decides, (n2, n2) each, by their positions.
+
+        The degree is that of the model where the word holds, which is from one half on, and 0 where it does not. It is
+        one half in a scene without boxes, which says nothing about such words.
+        """
+        found: dict[int, NDArray[np.float64]] = {}
+        graph, known = self.description, {}
+        for place, edge in enumerate(self.facts.tolist()):
+            relations = graph.vocabulary.members(int(graph.relation_sets[edge]))
+            if not any(relation.by_model for relation in relations):
+                continue
+            key = int(graph.relation_sets[edge]), bool(graph.affirmed[edge])
+            if key not in known:
+                known[key] = self._held(relations, key[1])
+            found[place] = known[key]
+        return found
+
+    def _held(self, relations: tuple[Relation, ...], positive: bool) -> NDArray[np.float64]:
+        n = len(self.scene.nodes)
+        if self.scene.boxes is None:
+            return np.full((n, n), 0.5)
+        degrees, crisp = self._word_degrees, self.description.vocabulary.degrees
+        best = np.zeros((n, n))
+        for relation in relations:
+            by_name = np.where(self.scene.names >= 0, crisp[relation.index][self.scene.names], 0.0)
+            best = np.maximum(best, degrees.of(relation) if relation.by_model else by_name)
+        if not positive:
+            undecided = best == 1.0 if all(self._says_nothing(relation) for relation in relations) else False
+            return np.where((best < HELD_FROM) | undecided, 1.0, 0.0)
+        return np.where(best >= HELD_FROM, best, 0.0)
+
+    def _says_nothing(self, relation: Relation) -> bool:
+        return relation.by_model and not (self.meaning.models or shipped_models()).of(relation).terms
+
+    @cached_property
+    def _word_degrees(self) -> WordDegrees:
+        assert self.scene.boxes is not None
+        return WordDegrees(pair_geometry(self.scene.boxes), self.meaning.models or shipped_models())
 
     def total(self, assignment: NDArray[np.int64]) -> float:
         """Return the sum of degrees times weights, plus the log-likelihood ratios of labels of the matches."""

@@ -259,6 +259,9 @@ class SaidFacts:
         by_name = [self._literal(relations, positive) for relations, positive, _ in self.said]
         self.literal = np.reshape(by_name, (len(by_name), len(vocabulary) + 1))
         self.weights = np.reshape([weight for _, _, weight in self.said], (-1, 1))
+        # a fact with a word that only its model decides has no literal meaning
+        self.modelled = [any(relation.by_model for relation in relations) for relations, _, _ in self.said]
+        self.literally = np.reshape([0.0 if modelled else 1.0 for modelled in self.modelled], (-1, 1))
 
     def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
         """Return how readily people mention each pair of a block, in (0, 1]."""
@@ -280,7 +283,11 @@ class SaidFacts:
             holds = [np.append(self.vocabulary.degrees[relation.index] > 0, False) for relation in relations]
             chances = np.maximum(chances, [LITERAL_CHANCE * known.sum() for known in holds])
             fitting = [np.maximum(degree, known[names]) for degree, known in zip(fitting, holds, strict=True)]
-        chance = float(combined(chances, positive)) * self.spoken_by_chance
+        chance = float(combined(chances, positive))
+        if self.modelled[fact]:  # such a word is said at any distance that fits it
+            spoken = np.float32(1.0)
+        else:
+            chance *= self.spoken_by_chance
         by_chance = outliers + (1 - outliers) * chance
         degrees = combined(fitting, positive)
         ratio: NDArray[np.float32] = degrees.astype(np.float32)
@@ -291,14 +298,14 @@ class SaidFacts:
 
     def offset(self, facts: int | slice, share: float) -> NDArray[np.float32]:
         """Return the terms to add to the graded ratios, by exact relation: the literal ``share``, and hedges."""
-        weights = self.weights[facts]
-        offset: NDArray[np.float32] = (weights * share * self.literal[facts] + (1 - weights)).astype(np.float32)
+        weights, shares = self.weights[facts], share * self.literally[facts]
+        offset: NDArray[np.float32] = (weights * shares * self.literal[facts] + (1 - weights)).astype(np.float32)
         return offset
 
     def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
         """Return the likelihood ratio of a fact for each pair of a block, if ``share`` of the facts are literal."""
         ratio = self.ratio(fact, WordDegrees(pairs, self.models), names, self.spoken(pairs))
-        ratio *= np.float32(self.said[fact][2] * (1 - share))
+        ratio *= np.float32(self.said[fact][2] * (1 - share * float(self.literally[fact, 0])))
         ratio += self.offset(fact, share)[names]
         return ratio
 
@@ -343,7 +350,7 @@ class _FactRatios:
             part = slice(start, start + some)
             said = room[: min(some, k - start)]
             np.take(known.offset(part, share), self.names, axis=1, out=said, mode="clip")
-            scales = (known.weights[part] * (1 - share)).astype(np.float32)[:, :, None]
+            scales = (known.weights[part] * (1 - share * known.literally[part])).astype(np.float32)[:, :, None]
             said += np.multiply(self.graded[part], scales, out=tables[part])
             np.log(said, out=said)
             said[:, np.arange(n), np.arange(n)] = 0.0

@@ -16,7 +16,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel, RelationModels, Term, Trend
+from deixis.ontology.models.relations import (
+    FAMILIES,
+    GRADED_FAMILIES,
+    SAYING,
+    RelationModel,
+    RelationModels,
+    Term,
+    Trend,
+)
 from deixis.ontology.models.sizes import SizeModel
 from deixis.reasoning.grounding.evidence.unary import UnaryWeights
 
@@ -25,7 +33,12 @@ OUTLIERS = 0.01
 """Share of facts that are stated independently of the pair, which limits the evidence of a fact to ln 100 nats against
 any pair."""
 
-CHANCE = {"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 0.028, SAYING: 0.303}
+CHANCE = {
+    **{"horizontal": 0.074, "vertical": 0.074, "diagonal": 0.038, "support": 0.028, SAYING: 0.303},
+    **{"nearness": 0.309, "adjacency": 0.198, "farness": 0.305, "height": 0.523, "containment": 0.03, "contact": 0.14},
+    **{"along": 0.197, "crossing": 0.083, "parallels": 0.559, "alignment": 0.283, "level": 0.178, "comparison": 0.567},
+    "undecided": 1.0,
+}
 """Mean degrees of ordered pairs of random boxes: :func:`deixis.reasoning.grounding.fitting.fit.random_scenes`, seed
 1."""
 
@@ -75,9 +88,61 @@ def saying_terms() -> tuple[Term, ...]:
     )
 
 
+def graded_terms() -> dict[str, tuple[Term, ...]]:
+    """Return the terms of the words beside the ten, by model."""
+    return {
+        # prototype: touching or nearly; one half: a gap of three mean sizes, or a third of the other things nearer
+        "nearness": (
+            Term("gap", (0.0, 0.5, 0.75, 0.95), (0.0, 0.0, BORDER, EXTREME), Trend.FALLING),
+            Term("crowd", (0.0, 1 / 3, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING),
+        ),
+        # prototype: touching; one half: a gap of one mean size, or a quarter of the other things nearer
+        "adjacency": (
+            Term("gap", (0.0, 0.25, 0.5, 0.9), (0.0, 0.0, BORDER, EXTREME), Trend.FALLING),
+            Term("crowd", (0.0, 0.25, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING),
+        ),
+        # prototype: two thirds of the others are nearer; one half: a gap of three mean sizes, or a third of them nearer
+        "farness": (
+            Term("gap", (0.0, 0.5, 0.75, 0.85), (EXTREME, EXTREME, BORDER, 0.0), Trend.RISING),
+            Term("crowd", (0.0, 1 / 3, 2 / 3), (EXTREME, BORDER, 0.0), Trend.RISING),
+        ),
+        # prototype: both ends higher, by a quarter of the mean height; one half: one end is level
+        "height": tuple(
+            Term(feature, (-1.0, 0.0, 0.2, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING)
+            for feature in ("rise", "trail")
+        ),
+        # prototype: within the outline, and reaching down; one half: half outside, or only at the rim
+        "containment": (
+            Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
+            Term("along", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
+            Term("depth", (-0.5, 0.1, 0.4, 2.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),
+        ),
+        # prototype: no gap; one half: a gap of a twentieth of the mean size
+        "contact": (
+            Term("gap", (0.0, 0.05, 0.25), (0.0, BORDER, EXTREME), Trend.FALLING),
+            Term("lift", (0.0, 0.05, 0.25), (0.0, BORDER, EXTREME), Trend.FALLING),
+        ),
+        "along": (
+            Term("gap", (0.0, 0.25, 0.5, 0.9), (0.0, 0.0, BORDER, EXTREME), Trend.FALLING),
+            Term("coaxial", (-1.0, 0.0, 0.3), (EXTREME, BORDER, 0.0), Trend.RISING),
+        ),
+        "crossing": (
+            Term("gap", (0.0, 0.1, 0.25), (0.0, BORDER, EXTREME), Trend.FALLING),
+            Term("coaxial", (-0.3, 0.0, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING),
+        ),
+        "parallels": (Term("coaxial", (-1.0, 0.0, 0.3), (EXTREME, BORDER, 0.0), Trend.RISING),),
+        # prototype: the centres are level on one axis; one half: they are off by half of what makes two boxes touch
+        "alignment": (Term("lateral", (0.0, 1 / 3, 0.5), (0.0, BORDER, EXTREME), Trend.FALLING),),
+        "level": (Term("lateral", (0.0, 1 / 3, 0.5), (0.0, BORDER, EXTREME), Trend.FALLING),),
+        # prototype: longer by a fifth; one half: equal
+        "comparison": (Term("excess", (-0.5, 0.0, 0.1, 1.0), (EXTREME, BORDER, 0.0, 0.0), Trend.RISING),),
+        "undecided": (),
+    }
+
+
 @lru_cache(maxsize=1)
 def shipped_models() -> RelationModels:
-    """Return the shipped models of all ten words, and of the pairs that people mention.
+    """Return the shipped models of all words, and of the pairs that people mention.
 
     >>> [term.feature for term in shipped_models()["support"].terms]
     ['across', 'foot', 'gap', 'rise']
@@ -88,8 +153,9 @@ def shipped_models() -> RelationModels:
         "diagonal": direction_terms(np.pi / 8, Trend.FALLING),
         "support": support_terms(),
         SAYING: saying_terms(),
+        **graded_terms(),
     }
-    names = (*dict.fromkeys(FAMILIES.values()), SAYING)
+    names = (*dict.fromkeys((*FAMILIES.values(), *GRADED_FAMILIES.values())), SAYING)
     return RelationModels({name: RelationModel(name, terms[name], OUTLIERS, CHANCE[name]) for name in names})
 
 

@@ -33,13 +33,13 @@ MIN_DIRECTION_OFFSET = 0.5
 
 
 def view(pairs: PairGeometry, word: str) -> View:
-    """Return the features of every ordered pair for one of the ten words, or for ``saying``; arrays of shape (n, n).
+    """Return the features of every ordered pair for a word, or for ``saying``; arrays of shape (n, n).
 
     Features of a direction: ``deviation`` (radians from the direction of the word), ``clear`` (distance of the near
     edges), ``trail`` and ``lead`` (the lesser and the greater of the offsets of starts and ends), ``forward`` and
     ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the other covers),
     ``gap``, ``alike`` (difference of sizes). Features of support: see :func:`_support`. Features of saying: ``crowd``
-    and ``figure``.
+    and ``figure``. Features of words beside the ten: see ``GRADED_VIEWS``.
     """
     if word == "saying":
         return {"crowd": pairs.crowd, "figure": pairs.smaller}
@@ -47,7 +47,13 @@ def view(pairs: PairGeometry, word: str) -> View:
         return _support(pairs)
     if word == "under":
         return {name: feature.T for name, feature in _support(pairs.reverse).items()}
-    return _direction(pairs, HEADINGS[word])
+    if word in HEADINGS:
+        return _direction(pairs, HEADINGS[word])
+    if word in GRADED_VIEWS:
+        return GRADED_VIEWS[word](pairs)
+    if word in REVERSED:
+        return {name: feature.T for name, feature in view(pairs.reverse, REVERSED[word]).items()}
+    return {"gap": pairs.gap}
 
 
 def _direction(pairs: PairGeometry, heading: tuple[int, int]) -> View:
@@ -152,3 +158,130 @@ def _support(pairs: PairGeometry) -> View:
     if pairs.rise is not None:
         found["rise"] = pairs.rise
     return found
+
+
+def _share_of_difference(subjects: Array, objects: Array) -> Array:
+    """Return (a - b) / (a + b) of the lengths of subjects (n,) and objects (m,), in [-1, 1], above 0 if a is longer."""
+    a, b = subjects[:, None], objects[None, :]
+    total = a + b
+    result: Array = np.divide(a - b, total, out=np.zeros(np.broadcast(a, b).shape), where=total > 0)
+    return result
+
+
+def _extents(boxes: Array) -> Array:
+    extents: Array = boxes[:, 1] - boxes[:, 0]
+    return extents
+
+
+def _compared(measure: Callable[[Array], Array]) -> Callable[[PairGeometry], View]:
+    def features(pairs: PairGeometry) -> View:
+        return {"excess": _share_of_difference(measure(_extents(pairs.boxes)), measure(_extents(pairs.objects)))}
+
+    return features
+
+
+def _coaxial(pairs: PairGeometry) -> Array:
+    """Return how far the long axes agree, in [-1, 1]: 1 for thin parallel boxes, -1 for crossing ones."""
+    first, second = (_extents(boxes)[:, :2] for boxes in (pairs.boxes, pairs.objects))
+    stretch = [
+        np.divide(e[:, 0] - e[:, 1], e.sum(axis=1), out=np.zeros(len(e)), where=e.sum(axis=1) > 0)
+        for e in (first, second)
+    ]
+    product: Array = stretch[0][:, None] * stretch[1][None, :]
+    return np.sign(product) * np.sqrt(np.abs(product))
+
+
+def _vertical_gap(pairs: PairGeometry) -> Array | None:
+    """Return the vertical distance of the boxes as g / (1 + g), g in mean sizes of the pair; None in 2-D."""
+    if pairs.boxes.shape[2] < 3:
+        return None
+    below = pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 1, 2]
+    above = pairs.objects[None, :, 0, 2] - pairs.boxes[:, None, 1, 2]
+    apart = np.maximum(np.maximum(below, above), 0.0)
+    unit = np.maximum(pairs.pair_size, 1e-12)
+    result: Array = apart / (apart + unit)
+    return result
+
+
+def _nearness(pairs: PairGeometry) -> View:
+    return {"gap": pairs.gap, "crowd": pairs.crowd}
+
+
+def _contact(pairs: PairGeometry) -> View:
+    lift = _vertical_gap(pairs)
+    return {"gap": pairs.gap} | ({} if lift is None else {"lift": lift})
+
+
+def _height(pairs: PairGeometry) -> View:
+    """Return ``rise`` where heights are known, else ``trail`` on y: upwards in a photograph."""
+    return {"trail": _trail(pairs, 1, 1)} if pairs.rise is None else {"rise": pairs.rise}
+
+
+def _containment(pairs: PairGeometry) -> View:
+    """Return the shares of the subject within the object; with heights, how far it reaches below the rim."""
+    found = {"across": pairs.inside[:, :, 0], "along": pairs.inside[:, :, 1]}
+    if pairs.boxes.shape[2] == 3:
+        deep = pairs.objects[None, :, 1, 2] - pairs.boxes[:, None, 0, 2]
+        height = _extents(pairs.objects)[None, :, 2]
+        found["depth"] = np.clip(np.divide(deep, height, out=np.zeros_like(deep), where=height > 0), -1.0, 2.0)
+    return found
+
+
+def _alignment(pairs: PairGeometry) -> View:
+    least = np.abs(pairs.offset).min(axis=2)
+    return {"lateral": least / (1 + least)}
+
+
+def _level(pairs: PairGeometry) -> View:
+    off = np.abs(pairs.offset[:, :, 1]) if pairs.rise is None else np.abs(_middle_offset(pairs))
+    return {"lateral": off / (1 + off)}
+
+
+def _middle_offset(pairs: PairGeometry) -> Array:
+    """Return the offset of the undersides in units of the mean height."""
+    heights = (_extents(pairs.boxes)[:, None, 2] + _extents(pairs.objects)[None, :, 2]) / 2
+    off = pairs.boxes[:, None, 0, 2] - pairs.objects[None, :, 0, 2]
+    result: Array = np.divide(off, heights, out=np.zeros_like(off), where=heights > 0)
+    return result
+
+
+GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
+    "near": _nearness,
+    "next_to": _nearness,
+    "far": _nearness,
+    "around": _nearness,
+    "in_front": lambda pairs: _direction(pairs, HEADINGS["bottom"]),
+    "behind": lambda pairs: _direction(pairs, HEADINGS["top"]),
+    "above": _height,
+    "inside": _containment,
+    "touching": _contact,
+    "against": _contact,
+    "leaning": _contact,
+    "stacked": _support,
+    "along": lambda pairs: {"gap": pairs.gap, "coaxial": _coaxial(pairs)},
+    "across": lambda pairs: {"gap": pairs.gap, "coaxial": _coaxial(pairs)},
+    "parallel": lambda pairs: {"coaxial": _coaxial(pairs)},
+    "aligned": _alignment,
+    "level_with": _level,
+    "bigger": _compared(lambda extents: np.prod(extents, axis=1) ** (1 / extents.shape[1])),
+    "taller": _compared(lambda extents: extents[:, -1]),
+    "longer": _compared(lambda extents: extents.max(axis=1)),
+    "wider": _compared(lambda extents: extents[:, 0]),
+}
+"""Features of words beside the ten. ``excess`` is the difference of a measure of both as a share of the sum,
+``coaxial`` the agreement of their long axes, ``lateral`` an offset across, ``lift`` a vertical gap and ``depth`` the
+share of the object's height that the subject reaches down."""
+
+REVERSED = {
+    "below": "above",
+    "containing": "inside",
+    "leaned_on_by": "leaning",
+    "crossed_by": "across",
+    "stacked_under": "stacked",
+    "ringed_by": "around",
+    "smaller": "bigger",
+    "shorter": "taller",
+    "less_long": "longer",
+    "narrower": "wider",
+}
+"""Words with the features of their inverse for the reversed pair."""

@@ -17,7 +17,15 @@ from datetime import UTC, datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.models.relations import FAMILIES, SAYING, Provenance, RelationModel, RelationModels, Term
+from deixis.ontology.models.relations import (
+    FAMILIES,
+    GRADED_FAMILIES,
+    SAYING,
+    Provenance,
+    RelationModel,
+    RelationModels,
+    Term,
+)
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry
 from deixis.reasoning.grounding.evidence.degrees import degree_of_view
@@ -36,6 +44,8 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
 
 def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float:
     """Return the mean degree of a model over all ordered pairs of scenes and words of the model; 1 without pairs."""
+    if not model.terms:
+        return 1.0
     found = degree_sum(model, scenes)
     return found.total / found.count if found.count else 1.0
 
@@ -51,7 +61,8 @@ class DegreeSum:
 
 def degree_sum(model: RelationModel, scenes: Iterable[PairGeometry]) -> DegreeSum:
     """Return the sum of degrees of a model over all ordered pairs of scenes and words of the model."""
-    words = [word for word, family in FAMILIES.items() if family == model.name] or [SAYING]
+    words = [word for word, family in FAMILIES.items() if family == model.name]
+    words = words or [word for word, family in GRADED_FAMILIES.items() if family == model.name] or [SAYING]
     count, total, slope = 0, 0.0, np.zeros(sum(len(term.knots) for term in model.terms))
     for pairs in scenes:
         apart = ~np.eye(len(pairs), dtype=bool)

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def relation_lines(relation: Relation, relations: Relations, models: RelationModels) -> list[str]:
-    """Return the word's atoms in both readings, its inverse and synonyms, and the parameters of its graded model."""
+    """Return the word's atoms in its readings, its inverse and synonyms, and the parameters of its graded model."""
     wide = relations[relation.word]
     lines = [f"{wide.name}: {wide.phrase}", f"inverse     {wide.inverse}", f"words       {', '.join(wide.words)}"]
-    for one in (wide, relations.exact(wide)):
+    for one in dict.fromkeys((wide, relations.exact(wide))):
         height = f"; z {_signs(one.z_atoms)}" if one.z_atoms else ""
         lines.append(f"{one.reading.value:<11} x {_signs(one.x_atoms)}; y {_signs(one.y_atoms)}{height}")
     model = models.of(wide)
@@ -40,7 +40,7 @@ def relation_to_dict(relation: Relation, relations: Relations, models: RelationM
     """Return a relation word as plain data; ``log_degrees`` are natural logarithms of degrees."""
     wide = relations[relation.word]
     readings = {}
-    for one in (wide, relations.exact(wide)):
+    for one in dict.fromkeys((wide, relations.exact(wide))):
         masks = {"x": one.x_atoms, "y": one.y_atoms, "z": one.z_atoms}
         readings[one.reading.value] = {axis: _members(mask) for axis, mask in masks.items() if mask}
     return {

@@ -12,6 +12,10 @@ from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.triples import with_blank_nodes
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
+from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.grounding.evidence.degrees import WordDegrees
+from deixis.reasoning.grounding.evidence.evidence import HELD_FROM
+from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:
@@ -38,14 +42,22 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
 def satisfied_relations(
     layout: LayoutConcept, scene: Scene, fills: dict[str, str], relations: Relations
 ) -> Iterator[tuple[str, Relation, str]]:
-    """Yield each relation that a fact of the layout names and that holds between the things in its roles."""
+    """Yield each relation that a fact of the layout names and that holds between the things in its roles.
+
+    A word that only a model decides holds from a degree of one half on, by the shipped models.
+    """
     thing = {role: id for id, role in fills.items()}
-    names, position = scene.relations(relations).names, {id: i for i, id in enumerate(scene.ids)}
+    seen, position = scene.relations(relations), {id: i for i, id in enumerate(scene.ids)}
+    degrees = None if seen.boxes is None else WordDegrees(pair_geometry(seen.boxes), shipped_models())
     for fact in layout.facts:
         subject, object = thing.get(fact.subject), thing.get(fact.object)
         if subject is None or object is None:
             continue
-        name = names[position[subject], position[object]]
+        pair = position[subject], position[object]
         for relation in fact.relations:
-            if relations.degrees[relation.index, name] > 0:
+            if relation.by_model:
+                held = degrees is None or bool(degrees.of(relation)[pair] >= HELD_FROM)
+            else:
+                held = bool(relations.degrees[relation.index, seen.names[pair]] > 0)
+            if held:
                 yield subject, relation, object

@@ -9,7 +9,15 @@ import pytest
 
 from deixis.errors import OntologyError, UnknownTermError
 from deixis.ontology.models.relation_triples import models_from_turtle, models_to_turtle
-from deixis.ontology.models.relations import FAMILIES, Provenance, RelationModel, RelationModels, Term, Trend
+from deixis.ontology.models.relations import (
+    FAMILIES,
+    GRADED_FAMILIES,
+    Provenance,
+    RelationModel,
+    RelationModels,
+    Term,
+    Trend,
+)
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.vocabulary import DX
 
@@ -86,12 +94,13 @@ def test_missing_models_are_refused() -> None:
 
 def test_every_word_of_the_tbox_has_a_family() -> None:
     relations = default_ontology().relations
-    assert {relation.word for relation in relations.values()} == set(FAMILIES)
+    assert {relation.word for relation in relations.values()} == {*FAMILIES, *GRADED_FAMILIES}
 
 
 def test_an_inverse_shares_its_model() -> None:
     relations = default_ontology().relations
-    assert all(FAMILIES[r.word] == FAMILIES[relations[r.inverse].word] for r in relations.values())
+    family = RelationModels.family
+    assert all(family(r.word) == family(relations[r.inverse].word) for r in relations.values())
 
 
 def test_an_unknown_model_is_an_error() -> None:

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.conflict import Conflict, compatible, find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -17,6 +18,7 @@ from deixis.reasoning.entailment.implications import Implications
 MakeGraph = Callable[..., RelationGraph]
 Triple = tuple[str, str, str]
 R = default_ontology().relations
+ORDERED = [r for r in R.values() if r.reading is not Reading.GRADED]  # words that order edges
 NODES = "abcd"
 LOWER = {"left": (-1, 0), "right": (1, 0), "top": (0, 1), "bottom": (0, -1)}
 LOWER |= {"top_left": (-1, 1), "top_right": (1, 1), "bottom_left": (-1, -1), "bottom_right": (1, -1)}
@@ -55,9 +57,7 @@ def test_facts_conflict_exactly_if_an_order_is_cyclic(stated: list[Triple]) -> N
 anything = st.builds(
     Fact,
     st.sampled_from(NODES),
-    st.sets(st.sampled_from(list(R.values())), min_size=1, max_size=2).map(
-        lambda s: tuple(sorted(s, key=lambda r: r.index))
-    ),
+    st.sets(st.sampled_from(ORDERED), min_size=1, max_size=2).map(lambda s: tuple(sorted(s, key=lambda r: r.index))),
     st.sampled_from(NODES),
     st.sampled_from([True, True, False]),
     st.sampled_from([False, False, False, True]),
@@ -171,17 +171,17 @@ def test_a_repeated_fact_is_in_the_conflict_once(graph_of: MakeGraph) -> None:
 
 
 def test_compatibility_is_symmetric_and_reflexive() -> None:
-    for a, b in combinations(R.values(), 2):
+    for a, b in combinations(ORDERED, 2):
         assert compatible(a, b) == compatible(b, a)
-    assert all(compatible(a, a) for a in R.values())
+    assert all(compatible(a, a) for a in ORDERED)
 
 
 def test_a_relation_is_compatible_with_its_consequences() -> None:
-    for relation in R.values():
+    for relation in ORDERED:
         assert all(compatible(relation, R[name]) for name in relation.broader)
         assert not compatible(relation, R[relation.inverse])
 
 
 def test_exact_relations_are_compatible_only_with_themselves() -> None:
-    exact = [r for r in R.values() if r.name.startswith("exactly")]
+    exact = [r for r in ORDERED if r.name.startswith("exactly")]
     assert not any(compatible(a, b) for a, b in combinations(exact, 2))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.errors import GraphError
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation
+from deixis.ontology.relation import Reading, Relation
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.conflict import compatible
 from deixis.reasoning.entailment.implications import Implications
@@ -23,13 +23,14 @@ from deixis.reasoning.geometry.allen import allen_relations
 
 MakeGraph = Callable[..., RelationGraph]
 R = default_ontology().relations
+ORDERED = [r for r in R.values() if r.reading is not Reading.GRADED]  # words that order edges
 NAMES = "abcd"
 
 some_facts = st.lists(
     st.builds(
         lambda ends, relations, positive: Fact(ends[0], tuple(relations), ends[1], positive=positive),
         st.sampled_from(list(permutations(NAMES, 2))),
-        st.lists(st.sampled_from(list(R.values())), min_size=1, max_size=2, unique=True),
+        st.lists(st.sampled_from(ORDERED), min_size=1, max_size=2, unique=True),
         st.sampled_from([True, True, True, False]),
     ),
     max_size=6,
@@ -44,9 +45,7 @@ def bears(boxes: NDArray[np.float64], s: int, relation: Relation, o: int) -> boo
 
 
 @settings(max_examples=80, deadline=None)
-@given(
-    stated=some_facts, ends=st.sampled_from(list(permutations(NAMES, 2))), relation=st.sampled_from(list(R.values()))
-)
+@given(stated=some_facts, ends=st.sampled_from(list(permutations(NAMES, 2))), relation=st.sampled_from(ORDERED))
 def test_the_reason_is_correct(stated: list[Fact], ends: tuple[str, str], relation: Relation) -> None:
     implied = Implications(RelationGraph.from_facts(R, list(NAMES), stated))
     if not implied.consistent:
