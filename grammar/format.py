@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from deixis.grammar.script import (
     Chain,
+    ClaimStatement,
     Comment,
     Declaration,
     Header,
@@ -115,6 +116,8 @@ class StatementWriter:
                 inverse = self._ontology.relations[relation.inverse]
                 head = f"{relation.word} to {inverse.word}".replace("_", " ")
                 return f"{_front(modifiers)}{head}: {self._list(objects)}"
+            case ClaimStatement(claim=claim):
+                return f"# {claim}"
             case RelationStatement(subjects, relations, objects, modifiers):
                 denied = "" if modifiers.positive else "not "
                 phrases = " or ".join(relation.phrase for relation in relations)

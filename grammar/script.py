@@ -9,6 +9,8 @@ from itertools import chain, pairwise, product
 from typing import TYPE_CHECKING
 
 from deixis.answers import Answer, count
+from deixis.grammar.reading import Reading
+from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Colour
 from deixis.ontology.facts import Fact, Source
 from deixis.ontology.kinds import Kind
@@ -112,7 +114,17 @@ class Chain:
             yield _fact(subject, relations, thing, self)
 
 
-Statement = Header | Include | Declaration | RelationStatement | Chain
+@dataclass(frozen=True, slots=True)
+class ClaimStatement:
+    """A claim: a statement about described objects that is not a binary relation of the ontology."""
+
+    subjects: tuple[Mention, ...]
+    arguments: tuple[Mention, ...]
+    claim: Claim
+    source: Source
+
+
+Statement = Header | Include | Declaration | RelationStatement | Chain | ClaimStatement
 
 
 def _names(mentions: tuple[Mention, ...]) -> Iterator[str]:
@@ -143,6 +155,7 @@ class Script(Answer):
     statements: tuple[Statement, ...]
     comments: tuple[Comment, ...]
     ontology: Ontology = field(repr=False, compare=False)
+    reading: Reading | None = field(default=None, repr=False, compare=False)  # of a text in English
 
     def summary(self) -> str:
         """Return one line with the file, the title, and the numbers of objects and facts."""
@@ -167,6 +180,11 @@ class Script(Answer):
         """Stated facts in order, each with its source."""
         stating = (s for s in self.all_statements() if isinstance(s, RelationStatement | Chain))
         return tuple(chain.from_iterable(statement.facts() for statement in stating))
+
+    @cached_property
+    def claims(self) -> tuple[Claim, ...]:
+        """Asserted claims in order, each with its source."""
+        return tuple(s.claim for s in self.all_statements() if isinstance(s, ClaimStatement))
 
     @cached_property
     def kinds(self) -> dict[str, Kind]:
@@ -234,6 +252,8 @@ def mentions(statement: Statement) -> tuple[Mention, ...]:
             return subjects
         case RelationStatement(subjects=subjects, objects=objects):
             return subjects + objects
+        case ClaimStatement(subjects=subjects, arguments=arguments):
+            return subjects + arguments
         case Chain(objects=objects):
             return objects
         case _:

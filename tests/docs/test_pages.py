@@ -13,6 +13,7 @@ from consoles import ROOT, run_page
 DOCS = ROOT / "docs"
 PAGES = (  # other pages have tests of their own beside the code that they describe
     "tutorial/checked_table",
+    "tutorial/english",
     "explanation/readings",
     "explanation/posterior",
     "explanation/honest_answers",

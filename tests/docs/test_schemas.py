@@ -89,6 +89,14 @@ def test_what_is_seen_and_learned_has_its_schema(tmp_path: Path) -> None:
         assert errors("recognised", session.recognise(seen)) == []
 
 
+def test_a_text_in_english_has_its_schema() -> None:
+    from deixis.report.read import reading_to_dict
+
+    text = "On the desk there are two cups, each on its saucer. The red pen was on the pad. A lamp is in a corner."
+    read = reading_to_dict(deixis.read_script(text=text, english=True))
+    assert list(validator("reading").iter_errors(json.loads(json.dumps(read)))) == []
+
+
 def test_an_answer_with_another_key_is_refused() -> None:
     data = deixis.read_script(text="fork left of plate").to_dict() | {"colour": "red"}
     assert list(validator("script").iter_errors(data))

@@ -24,7 +24,14 @@ from deixis.cli.interrupts import INTERRUPTED, noting_interrupts
 from deixis.cli.output import visible_output, what_is_kept
 
 COMMAND_GROUPS = {
-    "Layouts": {"parse": "parse", "fmt": "fmt", "lint": "lint", "infer": "infer", "imagine": "imagine"},
+    "Layouts": {
+        "read": "read",
+        "parse": "parse",
+        "fmt": "fmt",
+        "lint": "lint",
+        "infer": "infer",
+        "imagine": "imagine",
+    },
     "Scenes and perception": {
         "perceive": "perceive",
         "recognise": "recognise",

@@ -24,7 +24,7 @@ started: float | None = None
 PATIENCE = 2.0
 """Seconds before a progress bar appears."""
 
-Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout).")]
+Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout), or English (.txt, or -).")]
 SceneFile = Annotated[
     str, typer.Argument(metavar="SCENE", help="A scene (.scene.json), or COCO or LabelMe annotations.")
 ]

@@ -36,7 +36,7 @@ def imagine(
     as_json: AsJson = False,
 ) -> None:
     """Lay an example table that satisfies a script, or print which facts allow no table (exit 1)."""
-    from deixis.grammar.parser import read_script
+    from deixis.grammar.read import read_script
     from deixis.report.imagine import imagination_lines, imagination_to_dict
     from deixis.workflows.imagine import imagine as run
 

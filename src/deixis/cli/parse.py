@@ -26,7 +26,7 @@ def parse(
     as_json: AsJson = False,
 ) -> None:
     """Print the facts of a script with their lines."""
-    from deixis.grammar.parser import read_script
+    from deixis.grammar.read import read_script
 
     parsed = read_script(script)
     if as_json or format is GraphFormat.JSON:

@@ -95,7 +95,7 @@ def simulate(
 
 def _laid(layout: str | None, random: int | None, seed: int, meshes: dict[str, Mesh], cloth: bool) -> LaidScript:
     from deixis.errors import DeixisError
-    from deixis.grammar.parser import read_script
+    from deixis.grammar.read import read_script
     from deixis.workflows.lay_table import lay_random, lay_script
 
     if (layout is None) == (random is None):

@@ -11,7 +11,8 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptFileError
 from deixis.grammar.parser import parse_script
-from deixis.grammar.parser import read_script as read_script_file
+from deixis.grammar.read import is_english
+from deixis.grammar.read import read_script as read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
 
@@ -27,14 +28,21 @@ def read_script(
     text: str | None = None,
     ontology: Ontology | None = None,
     deadline: Deadline = Deadline.never(),
+    english: bool = False,
 ) -> Script:
-    """Read a layout script from a file, or from ``text``.
+    """Read a script from a file, or from ``text``.
+
+    A file ``NAME.txt`` and ``-`` (standard input) hold English; ``text`` is English with ``english``, else a layout.
 
     Raises ScriptError with every mistake in it, each with file, line and column; ScriptTimeError at the ``deadline``;
     TypeError unless exactly one of the two is given.
     """
     if (path is None) == (text is None):
         raise TypeError("read_script takes a path or text=, and one of them only")
+    if text is not None and english:
+        from deixis.grammar.english.reader import read_english
+
+        return read_english(text, ontology=ontology, deadline=deadline)
     if text is not None:
         return parse_script(text, ontology=ontology, deadline=deadline)
     try:
@@ -75,7 +83,7 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 
 def is_script_file(layout: str | Path) -> bool:
     """Return True if a layout is given as a file rather than by its name."""
-    return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout
+    return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout or is_english(layout)
 
 
 def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
@@ -113,3 +121,13 @@ def _in_folder(folder: Path) -> Iterator[tuple[Path, Path]]:
         raise DeixisError(f"{there}: there is no {name}{lacking} beside it")
     for name, script in scripts.items():
         yield script, scenes[name]
+
+
+def read_english_file(path: str | Path, deadline: Deadline = Deadline.never(), strict: bool = False) -> Script:
+    """Read a text in English from a file, whatever its ending, or from standard input (``-``).
+
+    Raises DeixisError for a layout script, ScriptError where nothing was understood or, with ``strict``, not all.
+    """
+    if not is_english(path):
+        raise DeixisError(f"{path}: a text in English must be a .txt file or - (standard input); parse reads layouts")
+    return read_script_file(path, deadline=deadline, strict=strict)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.parser import read_script
+from deixis.grammar.read import read_script
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.grammar.parser import read_script
+from deixis.grammar.read import read_script
 from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.depth import Intrinsics

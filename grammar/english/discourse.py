@@ -1,0 +1,822 @@
+"""Turn parsed sentences into facts: what each clause states of which objects, and with what qualification."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from deixis.grammar.english.entities import Entity, Role
+from deixis.grammar.english.nouns import GENERAL, PARTS, SUBSTANCES, SURFACES, SURROUNDINGS, VESSELS, last_word
+from deixis.grammar.english.references import POLES, Focus, References, Region
+from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
+
+UNCERTAIN = frozenset({"might", "may", "could"})
+NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
+MIN_PAST_OF_STORY = 3
+"""Number of clauses in the past tense from which a text is a story, whose past is its present."""
+
+UNARY = frozenset(
+    [
+        "upside_down",
+        "empty",
+        "open",
+        "closed",
+        "colour",
+        "size",
+        "shape",
+        "material",
+        "state",
+        "height",
+        "length",
+        "width",
+        "thickness",
+    ]
+)
+COLLECTIVE = frozenset(
+    ["row", "circle", "nested", "stacked", "near_each_other", "parallel_each_other", "touching_each_other"]
+)
+PLACES = frozenset(["corner", "edge", "end", "side", "middle", "part"])
+SUPERLATIVES = {
+    ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
+    ("length", 1): "longest", ("length", -1): "shortest", ("width", 1): "widest", ("width", -1): "narrowest",
+    ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
+}  # fmt: skip
+NOT_STATES = frozenset(["roll", "lay", "put", "place", "set", "leave", "open", "water"])
+DIRECTIONS = frozenset(
+    [
+        "left",
+        "right",
+        "in_front",
+        "behind",
+        "above",
+        "below",
+        "top",
+        "bottom",
+        "top_left",
+        "top_right",
+        "bottom_left",
+        "bottom_right",
+    ]
+)
+SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
+SUPPORTS = frozenset(
+    [
+        "saucer",
+        "plate",
+        "tray",
+        "mat",
+        "coaster",
+        "napkin",
+        "board",
+        "cloth",
+        "stand",
+        "shelf",
+        "table",
+        "doily",
+        "tile",
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Qualification:
+    """What qualifies the facts of a clause."""
+
+    span: Span
+    sentence: int
+    positive: bool = True
+    weight: float = 1.0
+    optional: bool = False
+    condition: str | None = None
+    past: bool = False
+    uncertain: bool = False
+    alternative: int | None = None
+    quantifier: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A fact before its objects have names: groups are expanded when the whole text was read."""
+
+    relation: str
+    subjects: tuple[Entity, ...]
+    arguments: tuple[Entity, ...]
+    how: Qualification
+    value: str | None = None
+    metres: float | None = None
+
+    @property
+    def collective(self) -> bool:
+        """True if the relation is one of all subjects together."""
+        return self.relation in COLLECTIVE or self.relation == "count"
+
+
+class Discourse:
+    """Reader of parsed sentences, in order; it collects drafts of facts."""
+
+    def __init__(self, text: str, sentences: tuple[Sentence, ...], hedges: dict[str, float]) -> None:
+        self.text = text
+        self.sentences = sentences
+        self.hedges = hedges
+        self.drafts: list[Draft] = []
+        self.told: set[tuple[int, str, str]] = set()
+        surface = surface_noun(sentences)
+        self.references = References(surface, self._compare, text=text)
+        self.order: str | None = None
+        self.alternatives = 0
+        self.shared: tuple[str, list[Entity]] | None = None  # relation and things of 'share'
+        self.how = Qualification((0, 0), 0)
+        self.edge: str | None = None
+        self.condition: str | None = None
+        tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
+        past = sum(tenses)
+        self.story = past >= MIN_PAST_OF_STORY and past >= len(tenses) / 2
+
+    def read(self) -> list[Draft]:
+        """Read all sentences; return the drafts of what they state."""
+        for number, sentence in enumerate(self.sentences):
+            self.references.sentence = number
+            self.references.start = sentence.span[0]
+            self.condition = condition_of(sentence)
+            parts: list[Clause | NounPhrase] = list(sentence.clauses)
+            if sentence.fragment is not None and not sentence.heading:
+                parts.append(sentence.fragment)
+            for part in sorted(parts, key=lambda part: part.span[0]):
+                if isinstance(part, NounPhrase):
+                    self._fragment(part, number)
+                else:
+                    self._clause(part, number)
+        return self.drafts
+
+    # Clauses ------------------------------------------------------------------------------------------------------
+
+    def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
+        """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
+        self.how = Qualification(phrase.span, sentence)
+        for predicate in phrase.predicates:
+            if predicate.relation == "row":
+                self.order = predicate.part or self.order
+        listed = phrase.members or (phrase,)
+        if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
+            return
+        if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
+            return
+        subject: Entity | None = None
+        for part in listed:
+            if part.pronoun == "one" and subject is not None and subject.members:
+                self._one_each(subject, part)
+                continue
+            subject = self._introduce(replace(part, predicates=()))
+            if subject is not None and part.predicates:
+                self._say(subject, part.predicates, part)
+        if phrase.members and phrase.predicates:
+            whole = self.references.find(replace(phrase, predicates=()))
+            if whole is not None:
+                self._say(whole, phrase.predicates, phrase)
+
+    def _one_each(self, group: Entity, phrase: NounPhrase) -> None:
+        """Read *one at either end*: a member of the group at each."""
+        for predicate in phrase.predicates:
+            if predicate.relation in ("end", "side") and predicate.part in (None, "either", "each"):
+                for leaf, side in zip(group.leaves(), ("left", "right"), strict=False):
+                    leaf.adjectives |= {("picked", f"position {side}")}
+                    self._add(predicate.relation, (leaf,), (), value=side)
+
+    def _clause(self, clause: Clause, sentence: int) -> None:
+        if clause.mood is Mood.QUESTION:
+            return
+        modal = clause.modal
+        weight = min([self.hedges.get(word, 1.0) for word in clause.hedges] or [1.0])
+        positive = clause.positive and all(p.positive for p in clause.predicates)
+        if modal in NOT_NEEDED and not positive:
+            return
+        uncertain = (modal in UNCERTAIN and positive) or weight == 0.5
+        self.how = Qualification(
+            clause.span, sentence, clause.positive, min(weight, 0.5) if uncertain else weight,
+            optional=uncertain or (modal == "can" and positive and weight == 1.0),
+            condition=clause.condition or self.condition,
+            past=clause.past and not self.story, uncertain=uncertain,
+        )  # fmt: skip
+        subject = clause.subject
+        first = len(self.drafts)
+        if subject is None or subject.pronoun == "nothing" or subject.determiner == "no" or (
+            subject.members and all(m.determiner == "no" for m in subject.members)
+        ):  # fmt: skip
+            if subject is not None:
+                self._nothing(subject, clause)
+            return
+        if (not clause.predicates and subject.pronoun == "they") or (
+            subject.of is not None and subject.of.pronoun == "they" and not subject.head and not clause.predicates
+        ):
+            self._count(subject)
+            return
+        predicates = clause.predicates
+        if (
+            subject.head in PARTS
+            and subject.owner is None
+            and subject.of is None
+            and self._of_last(predicates, subject)
+        ):
+            return
+        if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
+            self._superlative_apposition(subject, predicates)
+            return
+        entity = self._subject(subject, predicates)
+        if entity is None:
+            return
+        choices = clause.choices
+        if choices:
+            self.alternatives += 1
+            for option in (predicates, *choices):
+                self.how = replace(
+                    self.how, alternative=self.alternatives, optional=True, weight=1 / (len(choices) + 1)
+                )
+                self._say(entity, option, clause.subject)
+        else:
+            self._say(entity, predicates, subject, existential=clause.existential)
+        if modal in UNCERTAIN:
+            self._alternative_to_the_last(first, entity)
+
+    def _alternative_to_the_last(self, first: int, entity: Entity) -> None:
+        """Mark *should be there, but might be here* as a choice."""
+        before = next((d for d in reversed(self.drafts[:first]) if d.subjects == (entity,)), None)
+        if before is None or before.how.sentence != self.how.sentence or before.how.alternative is not None:
+            return
+        self.alternatives += 1
+        for place, draft in enumerate(self.drafts):
+            if (place >= first or draft is before) and draft.subjects == (entity,):
+                how = replace(
+                    draft.how, alternative=self.alternatives, weight=min(draft.how.weight, 0.7), optional=True
+                )
+                self.drafts[place] = replace(draft, how=how)
+
+    def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
+        """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
+        if (
+            subject.determiner in ("a", "an", None)
+            and subject.head
+            and subject.count in (None, 1)
+            and not subject.plural
+        ):
+            for predicate in predicates:
+                for argument in predicate.arguments:
+                    if argument.determiner in ("each", "every"):
+                        group = self.references.find(argument)
+                        if group is not None and group.size > 1:
+                            self.how = replace(self.how, quantifier="each")
+                            return self._introduce(replace(subject, count=group.size, determiner=None, plural=True))
+        entity = self._introduce(subject)
+        if subject.determiner in ("each", "every") or subject.pronoun == "each":
+            self.how = replace(self.how, quantifier="each")
+        return entity
+
+    def _introduce(
+        self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None
+    ) -> Entity | None:
+        """Return what a phrase stands for, and state what its adjectives, its number and its clauses say of it."""
+        if phrase.members:
+            found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
+            return found[0] if len(found) == 1 else Entity("", members=found) if found else None
+        known = len(self.references.entities)
+        entity = self.references.find(phrase, relation, besides)
+        if entity is None:
+            return None
+        new = len(self.references.entities) > known and self.references.entities[-1] is entity
+        if entity.role is Role.THING or entity.role is Role.SURROUNDING:
+            self._describe(entity, phrase, new)
+        if phrase.predicates and entity.role is not Role.PERSON:
+            outer = self.how
+            self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
+            if any(not p.positive for p in phrase.predicates) and len(phrase.predicates) == 1:
+                self.how = replace(self.how, positive=True)
+            self._say(entity, phrase.predicates, phrase, focus=False)
+            self.how = outer
+        return entity
+
+    def _describe(self, entity: Entity, phrase: NounPhrase, new: bool) -> None:
+        plain = replace(self.how, positive=True, weight=1.0, optional=False, quantifier=None, alternative=None)
+        if self.how.condition or self.how.past or self.how.uncertain:
+            return
+        for adjective in phrase.adjectives:
+            if adjective.degree is Degree.PLAIN and adjective.dimension in ("colour", "size", "material", "shape"):
+                if entity.members and not phrase.plural and not new:
+                    continue
+                key = (id(entity), adjective.dimension, adjective.word)
+                if key not in self.told:
+                    self.told.add(key)
+                    self._add(
+                        adjective.dimension, (entity,), (), value=adjective.word, how=replace(plain, span=phrase.span)
+                    )
+        if new and entity.members:
+            self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
+        if phrase.of is not None and phrase.of.head and new:
+            stuff = phrase.of.head
+            if last_word(phrase.head) in VESSELS:
+                self._add("contents", (entity,), (), value=stuff, how=plain)
+
+    def _count(self, phrase: NounPhrase) -> None:
+        """Read *there are four of them*."""
+        group = self.references.find(NounPhrase(phrase.span, pronoun="they"))
+        if group is not None and not group.members and phrase.count is not None and 1 < phrase.count <= 1000:
+            group.split(phrase.count)
+            self._add("count", (group,), (), value=str(phrase.count))
+
+    def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
+        """Read *nothing lies between the boots*, *no stopper was found*."""
+        predicates = clause.predicates
+        if all(p.relation == "there" for p in predicates):
+            for phrase in subject.members or (subject,):
+                if phrase.head and last_word(phrase.head) not in GENERAL:
+                    self._absent(phrase)
+            return
+        if clause.modal is not None and subject.pronoun is None:
+            return
+        for predicate in predicates:
+            arguments = [
+                a for p in predicate.arguments if isinstance(a := self._argument(p, predicate.relation, None), Entity)
+            ]
+            if not arguments or arguments[0].role is Role.SURFACE:
+                if subject.head and last_word(subject.head) not in GENERAL:
+                    self._absent(subject)
+                continue
+            if predicate.relation == "between" and len(arguments) == 1 and not arguments[0].itself.members:
+                arguments[0].itself.split(2)
+            if not subject.head or last_word(subject.head) in GENERAL:
+                self._add(f"none_{predicate.relation}", tuple(arguments), ())
+
+    def _absent(self, phrase: NounPhrase) -> None:
+        entity = self.references.find(replace(phrase, determiner="the", predicates=()))
+        if entity is not None:
+            entity.absent = True
+            self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True, past=False))
+            self.references.recent.insert(0, Focus(entity, [], None, self.how.sentence))
+
+    def _of_last(self, predicates: tuple[Predicate, ...], part: NounPhrase) -> bool:
+        """Read *toes pointing forward* of the last subject; False if there is none."""
+        last = next((f.subject for f in self.references.recent if f.subject is not None), None)
+        if last is None:
+            return False
+        for predicate in predicates:
+            if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (
+                predicate.relation == "pointing" and predicate.part is not None and "same" in predicate.part
+            ):
+                self._add("parallel_each_other", (last,), ())
+            else:
+                self._predicate(last, predicate, [])
+        return True
+
+    def _superlative_apposition(self, phrase: NounPhrase, predicates: tuple[Predicate, ...]) -> None:
+        last = next((f.subject for f in self.references.recent if f.subject is not None), None)
+        if last is None:
+            return
+        where = next((p.part for p in predicates if p.relation in PLACES), None)
+        for adjective in phrase.adjectives:
+            name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if name is not None:
+                self._add(name, (last,), (), value=where)
+
+    # Predicates ---------------------------------------------------------------------------------------------------
+
+    def _say(
+        self,
+        entity: Entity,
+        predicates: tuple[Predicate, ...],
+        phrase: NounPhrase | None,
+        focus: bool = True,
+        existential: bool = False,
+    ) -> None:
+        others: list[Entity] = []
+        if any(p.relation == "one_each" for p in predicates):
+            self.how = replace(self.how, quantifier="each")
+        outer = self.how
+        places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
+        for predicate in predicates:
+            self.how = replace(outer, positive=outer.positive and predicate.positive, quantifier=self.how.quantifier)
+            if predicate.relation == "middle" and not predicate.part and places and entity.role is Role.THING:
+                self._add("middle", (entity,), (), value=min(places))
+                continue
+            self._predicate(entity, predicate, others)
+        relation = next((p.relation for p in predicates if p.arguments), None)
+        if focus:
+            self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
+        else:
+            self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
+
+    def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        relation = predicate.relation
+        handler = getattr(self, f"_say_{relation}", None)
+        if subject.role is Role.PART and subject.whole is not None:
+            subject = subject.whole
+        if subject.role in (Role.VIEWER, Role.PERSON):
+            return
+        if predicate.subject_part is not None and relation not in ("pointing", "facing", "open", "closed", "parallel"):
+            return  # said of a part: 'whose stick is in the pot'
+        if handler is not None:
+            handler(subject, predicate, others)
+        elif relation in UNARY or (predicate.value is not None and not predicate.arguments and not predicate.part):
+            self._property(subject, predicate)
+        elif relation in PLACES:
+            self._place(subject, predicate, others)
+        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far")):
+            self._bare_direction(subject, predicate)
+        else:
+            self._relate(subject, predicate, others)
+
+    def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """State a relation between the subject and the arguments."""
+        relation = predicate.relation
+        found: list[Entity | Region] = []
+        options = [a for a in predicate.arguments if a.joined_by == "or"]
+        if options and relation != "between" and not self.how.alternative:
+            self.alternatives += 1
+            outer = self.how
+            for member in options[0].members:
+                self.how = replace(
+                    outer, alternative=self.alternatives, optional=True, weight=1 / len(options[0].members)
+                )
+                self._relate(subject, replace(predicate, arguments=(member,)), others)
+            self.how = outer
+            return
+        for phrase in predicate.arguments:
+            for member in ([m for m in phrase.members if m.negated] and phrase.members) or (phrase,):
+                if member.negated:
+                    other = self._argument(replace(member, negated=False), relation, subject)
+                    if isinstance(other, Entity):
+                        how = replace(self.how, positive=not self.how.positive)
+                        self._add(relation, (subject,), (other,), how=how)
+                    continue
+                thing = self._argument(member, relation, subject)
+                if thing is not None:
+                    found.append(thing)
+        entities = [thing for thing in found if isinstance(thing, Entity)]
+        regions = [thing for thing in found if isinstance(thing, Region)]
+        others += [e for e in entities if e.role is Role.THING]
+        if predicate.arguments and not found:
+            return
+        if relation.startswith("distance") or predicate.measure is not None:
+            self._distance(subject, predicate, entities, others)
+            if relation.startswith("distance"):
+                return
+        if predicate.degree is Degree.COMPARATIVE and relation in ("near", "far"):
+            than = [] if predicate.than is None else [self._argument(predicate.than, relation, subject)]
+            more = [e for e in than if isinstance(e, Entity)]
+            name = "closer" if relation == "near" else "farther"
+            value = " ".join(filter(None, (regions[0].value, regions[0].term))) if regions else None
+            self._add(name, (subject,), tuple(entities + more), value=value)
+            return
+        if predicate.degree is Degree.SUPERLATIVE and relation in ("near", "far"):
+            self._add("nearest" if relation == "near" else "farthest", (subject,), tuple(entities))
+            return
+        if regions and not entities:
+            self._at_region(subject, relation, regions[0])
+            return
+        if relation == "between":
+            self._between(subject, entities)
+            return
+        if relation in COLLECTIVE:
+            value = predicate.part if relation == "row" else None
+            if relation == "stacked" and "inside" in self.text[predicate.span[0] : predicate.span[1]]:
+                relation = "nested"
+            self._add(relation, tuple(dict.fromkeys([subject, *entities])), (), value=value)
+            return
+        if not entities:
+            if relation in ("pointing", "facing") and (predicate.part or predicate.value):
+                self._add(
+                    relation,
+                    (subject,),
+                    (),
+                    value=predicate.part or (predicate.value.word if predicate.value is not None else None),
+                )
+            return
+        for other in entities:
+            self._pair(subject, relation, other, predicate.reversed)
+
+    def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
+        if other is subject:
+            return
+        if other.role is Role.VIEWER or other.role is Role.PERSON:
+            self._add(relation, (subject,), (), value=other.noun)
+        elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
+            if subject.role is not Role.SURFACE and relation in ("on", "inside"):
+                self._add("on", (subject,), ())
+        elif other.role is Role.SURROUNDING and relation in (
+            "pointing",
+            "facing",
+            "leaning",
+            "inside",
+            "against",
+            "under",
+        ):
+            self._add(relation, (subject,), (), value=other.noun)
+        elif self._holds_substance(*((other, subject) if swapped else (subject, other)), relation):
+            return
+        elif swapped:
+            self._add(relation, (other,), (subject,))
+        else:
+            self._add(relation, (subject,), (other,))
+
+    def _holds_substance(self, content: Entity, vessel: Entity, relation: str) -> bool:
+        """Read *the tea is in the jar* as the contents of the jar; the words for the tea then mean the jar as well."""
+        if relation != "inside" or content.noun not in SUBSTANCES or content.itself is vessel.itself:
+            return False
+        if last_word(vessel.noun) not in VESSELS or vessel.itself.members or not self.how.positive:
+            return False
+        self._add("contents", (vessel,), (), value=content.noun)
+        if content.same_as is None and not content.members:
+            if (
+                len([d for d in self.drafts if content in (*d.subjects, *d.arguments)]) > 0
+                or content.born < self.how.sentence
+            ):
+                self._identify(vessel, content)
+            else:
+                self._identify(content, vessel)
+        return True
+
+    def _identify(self, entity: Entity, other: Entity) -> None:
+        """Record that two entities are one; the second keeps its name."""
+        entity, other = entity.itself, other.itself
+        if entity is not other:
+            other.mentions += [m for m in entity.mentions if m not in other.mentions]
+            other.adjectives |= entity.adjectives
+            entity.same_as = other
+
+    def _between(self, subject: Entity, entities: list[Entity]) -> None:
+        if len(entities) == 1 and not entities[0].itself.members and entities[0].plural:
+            entities[0].itself.split(2)
+        ends = [e for e in entities if e.role in (Role.THING, Role.SURROUNDING)]
+        if ends and (len(ends) > 1 or ends[0].size > 1):
+            self._add("between", (subject,), tuple(ends))
+
+    def _distance(self, subject: Entity, predicate: Predicate, entities: list[Entity], others: list[Entity]) -> None:
+        measure = predicate.measure
+        ends = entities or others[-1:]
+        if measure is None or not ends or ends[-1].role is not Role.THING:
+            return
+        name = {"<": "distance_less", ">": "distance_more"}.get(measure.bound or "", "distance")
+        self._add(name, (subject,), tuple(ends[-1:]), metres=measure.metres)
+
+    def _at_region(self, subject: Entity, relation: str, region: Region) -> None:
+        arguments = () if region.of is None else (region.of,)
+        if relation == "parallel":
+            self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
+        elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching"):
+            self._add(region.term, (subject,), arguments, value=region.value)
+        elif region.of is None:
+            self._add(relation, (subject,), (), value=" ".join(filter(None, (region.value, region.term))))
+
+    def _place(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """State a place on the surface or on an object: a corner, an edge, the middle."""
+        if subject.role is Role.SURFACE:
+            return
+        arguments: list[Entity] = []
+        for phrase in predicate.arguments:
+            found = self._argument(phrase, predicate.relation, subject)
+            if isinstance(found, Region):
+                if found.term == "edge" and predicate.relation == "middle":
+                    self._add("edge", (subject,), (), value=found.value)
+                    self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
+                    self.edge = found.value
+                return
+            if found is not None and found.role is Role.THING:
+                arguments.append(found)
+        if predicate.relation == "edge":
+            self.edge = predicate.part
+        others += arguments
+        part = predicate.part
+        if part in ("either", "each", "both"):
+            part = None
+        self._add(predicate.relation, (subject,), tuple(arguments), value=part)
+
+    def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
+        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        if (
+            predicate.part is None
+            and last is not None
+            and last.role is Role.THING
+            and self.how.positive
+            and (predicate.relation not in ("near", "far"))
+        ):
+            self._pair(subject, predicate.relation, last, False)
+            return
+        value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
+        if predicate.relation in ("in_front", "behind") and not self.how.positive:
+            return
+        value = value.replace("_", " ")
+        if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
+            self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _property(self, subject: Entity, predicate: Predicate) -> None:
+        value = predicate.value.word if predicate.value is not None else None
+        relation = predicate.relation
+        if predicate.degree is Degree.SUPERLATIVE and predicate.value is not None:
+            name = SUPERLATIVES.get((predicate.value.dimension, POLES.get(predicate.value.word, 0)))
+            if name is not None:
+                self._add(name, (subject,), ())
+            return
+        if relation in ("colour", "material", "shape", "size") and value is not None and self.how.positive:
+            for leaf in subject.leaves():
+                leaf.adjectives.add((relation, value))
+        if relation in ("upside_down", "empty", "open", "closed"):
+            value = None
+        elif value is None or relation == "other" or value in NOT_STATES:
+            return
+        self._add(relation, (subject,), (), value=value)
+
+    # Relations of their own ---------------------------------------------------------------------------------------
+
+    def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        pass
+
+    def _say_there(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        if not self.how.positive and not self.how.past:
+            subject.itself.absent = True
+            self._add("count", (subject,), (), value="0", how=replace(self.how, positive=True))
+
+    def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""
+        for phrase in predicate.arguments:
+            for adjective in phrase.adjectives:
+                name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+                if adjective.degree is Degree.SUPERLATIVE and name is not None:
+                    group = None if phrase.of is None else self.references.find(phrase.of, None, subject)
+                    rest = [
+                        leaf for leaf in (group.leaves() if group is not None else ()) if leaf is not subject.itself
+                    ]
+                    self._add(name, (subject,), tuple(rest))
+                elif adjective.dimension == "rank" and adjective.rank is not None:
+                    self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
+                elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
+                    self._add(adjective.dimension, (subject,), (), value=adjective.word)
+            if (
+                phrase.head
+                and phrase.head not in GENERAL
+                and not phrase.adjectives
+                and phrase.determiner in ("a", "an")
+            ):
+                self._add("kind", (subject,), (), value=phrase.head)
+            if phrase.predicates:
+                self._say(subject, phrase.predicates, phrase, focus=False)
+
+    def _say_ordinal(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        if predicate.value is not None and predicate.value.rank is not None:
+            self._add("ordinal", (subject,), (), value=f"{predicate.value.rank} from {predicate.part or 'left'}")
+
+    def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read what a thing has: contents, a part in some state, or another thing at it."""
+        for phrase in predicate.arguments:
+            if phrase.pronoun in ("none", "nothing") or phrase.determiner == "no":
+                for thing in self.shared[1] if self.shared is not None else ():
+                    self._add(self.shared[0], (subject,), (thing,), how=replace(self.how, positive=False))  # type: ignore[index]
+            elif phrase.owner is not None and not phrase.head and self.shared is not None:
+                thing = Entity(self.shared[1][0].noun, born=self.how.sentence)
+                thing.mention(self._words(phrase))
+                self.references.entities.append(thing)
+                self.shared[1].append(thing)
+                self._add(self.shared[0], (subject,), (thing,))
+            elif phrase.head in SUBSTANCES:
+                self._add("contents", (subject,), (), value=phrase.head)
+            elif last_word(phrase.head) in PARTS or phrase.head == "glass":
+                states = [a.word for a in phrase.adjectives if a.dimension == "state"]
+                if states:
+                    self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
+            elif phrase.head:
+                held = self._introduce(phrase, "with", subject)
+                if held is not None and held.role is Role.THING and not phrase.predicates:
+                    self._add("near", (held,), (subject,))
+
+    def _say_share(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        for phrase in predicate.arguments:
+            thing = self._introduce(phrase, None, subject)
+            if thing is not None:
+                relation = "inside" if last_word(thing.noun) in VESSELS - SUPPORTS else "on"
+                self.shared = (relation, [thing])
+                self._add(relation, (subject,), (thing,))
+
+    def _say_parallel(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        for phrase in predicate.arguments:
+            if phrase.pronoun == "it" and self.edge is not None:
+                self._add("parallel", (subject,), (), value=f"{self.edge} edge")
+                return
+            region = self.references.region(phrase)
+            if region is not None and region.value is None and region.term == "edge" and self.edge is not None:
+                self._add("parallel", (subject,), (), value=f"{self.edge} edge")
+                return
+        self._relate(subject, predicate, others)
+
+    # Arguments and drafts -----------------------------------------------------------------------------------------
+
+    def _argument(self, phrase: NounPhrase, relation: str, subject: Entity | None) -> Entity | Region | None:
+        region = self.references.region(phrase)
+        if region is not None:
+            return region
+        if (phrase.pronoun in ("each", "other") and phrase.determiner in ("each",)) or phrase.pronoun == "another":
+            return None
+        if subject is not None and phrase.owner is not None and phrase.head and subject.itself.members:
+            if last_word(phrase.head) not in PARTS and not phrase.plural and self.how.quantifier == "each":
+                return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
+        if (
+            subject is not None and self.how.quantifier == "each" and subject.size > 1
+            and phrase.determiner in ("a", "an") and phrase.head and not phrase.plural
+        ):  # fmt: skip
+            return self._introduce(replace(phrase, determiner=None, count=subject.size, plural=True))
+        if phrase.determiner in ("each", "every"):
+            self.how = replace(self.how, quantifier="each")
+        found = self._introduce(phrase, relation, subject)
+        if (
+            found is not None and subject is not None and phrase.count is not None and phrase.count > 1
+            and found.size == subject.size and phrase.determiner is None
+        ):  # fmt: skip
+            self.how = replace(self.how, quantifier="each")
+        return found
+
+    def _words(self, phrase: NounPhrase) -> str:
+        return " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
+
+    def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
+        how = Qualification(phrase.span, self.references.sentence)
+        self._add(relation, (subject,), (other,), how=how)
+
+    def _add(
+        self,
+        relation: str,
+        subjects: tuple[Entity, ...],
+        arguments: tuple[Entity, ...],
+        value: str | None = None,
+        metres: float | None = None,
+        how: Qualification | None = None,
+    ) -> None:
+        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside"):
+            return
+        if relation == "row" and value is None:
+            value = None
+        draft = Draft(relation, subjects, arguments, how or self.how, value, metres)
+        if draft not in self.drafts:
+            self.drafts.append(draft)
+
+
+def condition_of(sentence: Sentence) -> str | None:
+    """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*."""
+    first = sentence.text.split(None, 1)[:1]
+    if not first or first[0].casefold() not in ("if", "unless", "whenever", "assuming", "suppose"):
+        return None
+    return " ".join(sentence.text.split(",", 1)[0].split())
+
+
+def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
+    """Return the noun of what everything stands on, such as *desk*; None if the text names none.
+
+    A surface noun that is said to be somewhere itself is an object; the noun of a place (*corner of the tray*) goes
+    before others.
+    """
+    counts: dict[str, int] = {}
+    objects: set[str] = set()
+    for sentence in sentences:
+        for clause in sentence.clauses:
+            for phrase in _own_and_members(clause.subject):
+                if clause.mood is Mood.QUESTION:
+                    continue
+                outer = [a for p in clause.predicates for a in p.arguments]
+                if any(last_word(a.head) not in SURROUNDINGS for a in outer) or (clause.predicates and not outer):
+                    objects.add(last_word(phrase.head))
+            for predicate in [*clause.predicates, *(p for choice in clause.choices for p in choice)]:
+                _count_surfaces(predicate, counts)
+            _count_restrictions(clause.subject, counts)
+        for phrase in _own_and_members(sentence.fragment):
+            if phrase.of is not None and last_word(phrase.of.head) in SURFACES:
+                counts[last_word(phrase.of.head)] = counts.get(last_word(phrase.of.head), 0) + 2
+            elif phrase.predicates:
+                objects.add(last_word(phrase.head))
+        _count_restrictions(sentence.fragment, counts)
+        if sentence.heading:  # 'Setup of the bench'
+            for word in sentence.text.casefold().replace("(", " ").replace(")", " ").split():
+                if word in SURFACES - {"top"}:
+                    counts[word] = counts.get(word, 0) + 1
+        for clause in sentence.clauses:  # the thing that was spread or set up, not placed
+            for phrase in _own_and_members(clause.subject):
+                if last_word(phrase.head) in SPREAD and last_word(phrase.head) not in objects:
+                    counts[last_word(phrase.head)] = counts.get(last_word(phrase.head), 0) + 1
+    counts = {noun: number for noun, number in counts.items() if noun not in objects}
+    return max(counts, key=lambda noun: counts[noun]) if counts else None
+
+
+def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
+    for argument in predicate.arguments:
+        of_place = predicate.relation in PLACES or argument.of is not None
+        for phrase in (*_own_and_members(argument), *_own_and_members(argument.of)):
+            noun = last_word(phrase.head)
+            if noun in SURFACES and phrase.determiner not in ("a", "an"):
+                counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)
+        _count_restrictions(argument, counts)
+
+
+def _count_restrictions(phrase: NounPhrase | None, counts: dict[str, int]) -> None:
+    for own in _own_and_members(phrase):
+        for predicate in own.predicates:
+            _count_surfaces(predicate, counts)
+
+
+def _own_and_members(phrase: NounPhrase | None) -> Iterator[NounPhrase]:
+    if phrase is not None:
+        yield phrase
+        for member in phrase.members:
+            yield from _own_and_members(member)

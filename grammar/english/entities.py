@@ -1,0 +1,127 @@
+"""Objects that a text speaks of: single ones and groups, the words used for them, and their names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from deixis.grammar.english.nouns import SINGLE_PLURALS, last_word
+
+
+class Role(StrEnum):
+    """Role of an entity in the scene."""
+
+    THING = "thing"
+    SURFACE = "surface"  # what everything stands on
+    VIEWER = "viewer"
+    PERSON = "person"
+    SURROUNDING = "surrounding"  # a wall, a window
+    PART = "part"  # of a thing
+
+
+@dataclass(eq=False)
+class Entity:
+    """An object of the discourse, or a group of them.
+
+    ``noun`` is in the singular. ``plural`` with no ``members`` is a group of unknown size, which is one object until a
+    number is known. ``pairs`` relates an entity of a quantified noun phrase to the ones that it goes with.
+    """
+
+    noun: str
+    role: Role = Role.THING
+    plural: bool = False
+    members: list[Entity] = field(default_factory=list)
+    adjectives: set[tuple[str, str]] = field(default_factory=set)  # dimension and word
+    mentions: list[str] = field(default_factory=list)
+    group: Entity | None = None
+    same_as: Entity | None = None  # another entity that turned out to be this one
+    whole: Entity | None = None
+    absent: bool = False
+    born: int = 0  # sentence that introduced it
+    indefinite: bool = False
+    written: str = ""  # the noun as first written: 'glasses'
+
+    @property
+    def itself(self) -> Entity:
+        """The entity that this one was identified with."""
+        found = self
+        while found.same_as is not None:
+            found = found.same_as
+        return found
+
+    def leaves(self) -> Iterator[Entity]:
+        """Yield the single objects."""
+        entity = self.itself
+        if not entity.members:
+            yield entity
+        for member in entity.members:
+            yield from member.leaves()
+
+    @property
+    def size(self) -> int:
+        """Number of single objects."""
+        return sum(1 for _ in self.leaves())
+
+    def split(self, count: int) -> None:
+        """Make a group of ``count`` single objects out of an entity."""
+        for _ in range(count):
+            member = Entity(self.noun, self.role, group=self, born=self.born)
+            member.adjectives = set(self.adjectives)
+            self.members.append(member)
+
+    def mention(self, phrase: str) -> None:
+        """Record words that were used for the entity."""
+        entity = self.itself
+        if phrase and phrase not in entity.mentions:
+            entity.mentions.append(phrase)
+
+
+def names_of(entities: Iterable[Entity]) -> dict[Entity, str]:
+    """Return a name for each single object: its noun, with an adjective or a number where several share it.
+
+    >>> cup, other = Entity("tea cup"), Entity("tea cup")
+    >>> list(names_of([cup, other, Entity("jug")]).values())
+    ['tea_cup_1', 'tea_cup_2', 'jug']
+    """
+    leaves = list(dict.fromkeys(leaf for entity in entities for leaf in entity.leaves()))
+    by_noun: dict[str, list[Entity]] = {}
+    for leaf in leaves:
+        by_noun.setdefault(_stem(leaf), []).append(leaf)
+    names: dict[Entity, str] = {}
+    taken: set[str] = set()
+    for stem, sharing in by_noun.items():
+        for number, leaf in enumerate(sharing, start=1):
+            names[leaf] = stem if len(sharing) == 1 else f"{stem}_{number}"
+        told_apart = [_described(leaf, sharing) for leaf in sharing]
+        if len(sharing) > 1 and all(told_apart) and len(set(told_apart)) == len(sharing):
+            names |= {leaf: f"{word}_{stem}" for leaf, word in zip(sharing, told_apart, strict=True)}
+    for leaf in leaves:  # a number that is a name of something else, as in 'box 1' beside two boxes
+        name, number = names[leaf], 1
+        while name in taken:
+            number += 1
+            name = f"{names[leaf]}_{number}"
+        taken.add(name)
+        names[leaf] = name
+    return {leaf: names[leaf] for leaf in leaves}
+
+
+def _stem(leaf: Entity) -> str:
+    noun = leaf.noun
+    if leaf.plural and leaf.written:
+        noun = leaf.written
+    return "_".join(noun.replace("'", "").replace("-", "_").split()) or "thing"
+
+
+def _described(leaf: Entity, sharing: list[Entity]) -> str:
+    """Return an adjective that only this one of the things that share a noun has."""
+    if leaf.group is not None:
+        return ""
+    others = {pair for other in sharing if other is not leaf for pair in other.adjectives}
+    own = sorted(pair for pair in leaf.adjectives if pair not in others and pair[0] in ("colour", "size", "material"))
+    return own[0][1].replace(" ", "_") if own else ""
+
+
+def is_one_thing(noun_as_written: str) -> bool:
+    """Return True for plurals such as *scissors* that name one thing."""
+    return last_word(noun_as_written) in SINGLE_PLURALS

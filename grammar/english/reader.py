@@ -1,0 +1,222 @@
+"""Read an English text as a script: its facts with the words that state them, and a paraphrase of each sentence."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+
+from deixis.deadline import Deadline
+from deixis.grammar.english.discourse import Discourse
+from deixis.grammar.english.discourse import Draft as FactDraft
+from deixis.grammar.english.entities import Entity, Role, names_of
+from deixis.grammar.english.paraphrase import paraphrase
+from deixis.grammar.english.parse import parse_english
+from deixis.grammar.english.tree import Mood, Sentence
+from deixis.grammar.errors import Diagnostic, ScriptError
+from deixis.grammar.reading import Reading, ReadSentence, StatedFact
+from deixis.grammar.script import (
+    ClaimStatement,
+    Comment,
+    Declaration,
+    Mention,
+    Modifiers,
+    RelationStatement,
+    Script,
+    Statement,
+)
+from deixis.ontology.claims import Claim
+from deixis.ontology.facts import Fact, Source
+from deixis.ontology.tbox import Ontology, default_ontology
+
+
+def read_english(
+    text: str, file: str = "<text>", ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
+) -> Script:
+    """Read an English text.
+
+    Parameters
+    ----------
+    text
+        Sentences, paragraphs with headings and numbered steps, or notes.
+    file
+        Name of the text in error messages and sources.
+    ontology
+        Relations, hedges, kinds and colours. By default :func:`default_ontology`.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    A script whose ``reading`` holds the sentences, and all facts with what qualifies them. Its own facts are those that
+    the text asserts.
+
+    Raises
+    ------
+    ScriptError
+        If nothing in the text was understood; it holds what was not.
+    ScriptTimeError
+        If the time limit is reached.
+
+    Examples
+    --------
+    >>> script = read_english("The fork is left of the plate. The knife is to the right of it.")
+    >>> [str(fact) for fact in script.facts]
+    ['left(fork, plate)', 'right(knife, fork)']
+    """
+    ontology = ontology or default_ontology()
+    sentences = parse_english(text, ontology, deadline)
+    discourse = Discourse(text, sentences, dict(ontology.hedges))
+    drafts = discourse.read()
+    writer = _Writer(text, file, ontology, discourse)
+    stated = tuple(fact for draft in drafts for fact in writer.facts(draft))
+    reading = Reading(
+        text=text,
+        sentences=tuple(writer.sentence(s, [f for f in stated if f.sentence == i]) for i, s in enumerate(sentences)),
+        stated=stated,
+        mentions=writer.mentions(),
+        absent=tuple(name for entity, name in writer.names.items() if entity.absent),
+        surface=discourse.references.surface.noun.replace(" ", "_") if discourse.references.surface else None,
+    )
+    if not stated and not any(s.clauses and s.clauses[0].mood is Mood.QUESTION for s in sentences):
+        raise ScriptError(_nothing_understood(text, file, reading, writer))
+    statements = tuple(statement for fact in stated if fact.asserted for statement in writer.statements(fact, reading))
+    return Script(file, None, None, None, statements, tuple(writer.comments(reading)), ontology, reading)
+
+
+def _nothing_understood(text: str, file: str, reading: Reading, writer: _Writer) -> tuple[Diagnostic, ...]:
+    problems = tuple(problem for sentence in reading.sentences for problem in sentence.problems)
+    line = text.strip().split("\n", 1)[0]
+    message = "nothing in this text says where something is, or what it is like"
+    hint = "write sentences such as 'The fork is to the left of the plate.'"
+    return (Diagnostic(Source(file, 1, 1, 1, 1 + max(1, len(line))), message, line, hint), *problems)
+
+
+class _Writer:
+    """Writer of drafts as facts with names, spans and sources."""
+
+    def __init__(self, text: str, file: str, ontology: Ontology, discourse: Discourse) -> None:
+        self.text, self.file, self.ontology, self.discourse = text, file, ontology, discourse
+        self.starts = [0, *(i + 1 for i, c in enumerate(text) if c == "\n")]
+        used = [e for d in discourse.drafts for e in (*d.subjects, *d.arguments)]
+        order: dict[Entity, None] = {}
+        for entity in [*discourse.references.entities, *used]:
+            for leaf in entity.leaves():
+                order[leaf] = None
+        told = {leaf for entity in used for leaf in entity.leaves()}
+        shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in told]
+        self.names = names_of(shown)
+
+    def source(self, span: tuple[int, int]) -> Source:
+        """Return the lines and columns of a span of characters."""
+        start, end = (bisect_right(self.starts, at) - 1 for at in span)
+        return Source(self.file, start + 1, span[0] - self.starts[start] + 1, end + 1, span[1] - self.starts[end] + 1)
+
+    def mentions(self) -> dict[str, tuple[str, ...]]:
+        """Return the words used for each object, by its name."""
+        return {name: tuple(entity.mentions) for entity, name in self.names.items()}
+
+    def facts(self, draft: FactDraft) -> Iterator[StatedFact]:
+        """Yield the facts of a draft: one for each object, or for each pair of members."""
+        subjects = [leaf for s in draft.subjects for leaf in s.leaves() if leaf in self.names]
+        arguments = [leaf for a in draft.arguments for leaf in a.leaves() if leaf in self.names]
+        if not subjects or (draft.arguments and not arguments):
+            return
+        how = draft.how
+        names = [self.names[leaf] for leaf in subjects]
+        ends = [self.names[leaf] for leaf in arguments]
+        contents: list[Fact | Claim] = []
+        if draft.collective or draft.relation.startswith("none_"):
+            contents.append(self._claim(draft, tuple(names), tuple(ends)))
+        elif not ends or draft.value is not None or len(draft.arguments) > 1 or draft.relation in _OVER_ALL:
+            contents += [self._claim(draft, (name,), tuple(ends)) for name in names]
+        elif how.quantifier == "each" and len(names) == len(ends):
+            contents += [self._binary(draft, a, b) for a, b in zip(names, ends, strict=True)]
+        else:
+            contents += [self._binary(draft, a, b) for a in names for b in ends if a != b]
+        for content in contents:
+            yield StatedFact(
+                content, how.sentence, how.span, how.condition, how.past, how.uncertain, how.alternative, how.quantifier
+            )
+
+    def _binary(self, draft: FactDraft, subject: str, thing: str) -> Fact | Claim:
+        how = draft.how
+        relation = self.ontology.relations.get(draft.relation)
+        if relation is None or draft.metres is not None:
+            return self._claim(draft, (subject,), (thing,))
+        source = self.source(how.span)
+        return Fact(subject, (relation,), thing, how.positive, how.optional, how.weight, source)
+
+    def _claim(self, draft: FactDraft, subjects: tuple[str, ...], arguments: tuple[str, ...]) -> Claim:
+        how = draft.how
+        return Claim(
+            draft.relation, subjects, arguments, draft.value, draft.metres,
+            how.positive, how.optional, how.weight, self.source(how.span),
+        )  # fmt: skip
+
+    def sentence(self, sentence: Sentence, facts: list[StatedFact]) -> ReadSentence:
+        """Return a sentence with its paraphrase and the diagnostics of what was not understood."""
+        surface = self.discourse.references.surface
+        question = any(clause.mood is Mood.QUESTION for clause in sentence.clauses)
+        return ReadSentence(
+            text=" ".join(sentence.text.split()),
+            span=sentence.span,
+            paraphrase=paraphrase(facts, surface.noun if surface is not None else "table"),
+            understood=sentence.understood,
+            words=sentence.words,
+            question=question,
+            heading=sentence.heading,
+            problems=tuple(self._problem(m.span, m.reason, m.suggestion) for m in sentence.misunderstood),
+            problem_spans=tuple(m.span for m in sentence.misunderstood),
+        )
+
+    def _problem(self, span: tuple[int, int], reason: str, suggestion: str | None) -> Diagnostic:
+        source = self.source(span)
+        line = self.text[self.starts[source.line - 1] :].split("\n", 1)[0]
+        return Diagnostic(source, f"not understood: {reason}", line, f"write {suggestion!r}" if suggestion else None)
+
+    def statements(self, stated: StatedFact, reading: Reading) -> Iterator[Statement]:
+        """Yield a fact as a statement of the layout language; a claim that it cannot say is kept as a claim."""
+        content = stated.content
+        source = content.source or Source(self.file, 1, 1, 1, 1)
+        modifiers = Modifiers(content.positive, content.optional, self._hedge(content.weight), content.weight)
+        absent = set(reading.absent)
+        if isinstance(content, Fact):
+            if {content.subject, content.object}.isdisjoint(absent):
+                ends = self._mention(content.subject, source), self._mention(content.object, source)
+                yield RelationStatement((ends[0],), content.relations, (ends[1],), modifiers, source)
+            return
+        if not absent.isdisjoint((*content.subjects, *content.arguments)):
+            return
+        subjects = tuple(self._mention(name, source) for name in content.subjects)
+        arguments = tuple(self._mention(name, source) for name in content.arguments)
+        colour = self.ontology.colours.of_word(content.value or "") if content.relation == "colour" else None
+        if colour is not None and content.positive:
+            yield Declaration(subjects, None, colour, source)
+        yield ClaimStatement(subjects, arguments, content, source)
+
+    def _hedge(self, weight: float) -> str | None:
+        if weight >= 1:
+            return None
+        hedges = self.ontology.hedges
+        return min(hedges, key=lambda word: abs(hedges[word] - weight))
+
+    @staticmethod
+    def _mention(name: str, source: Source) -> Mention:
+        return Mention(name, source, None, (name,))
+
+    def comments(self, reading: Reading) -> Iterator[Comment]:
+        """Yield what the layout language cannot say, each at the place where the text says it."""
+        for stated in reading.stated:
+            content = stated.content
+            source = content.source
+            if source is None or stated.asserted:
+                continue
+            marks = [*(["past"] if stated.past else []), *(["uncertain"] if stated.uncertain else [])]
+            marks += [stated.condition] if stated.condition else []
+            note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
+            yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
+
+
+_OVER_ALL = frozenset(
+    {"between", "closer", "farther", "nearest", "farthest", "largest", "smallest", "tallest", "shortest"}
+)

@@ -1,0 +1,407 @@
+"""Find the objects that noun phrases stand for: new ones, earlier ones, members of groups, and pronouns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from deixis.grammar.english.entities import Entity, Role
+from deixis.grammar.english.nouns import (
+    GENERAL,
+    PAIRED,
+    PARTS,
+    PEOPLE,
+    SINGLE_PLURALS,
+    SURROUNDINGS,
+    VIEWER,
+    VIEWER_WORDS,
+    last_word,
+)
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
+
+REGIONS = frozenset(
+    [
+        "corner",
+        "edge",
+        "end",
+        "side",
+        "middle",
+        "centre",
+        "center",
+        "front",
+        "back",
+        "rear",
+        "half",
+        "part",
+        "rim",
+        "border",
+    ]
+)
+DEFINITE = frozenset({"the", "this", "that", "these", "those", "same", "its", "their", "my", "your"})
+OPPOSITES = {
+    "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
+    "on": "under", "under": "on", "top": "bottom", "bottom": "top",
+}  # fmt: skip
+POLES = {
+    **dict.fromkeys(("large", "big", "tall", "long", "wide", "thick", "high", "deep", "heavy", "broad"), 1),
+    **dict.fromkeys(("small", "little", "short", "narrow", "thin", "low", "shallow", "light", "tiny"), -1),
+}
+COMPARATIVES = {
+    ("size", 1): "bigger", ("size", -1): "smaller", ("height", 1): "taller", ("height", -1): "shorter",
+    ("length", 1): "longer", ("length", -1): "shorter", ("width", 1): "wider", ("width", -1): "narrower",
+    ("thickness", 1): "thicker", ("thickness", -1): "thinner",
+}  # fmt: skip
+"""Relation of a comparative by its dimension and pole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A part of the surface or of an object, such as the *right end of the counter*: ``term`` is ``end``."""
+
+    term: str
+    value: str | None
+    of: Entity | None
+
+
+@dataclass
+class Focus:
+    """Subject, other objects and relation of a clause, which pronouns in later clauses refer to."""
+
+    subject: Entity | None
+    others: list[Entity]
+    relation: str | None
+    sentence: int
+
+
+@dataclass
+class References:
+    """Objects of a text so far, and the rules by which a phrase refers to one of them.
+
+    ``compare`` is called with a relation and two objects when a phrase such as *the larger beaker* tells two members of
+    a group apart.
+    """
+
+    surface_noun: str | None
+    compare: Callable[[str, Entity, Entity, NounPhrase], None]
+    entities: list[Entity] = field(default_factory=list)
+    recent: list[Focus] = field(default_factory=list)
+    sentence: int = 0
+    start: int = 0  # of the sentence in the text
+    text: str = ""
+    surface: Entity | None = None
+
+    def __post_init__(self) -> None:
+        self.viewer = Entity(VIEWER, Role.VIEWER)
+
+    # Noun phrases -----------------------------------------------------------------------------------------------
+
+    def region(self, phrase: NounPhrase) -> Region | None:
+        """Return the region that a phrase names, or None if it names an object."""
+        term = phrase.head if phrase.head in REGIONS else last_word(phrase.head)
+        if term not in REGIONS or phrase.owner is not None or phrase.members:
+            return None
+        words = [a.word for a in phrase.adjectives if a.dimension in ("position", "size", "length", "other")]
+        of = self.find(phrase.of) if phrase.of is not None else None
+        term = {"centre": "middle", "center": "middle", "rear": "back"}.get(term, term)
+        if term in ("front", "back", "half", "part"):
+            words, term = ([*words, term] if term in ("front", "back") else words), "part"
+        return Region(term, " ".join(words) or None, None if of is None or of.role is Role.SURFACE else of)
+
+    def find(self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None) -> Entity | None:
+        """Return the object or group that a phrase stands for, a new one if need be; None for nothing.
+
+        Parameters
+        ----------
+        phrase
+            The noun phrase.
+        relation
+            Relation of which the phrase is an argument; it decides between antecedents of a pronoun.
+        besides
+            Subject of the clause, which a pronoun in its predicate does not stand for.
+        """
+        if phrase.members:
+            found = [entity for part in phrase.members if (entity := self.find(part, relation, besides)) is not None]
+            return found[0] if len(found) == 1 else Entity("", members=found) if found else None
+        if phrase.pronoun is not None and not phrase.head:
+            return self._pronoun(phrase, relation, besides)
+        if phrase.head:
+            return self._noun(phrase, relation, besides)
+        return self._ellipsis(phrase, besides)
+
+    def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        noun, last = phrase.head, last_word(phrase.head)
+        if last == VIEWER or (last in PEOPLE and noun == last):
+            entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
+            return entity
+        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another":
+            if self.surface is None:
+                self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
+            return self.surface
+        if last in PARTS and noun == last and (phrase.owner is not None or phrase.of is not None):
+            whole = self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
+            return None if whole is None else Entity(noun, Role.PART, whole=whole)
+        if phrase.of is not None and (phrase.count is not None or last in GENERAL) and last in GENERAL:
+            return self.find(phrase.of, relation, besides)
+        earlier = self._earlier(phrase)
+        if earlier is not None:
+            return self._seen(earlier, phrase)
+        if phrase.owner is not None:
+            self.find(phrase.owner, relation, besides)
+        return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
+
+    def _new(self, phrase: NounPhrase, role: Role) -> Entity:
+        entity = Entity(phrase.head, role, born=self.sentence, indefinite=phrase.determiner in ("a", "an", None))
+        entity.adjectives = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN}
+        written = self.text[phrase.span[0] : phrase.span[1]].casefold()
+        words = written.replace(",", " ").split()
+        count = phrase.count
+        stem = last_word(phrase.head)
+        lump = next((word for word in words if word in SINGLE_PLURALS), None)
+        if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
+            count = 2
+        if count is not None and 1 < count <= 1000:
+            entity.split(count)
+        elif phrase.plural:
+            entity.plural = True
+            plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            if plural is not None:
+                entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
+        self.entities.append(entity)
+        return self._seen(entity, phrase)
+
+    def _seen(self, entity: Entity, phrase: NounPhrase) -> Entity:
+        words = self.words(phrase)
+        entity.mention(words)
+        if entity.members and entity.noun:
+            for leaf in entity.leaves():
+                leaf.mention(words)
+        return entity
+
+    def words(self, phrase: NounPhrase) -> str:
+        """Return the words of a phrase without its restrictions and commas."""
+        said = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
+        stem = last_word(phrase.head)
+        if not stem:
+            return said.strip(" ,;:.")
+        place = said.casefold().find(
+            stem[: max(2, len(stem) - 2)].casefold(), said.casefold().find(phrase.head.split()[0][:2])
+        )
+        if place < 0:
+            return said.strip(" ,;:.")
+        end = next((i for i in range(place, len(said)) if said[i] in " ,;:."), len(said))
+        if phrase.of is not None and phrase.of.span[1] <= phrase.span[1] and phrase.of.span[0] >= phrase.span[0]:
+            end = max(end, min(len(said), phrase.of.span[1] - phrase.span[0]))
+        return said[:end].strip(" ,;:.").removesuffix("'s")
+
+    def _earlier(self, phrase: NounPhrase) -> Entity | None:
+        """Return the earlier object with the same noun, unless the phrase introduces another one."""
+        if phrase.determiner in ("another", "a", "an", "some", "no") or (
+            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
+        ):
+            return None
+        for entity in reversed(list(self._known())):
+            if not _same_noun(entity.noun, phrase.head) or _conflicting(entity, phrase):
+                continue
+            if phrase.determiner == "other" and not entity.members:
+                continue
+            if entity.group is not None and entity.group in self.entities:
+                continue
+            if (
+                entity.plural
+                and not entity.members
+                and not phrase.plural
+                and any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
+            ):
+                entity.split(2)
+            if entity.members and not phrase.plural and phrase.determiner not in ("each", "every", "all", "both"):
+                return self.member(entity, phrase) or entity
+            return entity
+        return None
+
+    def _known(self) -> Iterator[Entity]:
+        exact: list[Entity] = [entity.itself for entity in self.entities if not entity.absent]
+        yield from exact
+
+    # Members of groups ------------------------------------------------------------------------------------------
+
+    def member(self, group: Entity, phrase: NounPhrase) -> Entity | None:
+        """Return the member of a group that adjectives pick out, such as *the taller one* or *the second*."""
+        leaves = list(group.leaves())
+        if phrase.determiner == "other" or phrase.pronoun == "other":
+            taken = [leaf for leaf in leaves if any(pair[0] == "picked" for pair in leaf.adjectives)]
+            return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
+        for adjective in phrase.adjectives:
+            if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
+                return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
+            tag = _tag(adjective)
+            for leaf in leaves:
+                if (adjective.dimension, adjective.word) in leaf.adjectives or ("picked", tag) in leaf.adjectives:
+                    return self._picked(leaf, phrase)
+            free = [leaf for leaf in leaves if not any(p[0] == "picked" for p in leaf.adjectives)]
+            if not free or adjective.dimension == "state":
+                continue
+            leaf = free[0]
+            leaf.adjectives.add(("picked", tag))
+            if adjective.degree is Degree.PLAIN and adjective.dimension != "position":
+                leaf.adjectives.add((adjective.dimension, adjective.word))
+            self._compare(adjective, leaf, leaves, phrase)
+            return self._picked(leaf, phrase)
+        return None
+
+    def _compare(self, adjective: Adjective, leaf: Entity, leaves: list[Entity], phrase: NounPhrase) -> None:
+        relation = None
+        if adjective.degree is not Degree.PLAIN:
+            relation = COMPARATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+        elif adjective.dimension == "position" and len(leaves) == 2:
+            relation = {"left": "left", "right": "right", "far": "behind", "near": "in_front"}.get(adjective.word)
+        elif adjective.dimension == "size" and len(leaves) == 2:
+            relation = COMPARATIVES.get(("size", POLES.get(adjective.word, 0)))
+        if relation is not None and not any(
+            p[0] == "picked" and p[1] == _opposite_tag(adjective) for other in leaves for p in other.adjectives
+        ):
+            for other in leaves:
+                if other is not leaf:
+                    self.compare(relation, leaf, other, phrase)
+
+    def _picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+        if not any(pair[0] == "picked" for pair in leaf.adjectives):
+            leaf.adjectives.add(("picked", "named"))
+        leaf.mention(self.words(phrase))
+        return leaf
+
+    def last_group(self, besides: Entity | None = None) -> Entity | None:
+        """Return the group that was spoken of last."""
+        if besides is not None and besides.group is not None:
+            return besides.group
+        for focus in self.recent:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides:
+                    continue
+                group = entity.itself if entity.itself.members else entity.itself.group
+                if group is not None and group.noun:
+                    return group
+        return next((e for e in reversed(self.entities) if e.members and e.noun), None)
+
+    # Pronouns ---------------------------------------------------------------------------------------------------
+
+    def _pronoun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        word = phrase.pronoun or ""
+        if word in VIEWER_WORDS:
+            return self.viewer
+        if phrase.of is not None and word not in ("it", "they"):
+            group = self.find(phrase.of, relation, besides)
+            if group is None or word in ("all", "both", "each", "everything"):
+                return group
+            return (self.member(group, phrase) or next(group.leaves())) if group.members else group
+        if word in ("they", "both", "all", "each", "these", "those"):
+            return self._plural(relation, besides)
+        if word in ("it", "itself") and (left_out := self._left_out(phrase)) is not None:
+            return left_out
+        if word in ("it", "this", "that", "itself"):
+            return self._singular(relation, besides)
+        if word in ("former", "latter"):
+            pair = next((f for f in self.recent if f.subject is not None and f.others), None)
+            return None if pair is None else pair.subject if word == "former" else pair.others[0]
+        if word in ("one", "other"):
+            return self._ellipsis(phrase, besides)
+        return None
+
+    def _left_out(self, phrase: NounPhrase) -> Entity | None:
+        """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""
+        if any(focus.sentence == self.sentence for focus in self.recent):
+            return None
+        before = self.text[self.start : phrase.span[0]]
+        nouns = re.findall(
+            r"\b(?:the|a|an|your|my)\s+((?:[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])", before, re.IGNORECASE
+        )
+        if not nouns or len(nouns[-1].split()) > 3:
+            return None
+        return self.find(NounPhrase(phrase.span, head=nouns[-1].casefold(), determiner="the"))
+
+    def _ellipsis(self, phrase: NounPhrase, besides: Entity | None) -> Entity | None:
+        group = self.find(phrase.of, None, besides) if phrase.of is not None else None
+        if group is None and phrase.adjectives:
+            colours = {a.word for a in phrase.adjectives if a.dimension == "colour"}
+            if colours and (noun := self._last_noun()):  # the blue one, beside the red box
+                for entity in self._known():
+                    if _same_noun(entity.noun, noun) and any(("colour", c) in entity.adjectives for c in colours):
+                        return entity
+                group = self.last_group(besides)
+                if group is None or not _same_noun(group.noun, noun):
+                    entity = Entity(noun, born=self.sentence)
+                    entity.adjectives = {("colour", c) for c in colours}
+                    self.entities.append(entity)
+                    return self._seen(entity, phrase)
+        group = group or self.last_group(besides)
+        if group is None or not group.members:
+            return None
+        found = self.member(group, phrase)
+        if found is None and phrase.pronoun == "one":
+            free = [leaf for leaf in group.leaves() if not any(pair[0] == "picked" for pair in leaf.adjectives)]
+            found = self._picked(free[0], phrase) if free else None
+        if found is not None:
+            self._picked(found, phrase)
+        return found
+
+    def _last_noun(self) -> str | None:
+        return self.entities[-1].noun if self.entities else None
+
+    def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
+        last = self.recent[0] if self.recent else None
+        if (
+            besides is not None and last is not None and relation in OPPOSITES and last.others
+            and OPPOSITES[relation] == last.relation and last.subject is not besides
+        ):  # fmt: skip
+            return last.others[0]
+        for focus in self.recent[:4]:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON):
+                    continue
+                entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
+                if entity.itself.members or entity is besides:
+                    continue
+                return entity
+        return None
+
+    def _plural(self, relation: str | None, besides: Entity | None) -> Entity | None:
+        for focus in self.recent[:4]:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides or entity.role is not Role.THING:
+                    continue
+                if entity.itself.members or entity.plural:
+                    return entity
+            pair = [e for e in [focus.subject, *focus.others[:1]] if e is not None and e.role is Role.THING]
+            if len(pair) == 2 and besides not in pair:
+                return Entity("", members=pair)
+        return None
+
+
+def _same_noun(first: str, second: str) -> bool:
+    """Return True if two nouns can name one thing: equal, or the longer one ends in the shorter one."""
+    a, b = first.split(), second.split()
+    short, long = sorted((a, b), key=len)
+    return bool(short) and long[-len(short) :] == short
+
+
+def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
+    for adjective in phrase.adjectives:
+        if adjective.dimension not in ("colour", "material"):
+            continue
+        words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
+        if entity.members:
+            continue
+        if words and adjective.word not in words:
+            return True
+    return False
+
+
+def _tag(adjective: Adjective) -> str:
+    pole = POLES.get(adjective.word)
+    return f"{adjective.dimension} {pole}" if pole is not None else f"{adjective.dimension} {adjective.word}"
+
+
+def _opposite_tag(adjective: Adjective) -> str:
+    pole = POLES.get(adjective.word)
+    other = {"left": "right", "right": "left", "far": "near", "near": "far"}.get(adjective.word, "")
+    return f"{adjective.dimension} {-pole}" if pole is not None else f"{adjective.dimension} {other}"

@@ -1,0 +1,83 @@
+"""A text in English as it was read: its sentences, what each states, and the words used for each object."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from deixis.grammar.errors import Diagnostic
+from deixis.ontology.claims import Claim
+from deixis.ontology.facts import Fact
+
+Span = tuple[int, int]
+"""First and last character of a phrase in the text, counted from 0, the end exclusive."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedFact:
+    """A fact or a claim of a text, with the words that state it and what qualifies it.
+
+    ``sentence`` counts the sentences from 0. ``condition`` is the text of an *if* clause. ``past`` is True for what
+    need not hold any more, ``uncertain`` for what only may hold (*might be*). Facts with the same number as
+    ``alternative`` are a choice: one of them holds. ``quantifier`` is ``each`` where the facts of a sentence pair the
+    members of two groups.
+    """
+
+    content: Fact | Claim
+    sentence: int
+    span: Span
+    condition: str | None = None
+    past: bool = False
+    uncertain: bool = False
+    alternative: int | None = None
+    quantifier: str | None = None
+
+    @property
+    def asserted(self) -> bool:
+        """True if the text states that the fact holds now, without a condition."""
+        return not (self.condition or self.past or self.uncertain)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadSentence:
+    """A sentence of a text, a plain paraphrase of what was understood, and the phrases that were not understood.
+
+    ``understood`` is the share of its words that were understood.
+    """
+
+    text: str
+    span: Span
+    paraphrase: str
+    understood: float
+    words: int
+    question: bool = False
+    heading: bool = False
+    problems: tuple[Diagnostic, ...] = ()
+    problem_spans: tuple[Span, ...] = ()
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Everything that was read in a text.
+
+    ``mentions`` holds the phrases used for each object. ``absent`` are the things that the text says are not there.
+    ``surface`` is the name of what everything stands on (``desk``), or None where the text does not name it.
+    """
+
+    text: str
+    sentences: tuple[ReadSentence, ...]
+    stated: tuple[StatedFact, ...]
+    mentions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    absent: tuple[str, ...] = ()
+    surface: str | None = None
+
+    @property
+    def understood(self) -> float:
+        """Share of the words of the text that were understood."""
+        words = sum(sentence.words for sentence in self.sentences)
+        return sum(sentence.words * sentence.understood for sentence in self.sentences) / words if words else 0.0
+
+    @property
+    def claims(self) -> tuple[Claim, ...]:
+        """Asserted claims, in the order of the text."""
+        return tuple(s.content for s in self.stated if s.asserted and isinstance(s.content, Claim))

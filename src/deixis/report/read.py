@@ -1,0 +1,131 @@
+"""A text in English as it was read: lines for the terminal, and plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from deixis.ontology.claims import Claim
+from deixis.ontology.export import fact_to_dict
+from deixis.report.json_answers import script_to_dict
+from deixis.report.marks import doubt
+
+if TYPE_CHECKING:
+    from deixis.grammar.reading import Reading, ReadSentence, StatedFact
+    from deixis.grammar.script import Script
+
+
+def reading_lines(script: Script) -> list[str]:
+    """Return each sentence with its facts, a paraphrase, and what was not understood."""
+    reading = _reading(script)
+    lines = []
+    for number, sentence in enumerate(reading.sentences):
+        lines.append(sentence.text)
+        if sentence.paraphrase:
+            lines.append(f"    = {sentence.paraphrase}")
+        elif sentence.question:
+            lines.append("    a question: it states no fact")
+        lines += [f"    {fact.content}{_marks(fact)}" for fact in reading.stated if fact.sentence == number]
+        lines += [doubt(f"    {problem.source}: {problem.message}") for problem in sentence.problems]
+    if reading.absent:
+        lines.append(f"Not there: {', '.join(reading.absent)}.")
+    lines.append(f"Understood: {reading.understood:.0%} of the words.")
+    return lines
+
+
+def _marks(fact: StatedFact) -> str:
+    content = fact.content
+    marks = [name for name in ("past", "uncertain") if getattr(fact, name)]
+    marks += [f"if: {fact.condition}"] if fact.condition else []
+    marks += [f"choice {fact.alternative}"] if fact.alternative is not None else []
+    marks += ["optional"] if content.optional else []
+    marks += [f"weight {content.weight:g}"] if content.weight != 1 else []
+    return f"   [{', '.join(marks)}]" if marks else ""
+
+
+def reading_to_dict(script: Script) -> dict[str, Any]:
+    """Return a text as it was read: its objects with their mentions, all facts, and the sentences."""
+    reading = _reading(script)
+    known = script_to_dict(script)
+    for thing in known["objects"]:
+        thing["mentions"] = list(reading.mentions.get(thing["id"], ()))
+    return known | {
+        "facts": [stated_to_dict(fact, reading) for fact in reading.stated],
+        "sentences": [_sentence_to_dict(sentence) for sentence in reading.sentences],
+        "surface": reading.surface,
+        "absent": list(reading.absent),
+        "understood": round(reading.understood, 4),
+    }
+
+
+def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
+    """Return a fact of a text with its sentence, its span and what qualifies it."""
+    content = stated.content
+    known = _claim_to_dict(content, reading) if isinstance(content, Claim) else fact_to_dict(content)
+    if not isinstance(content, Claim):
+        known |= {"relation": content.relations[0].name, "arguments": [], "value": None, "metres": None}
+    return known | {
+        "subjects": list(content.subjects) if isinstance(content, Claim) else [content.subject],
+        "status": "stated",
+        "asserted": stated.asserted,
+        "sentence": stated.sentence,
+        "span": list(stated.span),
+        "condition": stated.condition or ("no longer" if stated.past else None),
+        "past": stated.past,
+        "uncertain": stated.uncertain,
+        "alternative": stated.alternative,
+        "quantifier": stated.quantifier,
+    }
+
+
+def _claim_to_dict(claim: Claim, reading: Reading) -> dict[str, Any]:
+    nothing = claim.relation.startswith("none_")
+    relation = claim.relation.removeprefix("none_")
+    subject, arguments = ("*", claim.subjects) if nothing else (claim.subjects[0], claim.arguments)
+    if not nothing and len(claim.subjects) > 1:
+        arguments = (*claim.subjects[1:], *claim.arguments)
+    binary = len(arguments) == 1 and claim.value is None and (nothing or len(claim.subjects) == 1)
+    over_surface = not arguments and relation in _ON_SURFACE and reading.surface is not None
+    entry: dict[str, Any] = {
+        "relation": relation,
+        "subject": subject,
+        "object": arguments[0] if binary else None,
+        "arguments": [reading.surface] if over_surface else list(arguments),
+        "value": claim.value,
+        "metres": claim.metres,
+        "reading": "wide",
+        "relations": [relation],
+        "positive": claim.positive and not nothing,
+        "optional": claim.optional,
+        "weight": claim.weight,
+    }
+    if claim.source is not None:
+        entry |= {"file": claim.source.file, "line": claim.source.line, "column": claim.source.column}
+    return entry
+
+
+_ON_SURFACE = frozenset(["corner", "edge", "end", "middle", "side", "part", "on"])
+
+
+def _sentence_to_dict(sentence: ReadSentence) -> dict[str, Any]:
+    problems: Iterator[dict[str, Any]] = (
+        {"span": list(span), "reason": problem.message.removeprefix("not understood: "), "suggestion": problem.hint}
+        for span, problem in zip(sentence.problem_spans, sentence.problems, strict=True)
+    )
+    return {
+        "text": sentence.text,
+        "span": list(sentence.span),
+        "paraphrase": sentence.paraphrase,
+        "understood": round(sentence.understood, 4),
+        "question": sentence.question,
+        "heading": sentence.heading,
+        "not_understood": list(problems),
+    }
+
+
+def _reading(script: Script) -> Reading:
+    from deixis.errors import DeixisError
+
+    if script.reading is None:
+        raise DeixisError(f"{script.file}: this is a layout script, not a text in English; parse prints its facts")
+    return script.reading

@@ -1,0 +1,84 @@
+"""Facts of English texts: references, groups, denials, conditions and choices."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.grammar.english.reader import read_english
+from deixis.grammar.errors import ScriptError
+from deixis.grammar.reading import Reading
+
+
+def reading(text: str) -> Reading:
+    found = read_english(text).reading
+    assert found is not None
+    return found
+
+
+def asserted(text: str) -> set[str]:
+    return {str(fact.content) for fact in reading(text).stated if fact.asserted}
+
+
+@pytest.mark.parametrize(
+    ("text", "facts"),
+    [
+        ("The fork is left of the plate; the knife is right of it.", {"left(fork, plate)", "right(knife, plate)"}),
+        ("Fold the napkin and put it on the plate.", {"on(napkin, plate)"}),
+        (
+            "The cake stand is on the mat. The jug is left of the stand.",
+            {"on(cake_stand, mat)", "left(jug, cake_stand)"},
+        ),
+        ("The jug is not on the mat.", {"not on(jug, mat)"}),
+        ("The cup was on the saucer.", set()),
+        ("If you have guests, the knife is left of the plate.", set()),
+        ("Is the knife left of the fork? The cup is on the mat.", {"on(cup, mat)"}),
+        ("The spoon might be on the plate. The cup is on the mat.", {"on(cup, mat)"}),
+    ],
+)
+def test_a_text_asserts_these_facts(text: str, facts: set[str]) -> None:
+    assert asserted(text) == facts
+
+
+def test_two_groups_of_one_size_are_paired() -> None:
+    found = asserted("Three forks lie left of three plates.")
+    assert {f"left(fork_{n}, plate_{n})" for n in (1, 2, 3)} <= found
+    assert "left(fork_1, plate_2)" not in found
+
+
+def test_a_comparative_picks_a_member_of_a_group() -> None:
+    found = asserted("Two jars are on the mat. The tea is in the taller one, the coffee in the other.")
+    assert {"contents(jar_1, 'tea')", "contents(jar_2, 'coffee')"} <= found
+
+
+def test_a_place_on_the_surface_has_no_argument() -> None:
+    text = "The lamp is in the far left corner of the desk."
+    assert asserted(text) == {"corner(lamp, 'far left')"}
+    assert reading(text).surface == "desk"
+
+
+def test_what_is_absent_is_no_object_of_the_script() -> None:
+    script = read_english("The bowl is left of the jug. No spoon was found.")
+    assert script.objects == ("bowl", "jug")
+    assert script.reading is not None and script.reading.absent == ("spoon",)
+
+
+def test_a_choice_has_one_number() -> None:
+    found = reading("The cup is to the left of the plate or, if you prefer, to the right of it.").stated
+    assert {fact.alternative for fact in found} == {1}
+    assert all(fact.content.optional for fact in found)
+
+
+def test_a_span_covers_the_words_of_the_fact() -> None:
+    text = "Hello there. The fork is left of the plate."
+    (fact,) = reading(text).stated
+    assert text[slice(*fact.span)].startswith("The fork is left of the plate")
+
+
+def test_mentions_are_all_words_for_an_object() -> None:
+    found = reading("The burette stand is on the mat. The jug is left of the stand.").mentions
+    assert found["burette_stand"] == ("The burette stand", "the stand")
+
+
+def test_a_text_without_any_place_is_refused() -> None:
+    with pytest.raises(ScriptError, match="nothing in this text"):
+        read_english("Hello, my friend.")
