@@ -23,6 +23,7 @@ from deixis.perception.errors import CloudError, SceneError
 
 if TYPE_CHECKING:
     from deixis.reasoning.geometry.rectangle import SceneRelations
+    from deixis.reasoning.grounding.reference.room import Room
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,9 @@ CANDIDATE_ROUNDING = 1e-3
 MAX_COORDINATE = 1e9
 """Maximum absolute value of a coordinate, in metres or pixels."""
 
+UNKNOWN_VIEWPOINT = "unknown"
+"""Viewpoint of a scene whose x axis does not point to the right of any viewer."""
+
 
 @dataclass(frozen=True, slots=True)
 class PerceivedObject:
@@ -103,6 +107,9 @@ class PerceivedObject:
         Smallest box around the object that is turned about the vertical, if the scene has heights.
     candidates
         Categories with their probabilities; the rest to 1 is the probability of any other category.
+    front
+        Horizontal direction (x, y) in which the front of the object points, such as from the back of a chair over its
+        seat, of any length except 0; None if the object has no front or it is unknown.
     """
 
     id: str
@@ -114,6 +121,7 @@ class PerceivedObject:
     colour: Rgb | None = None
     oriented: OrientedBox | None = None
     candidates: tuple[tuple[str, float], ...] = ()
+    front: tuple[float, float] | None = None
 
     def to_open3d(self) -> Any:
         """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; a box without heights lies at z = 0."""
@@ -168,7 +176,8 @@ class Scene(Answer):
     frame
         Name of the frame of the coordinates.
     viewpoint
-        Name of the side from which left and right are seen.
+        Name of the side from which left and right are seen; ``unknown`` (:data:`UNKNOWN_VIEWPOINT`) if the axes of the
+        scene do not follow a viewer, as in a room that was scanned from many sides.
     unit
         ``m``, or ``px`` for boxes in an image; relations do not depend on it.
     file
@@ -180,7 +189,7 @@ class Scene(Answer):
     ------
     SceneError
         If two objects share an id, a corner is not finite, a lower corner is above the upper one, a colour or a
-        confidence is out of range, or 2-D and 3-D boxes are mixed.
+        confidence is out of range, a front has no direction, or 2-D and 3-D boxes are mixed.
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -325,7 +334,8 @@ class Scene(Answer):
         labelled = sum(thing.label is not None for thing in self.objects)
         axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
         labels = f", {labelled} labelled" if labelled else ""
-        return f"{self.file}: {count(len(self.objects), 'object')}{labels}{axes}, seen from the {self.viewpoint}"
+        side = "from an unknown side" if self.viewpoint == UNKNOWN_VIEWPOINT else f"from the {self.viewpoint}"
+        return f"{self.file}: {count(len(self.objects), 'object')}{labels}{axes}, seen {side}"
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -345,6 +355,22 @@ class Scene(Answer):
         unknown = (np.nan, np.nan, np.nan)
         seen = [unknown if thing.colour is None else thing.colour for thing in self.objects]
         return np.array(seen, dtype=np.float64).reshape(-1, 3)
+
+    @cached_property
+    def fronts(self) -> NDArray[np.float64]:
+        """Unit vectors in the plane in which the fronts of the objects point, shape (n, 2); NaN where unknown."""
+        given = [(np.nan, np.nan) if thing.front is None else thing.front for thing in self.objects]
+        directions = np.array(given, dtype=np.float64).reshape(-1, 2)
+        return directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
+
+    @cached_property
+    def room(self) -> Room:
+        """The geometry that descriptions of one object are compared with (:func:`deixis.refer`)."""
+        from deixis.reasoning.grounding.reference.room import Room
+
+        labels = [thing.label for thing in self.objects]
+        viewer = self.viewpoint != UNKNOWN_VIEWPOINT
+        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer)
 
     def __getitem__(self, name: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == name)
@@ -512,3 +538,9 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         raise SceneError(f"{where}: 'candidates' must name each category once")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour must be red, green and blue, each from 0 to 255, got {thing.colour}")
+    if thing.front is not None:
+        known = len(thing.front) == 2 and bool(np.isfinite(thing.front).all())
+        if not known or not 0 < max(map(abs, thing.front)) <= MAX_COORDINATE:
+            raise SceneError(
+                f"{where}: 'front' must be a direction of 2 finite numbers that are not both 0, got {thing.front}"
+            )

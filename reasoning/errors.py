@@ -67,3 +67,7 @@ class NotEntailedError(DeixisError, ValueError):
 
 class NetworkError(DeixisError, ValueError):
     """A network of inconsistent parts, or a question about a pair that is not in the network."""
+
+
+class DescriptionError(DeixisError, ValueError):
+    """A description of one object that cannot be read, or a wrong option of its reading."""

@@ -45,7 +45,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows"}
-_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented", "candidates"}
+_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented", "candidates", "front"}
 _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
@@ -133,7 +133,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
     entry = _mapping(data, where, _OBJECT_KEYS)
     _require_keys(entry, ("id", "min", "max"), where)
     label, confidence, cloud = entry.get("label"), entry.get("confidence", 1.0), entry.get("cloud")
-    colour, oriented = entry.get("colour"), entry.get("oriented")
+    colour, oriented, front = entry.get("colour"), entry.get("oriented"), entry.get("front")
     return PerceivedObject(
         id=_id(entry["id"], f"{where}: 'id'"),
         minimum=_numbers(entry["min"], f"{where}: 'min'", scale, (2, 3)),
@@ -144,6 +144,7 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         colour=None if colour is None else _colour(colour, f"{where}: 'colour'"),
         oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
         candidates=_candidates(entry.get("candidates"), f"{where}: 'candidates'"),
+        front=None if front is None else _direction(front, f"{where}: 'front'"),
     )
 
 
@@ -168,6 +169,11 @@ def _oriented(data: Any, where: str, scale: float) -> OrientedBox:
     x, y, z = _numbers(entry["centre"], f"{where}: 'centre'", scale, (3,))
     length, width, height = _numbers(entry["extents"], f"{where}: 'extents'", scale, (3,))
     return OrientedBox((x, y, z), number(entry["yaw"], f"{where}: 'yaw'"), (length, width, height))
+
+
+def _direction(data: Any, where: str) -> tuple[float, float]:
+    x, y = _numbers(data, where, 1.0, (2,))
+    return x, y
 
 
 def _colour(data: Any, where: str) -> Rgb:
@@ -231,6 +237,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         if thing.oriented is not None:
             box = thing.oriented
             entry["oriented"] = {"centre": list(box.centre), "yaw": box.yaw, "extents": list(box.extents)}
+        if thing.front is not None:
+            entry["front"] = list(thing.front)
         objects.append(entry)
     return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
 

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
     from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
     from deixis.workflows.ask import ask
     from deixis.workflows.check import Check, check
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from deixis.workflows.lint import Lint, lint
     from deixis.workflows.perceive import perceive, write_scene
     from deixis.workflows.read import read_script
+    from deixis.workflows.refer import refer
     from deixis.workflows.retrieve import Retrieval, retrieve
     from deixis.workflows.simulate import simulate
 
@@ -62,6 +64,7 @@ __all__ = [
     "PointCloud",
     "QueryResult",
     "Recognised",
+    "Reference",
     "Relation",
     "Retrieval",
     "Scene",
@@ -77,6 +80,7 @@ __all__ = [
     "perceive",
     "read_scene",
     "read_script",
+    "refer",
     "retrieve",
     "simulate",
     "write_scene",
@@ -97,6 +101,7 @@ _HOMES = {
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "Recognised": "deixis.learning.views",
+    "Reference": "deixis.reasoning.grounding.reference.answer",
     "Relation": "deixis.ontology.relation",
     "Retrieval": "deixis.workflows.retrieve",
     "Scene": "deixis.perception.scene",
@@ -112,6 +117,7 @@ _HOMES = {
     "perceive": "deixis.workflows.perceive",
     "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.workflows.read",
+    "refer": "deixis.workflows.refer",
     "retrieve": "deixis.workflows.retrieve",
     "simulate": "deixis.workflows.simulate",
     "write_scene": "deixis.workflows.perceive",

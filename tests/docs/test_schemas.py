@@ -64,6 +64,11 @@ def test_groundings_have_their_schema(scene: deixis.Scene, options: dict[str, An
     assert errors("grounding", deixis.ground(EXAMPLES / "script1.layout", scene, **options)) == []
 
 
+@pytest.mark.parametrize(("text", "oracle"), [("the lamp on the desk", None), ("the chair", None), ("the bin", "o14")])
+def test_references_have_their_schema(text: str, oracle: str | None) -> None:
+    assert errors("reference", deixis.refer(text, EXAMPLES / "study.scene.json", oracle=oracle)) == []
+
+
 def test_checks_and_retrievals_have_their_schema(scene: deixis.Scene) -> None:
     for table in ("second_table", "place_setting"):
         assert errors("check", deixis.check(EXAMPLES / "formal_dinner.layout", EXAMPLES / f"{table}.scene.json")) == []

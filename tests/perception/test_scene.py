@@ -106,3 +106,19 @@ def test_relations_of_equal_boxes_do_not_depend_on_their_order() -> None:
     things = [PerceivedObject(id, (0.0, 0.0), (1.0, 1.0)) for id in ("b", "a")]
     facts = [{str(fact) for fact in Scene(tuple(order)).graph(relations).facts()} for order in (things, things[::-1])]
     assert facts[0] == facts[1] == {"exactly_on(b, a)", "exactly_under(a, b)"}
+
+
+def test_fronts_are_unit_vectors_and_nan_where_unknown() -> None:
+    chair = PerceivedObject("chair", (0.0, 0.0), (0.5, 0.5), front=(0.0, -2.0))
+    np.testing.assert_array_equal(Scene((chair, PLATE)).fronts, [[0, -1], [np.nan, np.nan]])
+
+
+@pytest.mark.parametrize("front", [(0.0, 0.0), (math.inf, 1.0), (1.0,)])
+def test_a_front_without_a_direction_is_refused(front: tuple[float, ...]) -> None:
+    chair = PerceivedObject("chair", (0.0, 0.0), (0.5, 0.5), front=front)  # type: ignore[arg-type]
+    with pytest.raises(SceneError, match="object 'chair': 'front' must be a direction of 2 finite numbers"):
+        Scene((chair,))
+
+
+def test_the_summary_says_that_the_side_is_unknown() -> None:
+    assert Scene((FORK,), viewpoint="unknown").summary().endswith("seen from an unknown side")

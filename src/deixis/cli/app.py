@@ -40,7 +40,7 @@ COMMAND_GROUPS = {
         "relate": "relate",
         "simulate": "simulate",
     },
-    "Grounding and checking": {"ground": "ground", "check": "check", "retrieve": "retrieve"},
+    "Grounding and checking": {"ground": "ground", "refer": "refer", "check": "check", "retrieve": "retrieve"},
     "Memory and queries": {
         "learn": "learn",
         "show": "show",

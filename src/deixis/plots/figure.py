@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.errors import DeixisError
 from deixis.extras import require
-from deixis.perception.scene import Scene
+from deixis.perception.scene import UNKNOWN_VIEWPOINT, Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,6 +79,8 @@ def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
     across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
     if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):
         across, along = "to the right", "up"  # the image need not be a plan
+    elif scene.viewpoint == UNKNOWN_VIEWPOINT:
+        across, along = "along x", "along y"
     unit = "pixels" if scene.unit == "px" else "metres"
     axes.set_xlabel(f"{unit}, {across}", color=INK, fontsize=8.5)
     axes.set_ylabel(f"{unit}, {along}", color=INK, fontsize=8.5)

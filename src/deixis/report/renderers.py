@@ -52,6 +52,9 @@ RENDERERS = {
         "report.rows:grounding_rows",
         "plots.grounding:answer_figure",
     ),
+    "Reference": Renderer(
+        "report.refer:reference_to_dict", "report.refer:reference_lines", "report.refer:reference_rows"
+    ),
     "Check": Renderer(
         "report.json_answers:check_to_dict",
         "report.script:check_lines",

@@ -144,7 +144,16 @@ def as_weighed(found: Viewpoints, sides: Sequence[tuple[Side, float]]) -> Viewpo
 
 def scene_from(scene: Scene, view: Viewpoint) -> Scene:
     """Return the scene as seen from a viewpoint."""
-    return _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
+    seen = _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
+    if all(thing.front is None for thing in scene.objects):
+        return seen
+    cosine, sine = np.cos(view.angle), np.sin(view.angle)
+    fronts = scene.fronts * (-1.0 if view.mirrored else 1.0, 1.0) @ np.array([[cosine, sine], [-sine, cosine]])
+    things = [
+        thing if thing.front is None else replace(thing, front=(float(front[0]), float(front[1])))
+        for thing, front in zip(seen.objects, fronts, strict=True)
+    ]
+    return replace(seen, objects=tuple(things))
 
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:

@@ -31,6 +31,8 @@ oriented_boxes = st.builds(
     st.tuples(*[st.floats(0, 1e6)] * 3),
 )
 
+directions = st.tuples(coordinates, coordinates).filter(any)
+
 
 @st.composite
 def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
@@ -46,6 +48,7 @@ def objects(draw: st.DrawFn, id: str, axes: int) -> PerceivedObject:
         colour=draw(st.none() | st.tuples(*[st.integers(0, 255)] * 3)),
         oriented=draw(st.none() | oriented_boxes) if axes == 3 else None,
         candidates=tuple(draw(st.dictionaries(texts, st.floats(0, 0.3), max_size=3)).items()),
+        front=draw(st.none() | directions),
     )
 
 
@@ -180,7 +183,7 @@ def test_a_2d_box_cannot_have_an_oriented_one() -> None:
         read_scene(one(oriented=oriented))
 
 
-KEYS = "candidates, cloud, colour, confidence, id, label, max, min, oriented"
+KEYS = "candidates, cloud, colour, confidence, front, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
     ([], "expected an object {…}, got a list"),

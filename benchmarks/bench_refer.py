@@ -1,0 +1,91 @@
+"""Measure which object a description refers to: Nr3D and Sr3D in ``$DEIXIS_DATA/refer3d``, as the field reports it.
+
+Prints the share of targets that are right (Nr3D: valid sentences, easy and hard, view-dependent and independent), the
+most probable third of the answers, the calibration error in ten bins, the milliseconds for each sentence, and the
+share and the number of yes-or-no questions until the answer is decided; then the same with class names hidden.
+The weights were fitted to the training sentences that the folder holds, so that figures for these are not held out:
+``fit_reference.py`` prints those for held-out rooms.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+from common import data_folder
+from refer3d import Described, nr3d, read_scenes, sr3d
+
+from deixis.reasoning.errors import DescriptionError
+from deixis.reasoning.grounding.reference.answer import DECIDED
+from deixis.reasoning.grounding.reference.model import Model
+from deixis.reasoning.grounding.reference.questions import answered, best_question
+from deixis.workflows.refer import MAX_QUESTIONS, read_description, refer, shipped_model
+
+BINS = 10
+
+
+def main() -> None:
+    folder = data_folder("refer3d")
+    if folder is None:
+        return
+    scenes = read_scenes(folder)
+    sets = {"Nr3D": list(nr3d(folder, scenes)), "Sr3D": list(sr3d(folder, scenes))}
+    hidden = {name: scene.without_labels() for name, scene in scenes.items()}
+    bare = {id(scene): hidden[name] for name, scene in scenes.items()}
+    for name, those in sets.items():
+        if not those:
+            continue
+        told = [(one, shipped_model()) for one in those]
+        print(f"{name}: {figures(told)}")
+        blind = [(replace(one, scene=bare[id(one.scene)]), shipped_model()) for one in those]
+        chance = np.mean([1 / len(one.scene.objects) for one in those])
+        print(f"{name}, class names hidden (chance {chance:.3f}): {figures(blind)}")
+    timed = sets["Nr3D"] or sets["Sr3D"]
+    started = time.process_time()
+    for one in timed:
+        _quiet(one)
+    print(f"{1000 * (time.process_time() - started) / max(len(timed), 1):.1f} ms a sentence, scene read before")
+
+
+def figures(told: Sequence[tuple[Described, Model]]) -> str:
+    """Return the figures of sentences, each answered by its model, as one line."""
+    right, certain, asked, settled = np.zeros((4, len(told)))
+    for place, (one, model) in enumerate(told):
+        room = one.scene.room
+        try:
+            probabilities = model.probabilities(read_description(one.text), room)
+        except DescriptionError:
+            probabilities = np.full(len(room), 1 / len(room))
+        certain[place] = probabilities.max()
+        right[place] = room.ids[int(probabilities.argmax())] == one.target
+        while probabilities.max() < DECIDED and asked[place] < MAX_QUESTIONS:
+            question = best_question(probabilities, room, room.labels[0] is not None)
+            if question is None:
+                break
+            probabilities = answered(probabilities, room, question, one.target in question.yes)
+            asked[place] += 1
+        settled[place] = room.ids[int(probabilities.argmax())] == one.target
+    hard = np.array([one.hard for one, _ in told])
+    viewed = np.array([one.view_dependent for one, _ in told])
+    shares = {"easy": ~hard, "hard": hard, "view-dependent": viewed, "view-independent": ~viewed}
+    parts = [f"{name} {right[mask].mean():.3f}" for name, mask in shares.items() if mask.any()]
+    third = np.argsort(-certain, kind="stable")[: max(len(told) // 3, 1)]
+    bins = np.minimum((certain * BINS).astype(int), BINS - 1)
+    error = sum(abs((certain - right)[bins == k].sum()) for k in range(BINS)) / len(told)
+    return (
+        f"{len(told)} sentences, right {right.mean():.3f} ({', '.join(parts)}); most probable third"
+        f" {right[third].mean():.3f}, calibration error {error:.3f}; with {asked.mean():.2f} questions a"
+        f" sentence {settled.mean():.3f}"
+    )
+
+
+def _quiet(one: Described) -> None:
+    with suppress(DescriptionError):
+        refer(one.text, one.scene)
+
+
+if __name__ == "__main__":
+    main()

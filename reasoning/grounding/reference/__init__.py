@@ -1,0 +1,1 @@
+"""Find which object of a scene a description refers to, with a probability for each object."""

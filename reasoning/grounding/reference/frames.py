@@ -1,0 +1,39 @@
+"""Tell in which frame of reference the directions of a description were taken."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from deixis.reasoning.grounding.reference.answer import Frame
+from deixis.reasoning.grounding.reference.model import Model
+from deixis.reasoning.grounding.reference.properties import SIDES
+from deixis.reasoning.grounding.reference.query import Query
+from deixis.reasoning.grounding.reference.relations import RELATIONS
+from deixis.reasoning.grounding.reference.room import Room
+
+PLACES = frozenset({"corner", "wall", "edge", "middle", "centre", "center"})
+
+
+def frame_of(query: Query, room: Room, model: Model) -> Frame | None:
+    """Return the frame of the first direction of a query, None if it has none.
+
+    *Left* and *right* are the viewer's. *In front of* and *behind* are those of the landmark if the most probable one
+    has a front, and the viewer's otherwise. Places (*in the corner*) are those of the table or the room.
+    """
+    if query.viewer is not None:
+        return Frame.OBJECT if query.viewer.stance == "own" else Frame.VIEWER
+    for part in query.target.parts():
+        for relation in part.relations:
+            family = RELATIONS.get(relation.name, ("", 0.0))[0]
+            if family == "sideways":
+                return Frame.VIEWER
+            if family == "ahead":
+                fit = model.lexis.similarity(relation.arguments[0].noun, room)
+                likely = int(np.argmax(fit)) if len(fit) else 0
+                fronted = fit[likely] > 0 and not np.isnan(room.fronts[likely]).any()
+                return Frame.OBJECT if fronted else Frame.VIEWER
+        if any(one.word in SIDES for one in part.properties):
+            return Frame.VIEWER
+        if any(one.word in PLACES for one in part.properties):
+            return Frame.TABLE
+    return None

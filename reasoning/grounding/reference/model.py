@@ -1,0 +1,263 @@
+"""Score the objects of a room against a query, and return the probability of each.
+
+A description is scored in logarithms: the noun against the label, properties and relations by weighted features. The
+landmark of a relation is summed over its own posterior, the viewer over all directions. All of it is one log-linear
+model with latent landmarks and viewers, whose weights are fitted by maximum likelihood
+(:mod:`deixis.reasoning.grounding.reference.fitting`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.colours import Colours
+from deixis.reasoning.grounding.reference.likelihood import (
+    Score,
+    constant,
+    log_complement,
+    log_shares,
+    log_sum,
+    weighted,
+)
+from deixis.reasoning.grounding.reference.properties import property_features
+from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
+from deixis.reasoning.grounding.reference.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
+from deixis.reasoning.grounding.reference.room import Room
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+NounFit = Callable[[str, Room], Array]
+"""Function from a noun and a room to features of each object, shape (n, f)."""
+
+IMPOSSIBLE = -30.0
+"""Log score of a landmark that is the candidate itself."""
+
+MAX_UNKNOWN_LANDMARKS = 40
+"""Maximum number of objects that a landmark may be in a scene without labels for it."""
+
+MISNAMED = 0.005
+"""Share of descriptions whose noun names none of the objects that it may name, so that any object is meant."""
+
+MAX_LANDMARKS = 12
+"""Maximum number of objects that a landmark may be; the rest fit its noun less well."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lexis:
+    """Word knowledge of the model: the fit of nouns to labels, and colour terms."""
+
+    noun_fit: NounFit
+    similarity: Callable[[str, Room], Array]
+    colours: Colours
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """The log-linear model: weights by name, and the words that it knows."""
+
+    weights: Mapping[str, Array]
+    lexis: Lexis
+    kept: dict[tuple[int, str], Array] | None = None
+
+    def candidates(self, query: Query, room: Room) -> Indices:
+        """Return the objects that the query may mean: those that its noun may name, or all if it names none."""
+        fit = self.lexis.similarity(query.target.noun, room)
+        known = np.flatnonzero(fit > 0)
+        return known if len(known) else np.arange(len(room))
+
+    def scores(self, query: Query, room: Room) -> Score:
+        """Return the log probability of each candidate, shape (x,)."""
+        found = self._description(query.target, room, self.candidates(query, room), target=True)
+        views = self._viewer(query, room)
+        return log_shares(log_sum(views[:, None] + found, 0), 0)
+
+    def probabilities(self, query: Query, room: Room) -> Array:
+        """Return the calibrated probability of each object, shape (n,).
+
+        The weights ``calibration`` are the logarithm of the power of the probabilities, its change by the share of the
+        description that was not used, and the log odds that the description tells nothing.
+        """
+        among = self.candidates(query, room)
+        power, unread, vain = self.weights.get("calibration", np.array([0.0, 0.0, -30.0]))
+        logs = self.scores(query, room).value * np.exp(power + unread * self.unused(query, room))
+        shares = np.exp(logs - np.logaddexp.reduce(logs))
+        noise = 1 / (1 + np.exp(-vain))
+        found = np.full(len(room), MISNAMED / len(room))
+        found[among] += (1 - MISNAMED) * ((1 - noise) * shares + noise / len(among))
+        return found
+
+    def unused(self, query: Query, room: Room) -> float:
+        """Return the share of a description that is not used: words not understood, landmarks not in the room."""
+        relations = query.target.relations
+        unseen = sum(any(self._unseen(one, room) for one in relation.arguments) for relation in relations)
+        return 1 - query.understood + unseen / (1 + len(relations))
+
+    def _keep(self, said: object, what: str, features: Callable[[], Array]) -> Array:
+        """Return features, computed once for each part of a query while weights are fitted."""
+        if self.kept is None:
+            return features()
+        key = (id(said), what)
+        if key not in self.kept:
+            self.kept[key] = features()
+        return self.kept[key]
+
+    def _description(self, said: Description, room: Room, among: Indices, target: bool = False) -> Score:
+        """Return log scores of the objects ``among`` for a description, shape (v or 1, x)."""
+        rivals = rival_groups(room, among)
+        found = weighted(self.lexis.noun_fit(said.noun, room)[among], "noun", self.weights)[None]
+        if target:
+            sizes = np.zeros((len(among), 2))
+            for group in rivals:
+                sizes[group] = (len(group) > 1, np.log(len(group)))
+            found = found + weighted(np.column_stack([sizes, room.surrounds[among]]), "target", self.weights)[None]
+        for prop in said.properties:
+            if (score := self._property(prop, room, among, rivals)) is not None:
+                found = found + score
+        for relation in said.relations:
+            if (score := self._relation(relation, room, among, rivals)) is not None:
+                found = found + score
+        return found
+
+    def _property(self, said: Property, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
+        known = property_features(said, room, among, rivals, self.lexis.colours)
+        if known is None:
+            return None
+        name, features = known
+        score = weighted(stacked(features), name, self.weights)
+        return score if said.positive else _denied(score)
+
+    def _relation(self, said: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
+        if not said.arguments or any(self._unseen(argument, room) for argument in said.arguments):
+            return None
+        family, sign = RELATIONS.get(said.name, ANY_RELATION)
+        if family == "between":
+            score = self._between(said, room, among, rivals)
+        else:
+            score = self._binary(said, family, sign, room, among, rivals)
+        return score if said.positive else _denied(score)
+
+    def _binary(
+        self, said: Relation, family: str, sign: float, room: Room, among: Indices, rivals: tuple[Indices, ...]
+    ) -> Score:
+        argument = said.arguments[0]
+        landmarks = self._landmarks(argument, room)
+        own = log_shares(self._description(argument, room, landmarks), 1)
+
+        def compared() -> Array:
+            if said.inverted:
+                pairs = Pairs(room, landmarks, among, rival_groups(room, landmarks))
+                return np.swapaxes(stacked(FAMILIES[family](pairs, sign)), 1, 2)
+            return stacked(FAMILIES[family](Pairs(room, among, landmarks, rivals), sign))
+
+        features = self._keep(said, "pairs", compared)
+        name = said.name if said.degree == "plain" else f"{said.name} {said.degree}"
+        block = f"{family} inverted" if said.inverted else family
+        score = weighted(features, f"{block}/{name}", self.weights)
+        same = IMPOSSIBLE * (among[:, None] == landmarks[None]).astype(np.float64)[None]
+        score = score + constant(same) + own[:, None, :]
+        if family in VIEWED:
+            score = score + self._seen(room, landmarks)
+        return log_sum(score, 2)
+
+    def _between(self, said: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score:
+        first, second = said.arguments[0], said.arguments[-1]
+        ones, others = (self._landmarks(one, room)[:MAX_LANDMARKS] for one in (first, second))
+        landmarks = np.union1d(ones, others)
+        one = log_shares(self._description(first, room, landmarks), 1)
+        other = log_shares(self._description(second, room, landmarks), 1)
+        pairs = Pairs(room, among, landmarks, rivals)
+        features = self._keep(said, "pairs", lambda: stacked(FAMILIES["between"](pairs, 1.0)))
+        score = weighted(features, "between/between", self.weights)
+        n = len(landmarks)
+        ends = np.stack([np.repeat(landmarks, n), np.tile(landmarks, n)])
+        bad = (among[:, None] == ends[0]) | (among[:, None] == ends[1]) | (ends[0] == ends[1])[None]
+        both = _outer(one, other)
+        return log_sum(score + constant(IMPOSSIBLE * bad[None].astype(np.float64)) + both[:, None, :], 2)
+
+    def _unseen(self, said: Description, room: Room) -> bool:
+        """Return whether a landmark has a noun that names none of the labelled objects."""
+        if not said.noun or all(label is None for label in room.labels):
+            return False
+        return not (self.lexis.similarity(said.noun, room) > 0).any()
+
+    def _landmarks(self, said: Description, room: Room) -> Indices:
+        """Return the objects that a landmark may be: those that fit its noun best."""
+        fit = self.lexis.similarity(said.noun, room)
+        if fit.max(initial=0.0) <= 0:  # no labels: the objects of about the right size
+            fit = self.lexis.noun_fit(said.noun, room)[:, -1]
+            most = MAX_UNKNOWN_LANDMARKS
+        else:
+            most = min(int((fit > 0).sum()), MAX_LANDMARKS)
+        result: Indices = np.sort(np.argsort(-fit, kind="stable")[:most])
+        return result
+
+    def _seen(self, room: Room, landmarks: Indices) -> Score:
+        """Return log probabilities of the views for a speaker who looks at each landmark, shape (v, 1, a)."""
+        if room.viewer:
+            return constant(np.zeros((1, 1, 1)))
+        return log_shares(weighted(room.facing[:, landmarks], "seen", self.weights), 0)[:, None]
+
+    def _viewer(self, query: Query, room: Room) -> Score:
+        """Return log probabilities of the views, shape (v,)."""
+        if query.viewer is not None:
+            return self._stated(query.viewer, room)
+        if room.viewer:
+            away = room.views[:, 1] > 1 - 1e-9
+            return constant(np.log(np.where(away, 0.95, 0.05 / max(len(away) - 1, 1))))
+        if any(RELATIONS.get(relation.name, ("", 0))[0] in VIEWED for relation in query.target.relations):
+            return constant(np.zeros(len(room.views)))
+        fit = self.lexis.similarity(query.target.noun, room)
+        shares = np.where(fit >= max(fit.max(), 1e-9), 1.0, 0.0) if fit.max() > 0 else np.ones(len(room))
+        features = np.einsum("vnf,n->vf", room.facing, shares / shares.sum())
+        return log_shares(weighted(features, "viewer", self.weights), 0)
+
+    def _stated(self, viewer: Viewer, room: Room) -> Score:
+        landmarks = self._landmarks(viewer.landmark, room)
+        own = log_shares(self._description(viewer.landmark, room, landmarks), 1)
+        own = log_sum(own + constant(np.array(-np.log(len(own.value)))), 0)
+        if viewer.stance == "towards" and viewer.target is not None:
+            from_to = self._towards(viewer.target, room, landmarks)
+            views = log_shares(from_to, 0)
+        else:
+            views = log_shares(weighted(room.facing[:, landmarks], f"viewer/{viewer.stance}", self.weights), 0)
+        return log_sum(views + own[None], 1)
+
+    def _towards(self, target: Description, room: Room, landmarks: Indices) -> Score:
+        goals = self._landmarks(target, room)
+        share = np.exp(log_shares(self._description(target, room, goals), 1).value.mean(axis=0))
+        goal = share @ room.centres[goals, :2] / share.sum()
+        apart = goal - room.centres[landmarks, :2]
+        apart /= np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
+        return weighted((room.views @ apart.T)[:, :, None], "towards", self.weights)
+
+
+def rival_groups(room: Room, among: Indices) -> tuple[Indices, ...]:
+    """Return the positions of objects with the same label; objects without labels compete with all of these."""
+    groups: dict[str | None, list[int]] = {}
+    for position, index in enumerate(among):
+        groups.setdefault(room.labels[index], []).append(position)
+    return tuple(np.array(group) for group in groups.values())
+
+
+def stacked(features: Mapping[str, Array]) -> Array:
+    """Return features along a last axis, broadcast to one shape."""
+    return np.stack(np.broadcast_arrays(*features.values()), axis=-1)
+
+
+def _denied(score: Score) -> Score:
+    """Return the log probability that something is not the object that the words single out."""
+    return log_complement(log_shares(score, score.value.ndim - 1), 0.95)
+
+
+def _outer(first: Score, second: Score) -> Score:
+    """Return sums of all pairs of scores of shape (v, a), as shape (v, a²)."""
+    total = first[:, :, None] + second[:, None, :]
+    shape = total.value.shape
+    return Score(
+        total.value.reshape(shape[0], -1),
+        ((total, lambda given: given.reshape(shape)),),
+    )

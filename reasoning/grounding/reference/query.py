@@ -1,0 +1,87 @@
+"""Descriptions of one object as data: a noun, properties, and relations to other described objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True, slots=True)
+class Property:
+    """A property of the described object: ``red``, ``tallest``, ``second`` from the left, ``corner`` of the room.
+
+    ``dimension`` is the kind of the property (``colour``, ``size``, ``height``, ``length``, ``width``, ``position``,
+    ``rank``) and ``word`` its value (``red``, ``tall``, ``left``). ``rank`` is the place in an order, counted from 1
+    (-1 for the last). ``degree`` is ``plain``, ``comparative`` or ``superlative``.
+    """
+
+    dimension: str
+    word: str
+    degree: str = "plain"
+    rank: int | None = None
+    positive: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A relation of the described object to the objects that its arguments describe.
+
+    ``degree`` is ``superlative`` for *closest to*, ``comparative`` for *closer to*. ``inverted`` is True where the
+    described object is the landmark: *the desk with the lamp on it* is inverted *on*.
+    """
+
+    name: str
+    arguments: tuple[Description, ...]
+    degree: str = "plain"
+    positive: bool = True
+    inverted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A noun phrase: what it says of the object that it stands for; ``noun`` is empty where no noun is given.
+
+    ``count`` is the number of objects in a group (*between two chairs*); None for one object.
+    """
+
+    noun: str
+    properties: tuple[Property, ...] = ()
+    relations: tuple[Relation, ...] = ()
+    count: int | None = None
+    negated: bool = False
+
+    def parts(self) -> Iterator[Description]:
+        """Yield this description and those of all objects that it mentions."""
+        yield self
+        for relation in self.relations:
+            for argument in relation.arguments:
+                yield from argument.parts()
+
+    def without_relations(self) -> Description:
+        """Return the noun and its properties alone."""
+        return replace(self, relations=())
+
+
+@dataclass(frozen=True, slots=True)
+class Viewer:
+    """The viewer of a description: *facing the window*, *from the door*, *as you enter through the door*.
+
+    ``stance`` is ``facing`` (the viewer looks at ``landmark``), ``from`` (the viewer looks from it into the room) or
+    ``towards`` (the viewer looks from ``landmark`` at ``target``).
+    """
+
+    stance: str
+    landmark: Description
+    target: Description | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Query:
+    """A description of the object that is meant, and of the viewer if one is mentioned.
+
+    ``understood`` is the share of the words that the query expresses.
+    """
+
+    target: Description
+    viewer: Viewer | None = None
+    understood: float = 1.0

@@ -1,0 +1,146 @@
+"""Choose yes-or-no questions about the object that is meant, by the information that they give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.reasoning.grounding.reference.answer import Question
+from deixis.reasoning.grounding.reference.room import Room
+from deixis.reasoning.grounding.reference.wording import named
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+WRONG_ANSWERS = 0.005
+"""Share of answers that are wrong, for which a later answer can make up."""
+
+MIN_PROBABILITY = 2e-3
+"""Probability below which an object does not decide how clear a question is."""
+
+MAX_LANDMARKS = 14
+"""Maximum number of landmarks that questions compare."""
+
+CLEAR = 1.15
+"""Least ratio of two lengths that an answer tells apart."""
+
+
+def best_question(probabilities: Array, room: Room, labelled: bool = True) -> Question | None:
+    """Return the question with the greatest information gain; None if no question tells two objects apart.
+
+    Parameters
+    ----------
+    probabilities
+        Probability of each object, shape (n,).
+    room
+        The scene.
+    labelled
+        Whether questions may use the labels of the scene.
+
+    Notes
+    -----
+    The gain of a question with a share q of the probability on *yes* is the entropy of q.
+    Only questions whose answer is clear for all likely objects are asked: two compared lengths differ by a factor of
+    ``CLEAR``.
+    """
+    likely = np.flatnonzero(probabilities >= MIN_PROBABILITY)
+    shares = probabilities[likely] / probabilities[likely].sum()
+    best, chosen = 1e-6, None
+    for text, yes, cost in _questions(room, likely, labelled):
+        share = float(shares[yes].sum())
+        if yes.all() or not yes.any():
+            continue
+        gain = -share * np.log(share) - (1 - share) * np.log(1 - share) - cost
+        if gain > best:
+            best, chosen = gain, Question(text, tuple(room.ids[index] for index in likely[yes]))
+    return chosen
+
+
+def answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:
+    """Return the probabilities after an answer, which is wrong in a share of WRONG_ANSWERS."""
+    among = np.isin(np.array(room.ids), question.yes)
+    after = probabilities * np.where(among == yes, 1 - WRONG_ANSWERS, WRONG_ANSWERS)
+    result: Array = after / after.sum()
+    return result
+
+
+def _questions(room: Room, likely: NDArray[np.intp], labelled: bool) -> Iterator[tuple[str, Mask, float]]:
+    """Yield questions with the likely objects of the answer yes, and a cost in nats for long questions."""
+    labels = [room.labels[index] for index in likely]
+    if labelled:
+        for label in dict.fromkeys(label for label in labels if label is not None):
+            yield f"Is it {named(label)}?", np.array([one == label for one in labels]), 0.0
+    floor, top = room.boxes[likely, 0, 2] - room.bounds[0, 2], room.boxes[likely, 1, 2] - room.bounds[0, 2]
+    measures = (
+        ("Is it longer or wider than {}?", room.extents[likely, :2].max(axis=1)),
+        ("Is it taller than {}?", room.extents[likely, 2]),
+        ("Is its lower end higher than {} above the floor?", floor),
+        ("Is its upper end higher than {} above the floor?", top),
+        ("Is it farther than {} from the middle of the room?", _from(room, likely, room.middle)),
+    )
+    for wording, values in measures:
+        for limit in _limits(values):
+            yield wording.format(_metres(limit)), values > limit, 0.05
+    if not labelled:
+        big = int(np.argmax(np.where(room.surrounds, 0.0, np.prod(room.extents[:, :2], axis=1))))
+        values = _from(room, likely, room.centres[big, :2])
+        for limit in _limits(values):
+            yield f"Is it farther than {_metres(limit)} from the largest object?", values > limit, 0.05
+        return
+    marks = _landmarks(room, likely)
+    apart = {
+        f"the {label}" if len(ones) == 1 else f"any {label}": room.gaps[np.ix_(likely, np.array(ones))].min(axis=1)
+        * room.scale
+        + 0.1
+        for label, ones in marks.items()
+    }
+    for label, values in apart.items():
+        ranked = np.sort(values)
+        if len(ranked) > 1 and ranked[1] >= CLEAR * ranked[0]:
+            yield f"Is it the one closest to {label}?", values == ranked[0], 0.0
+        if len(ranked) > 1 and ranked[-1] >= CLEAR * ranked[-2]:
+            yield f"Is it the one farthest from {label}?", values == ranked[-1], 0.0
+        for limit in _limits(values):
+            yield f"Is it within {_metres(limit)} of {label}?", values < limit, 0.05
+    names = list(apart)
+    for place, first in enumerate(names):
+        for second in names[place + 1 :]:
+            ratio = apart[first] / apart[second]
+            if (np.maximum(ratio, 1 / ratio) >= CLEAR).all():
+                yield f"Is it closer to {first} than to {second}?", ratio < 1, 0.02
+
+
+def _landmarks(room: Room, likely: NDArray[np.intp]) -> dict[str, list[int]]:
+    """Return the objects of each label that none of the likely objects has; those of the largest objects."""
+    found: dict[str, list[int]] = {}
+    for index, label in enumerate(room.labels):
+        if label is not None and not room.surrounds[index]:
+            found.setdefault(label, []).append(index)
+    known = {room.labels[index] for index in likely}
+    volume = np.prod(room.extents + 0.1, axis=1)
+    others = [label for label in found if label not in known]
+    others.sort(key=lambda label: (len(found[label]) > 1, -float(volume[found[label]].max())))
+    return {label: found[label] for label in others[:MAX_LANDMARKS]}
+
+
+def _from(room: Room, likely: NDArray[np.intp], place: Array) -> Array:
+    result: Array = np.linalg.norm(room.centres[likely, :2] - place, axis=1)
+    return result
+
+
+def _limits(values: Array) -> Iterator[float]:
+    """Yield limits between values that are clearly apart."""
+    ranked = np.sort(values)
+    for low, high in pairwise(ranked):
+        if high > CLEAR * low and high - low > 0.05:
+            middle = (max(low, 1e-3) * high) ** 0.5
+            digits = 1 if middle >= 1 else 2
+            rounded = round(float(middle), digits)
+            yield rounded if low < rounded < high else float(middle)
+
+
+def _metres(length: float) -> str:
+    return f"{length:.2g} m" if length >= 1 else f"{100 * length:.0f} cm"

@@ -1,0 +1,102 @@
+"""The command ``deixis refer``: find which object of a scene a description refers to."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import NO, UNDECIDED, AsJson, HideLabels, Image, print_json, print_line, print_lines
+from deixis.cli.output import StandardInput
+from deixis.printable import visible_line
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding.reference.answer import Question
+    from deixis.workflows.refer import Answerer
+
+
+def refer(
+    text: Annotated[
+        str | None, typer.Argument(metavar="[TEXT]", help="English sentences that describe one object.")
+    ] = None,
+    scene: Annotated[str | None, typer.Argument(metavar="[SCENE]", help="A scene (.scene.json).")] = None,
+    batch: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help='Answer lines {"text", "scene"} (- for standard input), a line of JSON each.'
+        ),
+    ] = None,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask yes-or-no questions until the object is decided.")] = False,
+    oracle: Annotated[
+        str | None, typer.Option(metavar="ID", help="Have the object with this id answer the questions.")
+    ] = None,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    as_json: AsJson = False,
+) -> None:
+    """Find which object of a scene a description in English refers to.
+
+    Exit 0 if the object is decided (probability at least 0.95), 3 if not, 1 if the scene has no object.
+    """
+    if batch is not None:
+        if text is not None or ask or oracle is not None or hide_labels or image is not None:
+            raise typer.BadParameter("--batch takes no other argument; a line may have its 'oracle'")
+        _answer_lines(batch)
+        return
+    if text is None or scene is None:
+        raise typer.BadParameter("give a TEXT and a SCENE, or --batch FILE")
+    from deixis.report.refer import reference_lines, reference_to_dict
+    from deixis.workflows.read import load_scene
+    from deixis.workflows.refer import refer as find
+
+    out = sys.stderr if as_json else sys.stdout
+    found = find(text, load_scene(scene, hide_labels, image), ask=_terminal(out) if ask else None, oracle=oracle)
+    if as_json:
+        print_json(reference_to_dict(found))
+    else:
+        if oracle is not None:
+            print_lines([f"{turn.question.text} {'yes' if turn.yes else 'no'}" for turn in found.turns])
+        print_lines(reference_lines(found))
+    raise typer.Exit(NO if found.target is None else 0 if found.decided else UNDECIDED)
+
+
+def _answer_lines(file: str) -> None:
+    from deixis.errors import DeixisError
+    from deixis.workflows.refer import refer_batch
+
+    if file == "-":
+        lines, folder = _standard_lines(), Path()
+    else:
+        try:
+            lines = iter(Path(file).read_text(encoding="utf-8-sig").splitlines())
+        except OSError as error:
+            raise DeixisError(f"{file}: cannot be read: {error.strerror}") from error
+        except UnicodeDecodeError as error:
+            raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
+        folder = Path(file).parent
+    for answer in refer_batch(lines, folder):
+        print_line(json.dumps(answer, ensure_ascii=False))
+
+
+def _standard_lines() -> Iterator[str]:
+    while line := StandardInput().readline():
+        yield line
+
+
+def _terminal(out: object) -> Answerer:
+    """Return a function that asks the user until the answer is yes, no or an empty line."""
+
+    def answer(question: Question) -> bool | None:
+        while True:
+            print(visible_line(f"{question.text} (yes, no, or an empty line to stop) "), end="", flush=True, file=out)  # type: ignore[call-overload]
+            said = StandardInput().readline().strip().casefold()
+            if not said:
+                return None
+            if said in {"y", "yes", "n", "no"}:
+                return said[0] == "y"
+
+    return answer

@@ -1,0 +1,215 @@
+"""Find which object of a scene a description in English refers to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import DeixisError
+from deixis.perception.scene import Scene
+from deixis.reasoning.errors import DescriptionError
+from deixis.reasoning.grounding.reference.answer import DECIDED, Frame, Question, Reference, Turn
+from deixis.reasoning.grounding.reference.query import Query
+from deixis.workflows.read import as_scene
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding.reference.model import Model
+    from deixis.reasoning.grounding.reference.room import Room
+
+Array = NDArray[np.float64]
+Answerer = Callable[[Question], bool | None]
+"""Function that answers a question; None ends the dialogue."""
+
+MAX_CHARACTERS = 5000
+"""Maximum length of a description."""
+
+MAX_QUESTIONS = 20
+"""Maximum number of questions about one object."""
+
+MIN_LISTED = 1e-3
+"""Least probability of a listed alternative."""
+
+
+def refer(
+    text: str, scene: Scene | str | Path | Mapping[str, Any], ask: Answerer | None = None, oracle: str | None = None
+) -> Reference:
+    """Find which object of a scene a description refers to.
+
+    Parameters
+    ----------
+    text
+        One or more English sentences that describe one object.
+    scene
+        The scene, or its file or parsed JSON. If its viewpoint is ``unknown``, all sides are summed over.
+    ask
+        Function that answers yes-or-no questions until the reference is decided; it returns None to end the dialogue.
+    oracle
+        Id of the object that is meant, which answers the questions in place of ``ask``, for experiments.
+
+    Returns
+    -------
+    Reference
+        The most probable object, its probability and the alternatives.
+
+    Raises
+    ------
+    DescriptionError
+        If the text is blank or too long, nothing of it is understood, or the scene has no object ``oracle``.
+    SceneError
+        If the scene is invalid.
+
+    Notes
+    -----
+    The model is log-linear with latent landmarks and viewers
+    (:mod:`deixis.reasoning.grounding.reference.model`).
+
+    Examples
+    --------
+    >>> import deixis
+    >>> boxes = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.6, 0.0, 0.0]]
+    >>> scene = deixis.Scene.from_boxes(centre=boxes, size=[[0.5, 0.5, 0.9]] * 3, labels=["chair", "chair", "desk"])
+    >>> deixis.refer("the chair next to the desk", scene).target
+    'o2'
+    """
+    query, seen = read_description(text), as_scene(scene)
+    if oracle is not None:
+        if oracle not in seen.ids:
+            raise DescriptionError(
+                f"{seen.file}: there is no object '{oracle}' that could answer; give an id of the scene"
+            )
+        ask = _oracle(oracle)
+    if not seen.objects:
+        return _answer(text, query, seen, np.zeros(0), None, ())
+    room = seen.room
+    probabilities = shipped_model().probabilities(query, room)
+    turns: list[Turn] = []
+    question = _question(probabilities, room)
+    while ask is not None and question is not None and len(turns) < MAX_QUESTIONS:
+        yes = ask(question)
+        if yes is None:
+            break
+        probabilities = _answered(probabilities, room, question, yes)
+        turns.append(Turn(question, yes))
+        question = _question(probabilities, room)
+    return _answer(text, query, seen, probabilities, question, tuple(turns))
+
+
+def read_description(text: str) -> Query:
+    """Return the query of a description; raise DescriptionError if it is blank, too long, or not understood."""
+    from deixis.grammar.english.parse import parse_english
+    from deixis.workflows.description import query_of
+
+    if not isinstance(text, str) or not text.strip():
+        raise DescriptionError(
+            "`text` must describe an object, got a blank text; write, say, 'the chair near the door'"
+        )
+    if len(text) > MAX_CHARACTERS:
+        raise DescriptionError(f"`text` must have at most {MAX_CHARACTERS} characters, got {len(text)}; shorten it")
+    query = query_of(parse_english(text))
+    target = query.target
+    if not query.understood or not (target.noun or target.properties or target.relations):
+        raise DescriptionError(
+            "nothing in `text` describes an object in English; write, say, 'the chair to the left of the desk'"
+        )
+    return query
+
+
+def refer_batch(lines: Iterable[str], folder: Path) -> Iterator[dict[str, Any]]:
+    """Yield the answer of each line ``{"text", "scene"}`` as plain data, ``{"error": …}`` for a line that is wrong.
+
+    Paths of scenes are relative to ``folder`` unless they exist as they are; blank lines are skipped.
+    """
+    scenes: dict[str, Scene] = {}
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            yield _batch_line(line, folder, scenes).to_dict()
+        except DeixisError as error:
+            yield {"error": f"line {number}: {error}"}
+
+
+def _batch_line(line: str, folder: Path, scenes: dict[str, Scene]) -> Reference:
+    try:
+        data = json.loads(line)
+    except (ValueError, RecursionError) as error:
+        raise DescriptionError(f'not JSON: {error}; write {{"text": …, "scene": …}}') from error
+    if not isinstance(data, dict) or not all(isinstance(data.get(key), str) for key in ("text", "scene")):
+        raise DescriptionError("a line must be an object with the texts 'text' and 'scene'")
+    unknown = sorted(set(data) - {"text", "scene", "oracle", "id"})
+    if unknown:
+        raise DescriptionError(f"'{unknown[0]}' is not a key of a line; the keys are id, oracle, scene, text")
+    name = data["scene"]
+    if name not in scenes:
+        given = Path(name)
+        scenes[name] = as_scene(given if given.exists() or given.is_absolute() else folder / given)
+    oracle = data.get("oracle")
+    return refer(data["text"], scenes[name], oracle=None if oracle is None else str(oracle))
+
+
+@cache
+def shipped_model() -> Model:
+    """Return the model with the fitted weights of ``ontology/models/reference.json``."""
+    data = json.loads(files("deixis.ontology").joinpath("models/reference.json").read_text(encoding="utf-8"))
+    return model_with({name: np.array(list(values.values())) for name, values in data["weights"].items()})
+
+
+def model_with(weights: Mapping[str, Array]) -> Model:
+    """Return a model of reference with given weights and the words of the ontology."""
+    from deixis.ontology.tbox import default_ontology
+    from deixis.reasoning.grounding.reference.model import Lexis, Model
+    from deixis.reasoning.grounding.reference.nouns import Nouns
+
+    ontology = default_ontology()
+    nouns = Nouns(ontology.lexicon)
+    return Model(weights, Lexis(nouns.features, nouns.similarity, ontology.colours))
+
+
+def _question(probabilities: Array, room: Room) -> Question | None:
+    from deixis.reasoning.grounding.reference.questions import best_question
+
+    if probabilities.max() >= DECIDED:
+        return None
+    return best_question(probabilities, room, labelled=any(label is not None for label in room.labels))
+
+
+def _answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:
+    from deixis.reasoning.grounding.reference.questions import answered
+
+    return answered(probabilities, room, question, yes)
+
+
+def _oracle(target: str) -> Answerer:
+    return lambda question: target in question.yes
+
+
+def _answer(
+    text: str, query: Query, scene: Scene, probabilities: Array, question: Question | None, turns: tuple[Turn, ...]
+) -> Reference:
+    from deixis.reasoning.grounding.reference.frames import frame_of
+    from deixis.reasoning.grounding.reference.wording import paraphrase
+
+    said = paraphrase(query)
+    if not len(probabilities):
+        return Reference(text, None, 0.0, (), query.understood, said, notes=("the scene has no objects",))
+    order = np.argsort(-probabilities, kind="stable")
+    listed = [(scene.ids[i], float(probabilities[i])) for i in order[1:] if probabilities[i] >= MIN_LISTED]
+    frame: Frame | None = frame_of(query, scene.room, shipped_model())
+    return Reference(
+        text,
+        scene.ids[order[0]],
+        float(probabilities[order[0]]),
+        tuple(listed),
+        query.understood,
+        said,
+        frame,
+        question,
+        turns,
+    )

@@ -1,0 +1,149 @@
+"""Descriptions of objects in a study, and bad input."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from source_tree import ROOT
+
+import deixis
+from deixis.perception.errors import SceneError
+from deixis.reasoning.errors import DescriptionError
+from deixis.reasoning.grounding.reference.answer import Question
+from deixis.workflows.refer import refer_batch
+
+STUDY = ROOT / "examples" / "study.scene.json"
+
+
+@pytest.fixture(scope="module")
+def study() -> deixis.Scene:
+    return deixis.read_scene(STUDY)
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("the chair to the left of the desk with the monitor", "o7"),
+        ("the lamp on the desk", "o12"),
+        ("the tall lamp", "o13"),
+        ("the red chair", "o10"),
+        ("the bin closest to the door", "o15"),
+        ("the bin farthest from the door", "o14"),
+        ("the chair in front of the desk with the lamp", "o9"),
+        ("facing the window, the desk on the right", "o5"),
+        ("facing the window, the desk on the left", "o4"),
+        ("the chair between the two desks", "o8"),
+        ("the couch", "o11"),
+        ("the trash can near the couch", "o15"),
+        ("The lamp is next to the sofa. It is not on a desk.", "o13"),
+    ],
+)
+def test_people_mean_the_object_that_fits_best(study: deixis.Scene, text: str, target: str) -> None:
+    assert deixis.refer(text, study).target == target
+
+
+def test_probabilities_are_a_distribution(study: deixis.Scene) -> None:
+    found = deixis.refer("the chair by the window", study)
+    shares = [found.probability, *(share for _, share in found.alternatives)]
+    assert sum(shares) == pytest.approx(1.0, abs=0.02)
+    assert shares == sorted(shares, reverse=True)
+
+
+@pytest.mark.parametrize("turn", [((0, 1), (-1, 0)), ((-1, 0), (0, -1))], ids=["quarter", "half"])
+def test_a_turned_room_with_unknown_viewer_means_the_same(
+    study: deixis.Scene, turn: tuple[tuple[int, int], ...]
+) -> None:
+    things = []
+    for thing in study.objects:
+        corners = np.array([thing.minimum[:2], thing.maximum[:2]]) @ turn
+        low, high = (*corners.min(axis=0), thing.minimum[2]), (*corners.max(axis=0), thing.maximum[2])
+        x, y = np.array(thing.front or (0.0, 0.0)) @ turn
+        front = None if thing.front is None else (float(x), float(y))
+        things.append(deixis.PerceivedObject(thing.id, low, high, thing.label, colour=thing.colour, front=front))
+    turned = deixis.Scene(tuple(things), viewpoint="unknown")
+    text = "the chair to the left of the desk with the monitor"
+    assert deixis.refer(text, turned).probability == pytest.approx(deixis.refer(text, study).probability, abs=1e-3)
+
+
+def test_left_is_that_of_a_known_viewer() -> None:
+    seen = deixis.Scene.from_boxes(
+        centre=np.array([[0, 0, 0], [1, 0, 0]]), size=[[0.1, 0.1, 0.1]] * 2, labels=["cup", "cup"]
+    )
+    found = deixis.refer("the cup on the left", seen)
+    assert (found.target, found.frame) == ("o1", "viewer")
+    unknown = deixis.refer("the cup on the left", replace(seen, viewpoint="unknown"))
+    assert unknown.probability < found.probability
+
+
+@pytest.mark.parametrize("oracle", ["o7", "o8", "o9", "o10"])
+def test_an_oracle_leads_to_any_object(study: deixis.Scene, oracle: str) -> None:
+    found = deixis.refer("the chair", study, oracle=oracle)
+    assert found.target == oracle and found.decided
+    assert 1 <= len(found.turns) <= 4
+
+
+def test_a_dialogue_ends_without_an_answer(study: deixis.Scene) -> None:
+    asked: list[Question] = []
+
+    def answer(question: Question) -> None:
+        asked.append(question)
+
+    found = deixis.refer("the chair", study, ask=answer)
+    assert len(asked) == 1 and found.turns == () and not found.decided
+    assert found.question == asked[0]
+
+
+def test_hidden_labels_leave_sizes(study: deixis.Scene) -> None:
+    bare = study.without_labels()
+    found = deixis.refer("the tall lamp", bare)
+    assert found.probability < 0.95
+    assert deixis.refer("the sofa", bare).probability > 1 / len(bare.objects)
+
+
+def test_an_empty_scene_has_no_target() -> None:
+    found = deixis.refer("the chair", deixis.Scene(()))
+    assert (found.target, found.probability, found.decided) == (None, 0.0, False)
+
+
+@pytest.mark.parametrize("text", ["", "  \n", "?!", "x" * 6000], ids=["empty", "blank", "signs", "long"])
+def test_texts_that_describe_nothing_are_refused(study: deixis.Scene, text: str) -> None:
+    with pytest.raises(DescriptionError):
+        deixis.refer(text, study)
+
+
+def test_an_unknown_oracle_is_refused(study: deixis.Scene) -> None:
+    with pytest.raises(DescriptionError, match="there is no object 'o99'"):
+        deixis.refer("the chair", study, oracle="o99")
+
+
+def test_a_missing_scene_is_an_error() -> None:
+    with pytest.raises(SceneError, match="cannot be read"):
+        deixis.refer("the chair", "missing.scene.json")
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("nonsense", "line 1: not JSON"),
+        ("[]", "line 1: a line must be an object with the texts 'text' and 'scene'"),
+        ('{"text": "the bin"}', "a line must be an object with the texts 'text' and 'scene'"),
+        ('{"text": "the bin", "scene": "none.json"}', "none.json: cannot be read"),
+        ('{"text": " ", "scene": "study.scene.json"}', "got a blank text"),
+        ('{"text": "the bin", "scene": "study.scene.json", "image": 1}', "'image' is not a key of a line"),
+    ],
+)
+def test_a_bad_line_of_a_batch_is_an_error_answer(line: str, said: str) -> None:
+    good = json.dumps({"text": "the sofa", "scene": "study.scene.json"})
+    first, second = refer_batch([line, good], STUDY.parent)
+    assert said in first["error"]
+    assert second["target"] == "o11"
+
+
+def test_a_batch_may_answer_its_questions(tmp_path: Path) -> None:
+    line = json.dumps({"text": "the bin", "scene": str(STUDY), "oracle": "o14"})
+    (found,) = refer_batch([line, "\n"], tmp_path)
+    assert found["target"] == "o14" and found["turns"]

@@ -1,0 +1,48 @@
+"""Questions about the object that is meant: they describe, tell objects apart, and are answered."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deixis.reasoning.grounding.reference.answer import Question
+from deixis.reasoning.grounding.reference.questions import answered, best_question
+from deixis.reasoning.grounding.reference.room import Room
+
+
+def row_of_chairs(labels: tuple[str | None, ...] = ("chair", "chair", "chair", "door")) -> Room:
+    """Return chairs 1, 2 and 4 metres away from a door."""
+    centres = np.array([[1.0, 0.0], [2.0, 0.0], [4.0, 0.0], [0.0, 0.0]])
+    boxes = np.stack([np.c_[centres - 0.2, np.zeros(4)], np.c_[centres + 0.2, np.full(4, 0.9)]], axis=1)
+    return Room.of(("c1", "c2", "c3", "d"), boxes, labels)
+
+
+def test_the_question_splits_the_probability_evenly() -> None:
+    question = best_question(np.array([0.5, 0.25, 0.25, 0.0]), row_of_chairs())
+    assert question is not None
+    assert set(question.yes) in ({"c1"}, {"c2", "c3"})
+
+
+def test_a_question_never_names_an_id() -> None:
+    room = row_of_chairs()
+    for weights in np.random.default_rng(0).dirichlet(np.ones(4), size=20):
+        question = best_question(weights, room)
+        assert question is not None
+        assert not set(room.ids) & set(question.text.replace("?", "").split())
+
+
+def test_objects_without_labels_are_asked_for_by_measures() -> None:
+    question = best_question(np.array([0.5, 0.0, 0.5, 0.0]), row_of_chairs((None,) * 4), labelled=False)
+    assert question is not None
+    assert "door" not in question.text and len(question.yes) == 1
+
+
+def test_there_is_no_question_about_equal_objects() -> None:
+    boxes = np.array([[[0.0, 0, 0], [1, 1, 1]], [[0.0, 0, 0], [1, 1, 1]]])
+    assert best_question(np.array([0.5, 0.5]), Room.of(("a", "b"), boxes, ("cup", "cup"))) is None
+
+
+@pytest.mark.parametrize(("yes", "expected"), [(True, 0.995), (False, 0.005)])
+def test_an_answer_is_wrong_in_a_few_of_a_thousand_cases(yes: bool, expected: float) -> None:
+    after = answered(np.array([0.5, 0.5, 0, 0]), row_of_chairs(), Question("Is it the first one?", ("c1",)), yes)
+    assert after[0] == pytest.approx(expected)
