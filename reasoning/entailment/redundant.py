@@ -6,6 +6,7 @@ from collections import deque
 
 from deixis.deadline import Deadline
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Reading
 from deixis.reasoning.entailment.bounds import AXES, claims
 from deixis.reasoning.entailment.demands import demands_of
 
@@ -14,7 +15,8 @@ def redundant_facts(graph: RelationGraph, deadline: Deadline = Deadline.never())
     """Find firm facts that can be left out one after another without losing an implication.
 
     The last facts are tried first, so that of two facts with one meaning the later one is redundant. A choice is
-    redundant if the other facts imply one of its alternatives; choices by cases are not searched.
+    redundant if the other facts imply one of its alternatives; choices by cases are not searched. A fact of a graded
+    word is never redundant.
 
     Parameters
     ----------
@@ -64,11 +66,14 @@ def redundant_facts(graph: RelationGraph, deadline: Deadline = Deadline.never())
     for edge in reversed(demands.firm.tolist()):
         if deadline.passed:
             return tuple(sorted(left_out)), False
+        fact = graph.fact(edge)
+        if any(relation.reading is Reading.GRADED for relation in fact.relations):
+            continue  # bounds are necessary for such a word, and do not imply it
         subject, obj = int(graph.subjects[edge]), int(graph.objects[edge])
         left_out.add(edge)
         if not all(
             any(all(implied(*bound.points(subject, obj, n), bound.strict) for bound in part) for part in alternatives)
-            for alternatives in claims(graph.fact(edge))
+            for alternatives in claims(fact)
         ):
             left_out.discard(edge)
     return tuple(sorted(left_out)), True

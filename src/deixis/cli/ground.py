@@ -98,7 +98,10 @@ def ground(
 
         plot_grounding(found, plot, title=described.title or described.name)
     if as_json:
-        print_json(grounding_to_dict(found))
+        written = grounding_to_dict(found)
+        if described.reading is not None:
+            written["mentions"] = {name: list(words) for name, words in described.reading.mentions.items()}
+        print_json(written)
     else:
         print_lines(grounding_lines(found))
         print_lines(kinds_lines(described))

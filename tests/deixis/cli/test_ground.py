@@ -109,6 +109,14 @@ def test_json_holds_what_is_promised(engine: str) -> None:
     assert data["facts"]["stated"] == 11
 
 
+def test_json_of_an_english_text_holds_its_mentions(tmp_path: Path) -> None:
+    text = tmp_path / "table.txt"
+    text.write_text("The plate is left of the soup spoon. The spoon is right of a knife.", encoding="utf-8")
+    found = json.loads(deixis("ground", text, SCENE, "--json")[1])
+    assert found["mentions"]["soup_spoon"] == ["the soup spoon", "The spoon"]
+    assert {match["object"] for match in found["matches"]} == {"plate", "soup_spoon", "knife"}
+
+
 def test_text_output_gives_the_probability_of_the_description() -> None:
     told = "The description fits this scene with probability"
     assert told in deixis("ground", FULL, SCENE)[1]

@@ -42,6 +42,8 @@ def codes(text: str, *ignored: str) -> list[str]:
         ("fork left of plate; plate left of fork", ["F003"]),
         ("fork left of plate; cup on saucer", ["F004"]),
         ("fork left or top left of plate", ["F005"]),
+        ("fork next to plate; fork left of plate", []),
+        ("spoon above pot; jug right of pot; spoon left of jug; jug not in front of spoon", []),
         ("always fork left of plate", ["H001"]),
         ("fork is rarely not left of plate", ["H002"]),
         ("2 cup left of plate; cup_1 above cup_2", []),
