@@ -1,4 +1,4 @@
-"""Measure the reading of English: facts of paragraphs about tables, traps, and which object each name refers to in their scenes.
+"""Measure the reading of English: facts of paragraphs about tables, traps, and the objects that the names refer to.
 
 ``$DEIXIS_DATA/english``: paragraphs with the facts that they state (``facts.json``), their scenes and the objects that
 are meant (``truth.json``), and traps: sentences with facts that must not come out.
@@ -14,7 +14,6 @@ Prints recall, precision, traps, and with ``--ground`` the share of mentioned ob
 
 from __future__ import annotations
 
-import argparse
 import json
 import re
 from collections.abc import Iterator
@@ -22,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from common import data_folder
+from records import command_line, count, recorded, share
 
 from deixis.errors import DeixisError
 from deixis.grammar.english.reader import read_english
@@ -133,46 +133,50 @@ def grounded(case: Path, names: Names) -> tuple[int, int]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--ground", action="store_true", help="ground the texts in their scenes as well")
     parser.add_argument("--verbose", action="store_true", help="print the facts that are missing or wrong")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    options = parser.parse_args()
-    folder = data_folder("english")
-    if folder is None:
-        return
-    found = stated = right = told = placed = mentioned = 0
-    for case in sorted(path for path in folder.iterdir() if path.is_dir()):
-        read = reading_to_dict(read_english((case / "text.txt").read_text(encoding="utf-8"), case.name))
-        names, truth = Names(read), json.loads((case / "facts.json").read_text(encoding="utf-8"))
-        for fact in truth:
-            hit = any(agree(ours, fact, names) for ours in read["facts"])
-            hit = hit or (fact["object"] == "0" and bool(words(fact["subject"])) and _absent(fact, read))
-            found, stated = found + hit, stated + 1
-            if options.verbose and not hit:
-                print(f"{case.name}: missing {fact}")
-        for ours in filter(counted, read["facts"]):
-            hit = any(agree(ours, fact, names) for fact in truth)
-            right, told = right + hit, told + 1
-            if options.verbose and not hit:
-                print(f"{case.name}: not in the truth {ours['relation']}({ours['subjects']}, {ours['arguments']})")
-        if options.ground:
-            one, of = grounded(case, names)
-            placed, mentioned = placed + one, mentioned + of
-            if options.verbose:
-                print(f"{case.name}: {one} of {of} objects")
-    wrong = list(traps(folder))
-    answer = {
-        "facts": stated, "recall": round(found / stated, 3), "precision": round(right / told, 3),
-        "traps_wrong": len(wrong), "objects_right": round(placed / mentioned, 3) if mentioned else None,
-    }  # fmt: skip
-    if options.json:
-        print(json.dumps(answer))
-        return
-    print(f"facts found {answer['recall']} of {stated}; of our {told} facts {answer['precision']} are in the truth")
-    print(f"traps that become false facts: {len(wrong)}", *(f"\n    {text}: {fact}" for text, fact in wrong))
-    if mentioned:
-        print(f"objects grounded right: {answer['objects_right']} of {mentioned}")
+    with recorded(parser) as options:
+        folder = data_folder("english")
+        if folder is None:
+            return
+        found = stated = right = told = placed = mentioned = 0
+        for case in sorted(path for path in folder.iterdir() if path.is_dir()):
+            read = reading_to_dict(read_english((case / "text.txt").read_text(encoding="utf-8"), case.name))
+            names, truth = Names(read), json.loads((case / "facts.json").read_text(encoding="utf-8"))
+            for fact in truth:
+                hit = any(agree(ours, fact, names) for ours in read["facts"])
+                hit = hit or (fact["object"] == "0" and bool(words(fact["subject"])) and _absent(fact, read))
+                found, stated = found + hit, stated + 1
+                if options.verbose and not hit:
+                    print(f"{case.name}: missing {fact}")
+            for ours in filter(counted, read["facts"]):
+                hit = any(agree(ours, fact, names) for fact in truth)
+                right, told = right + hit, told + 1
+                if options.verbose and not hit:
+                    print(f"{case.name}: not in the truth {ours['relation']}({ours['subjects']}, {ours['arguments']})")
+            if options.ground:
+                one, of = grounded(case, names)
+                placed, mentioned = placed + one, mentioned + of
+                if options.verbose:
+                    print(f"{case.name}: {one} of {of} objects")
+        wrong = list(traps(folder))
+        answer = {
+            "facts": stated, "recall": round(found / stated, 3), "precision": round(right / told, 3),
+            "traps_wrong": len(wrong), "objects_right": round(placed / mentioned, 3) if mentioned else None,
+        }  # fmt: skip
+        share("stated facts found", found, stated)
+        share("facts read that are in the truth", right, told)
+        count("traps that become false facts", len(wrong))
+        share("mentioned objects grounded right", placed, mentioned)
+        if options.json:
+            print(json.dumps(answer))
+            return
+        print(f"facts found {answer['recall']} of {stated}; of our {told} facts {answer['precision']} are in the truth")
+        print(f"traps that become false facts: {len(wrong)}", *(f"\n    {text}: {fact}" for text, fact in wrong))
+        if mentioned:
+            print(f"objects grounded right: {answer['objects_right']} of {mentioned}")
 
 
 def _absent(fact: Fact, read: Fact) -> bool:

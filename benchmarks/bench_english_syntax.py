@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from common import data_folder
+from records import command_line, figure, recorded, share
 
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.tree import Sentence
@@ -36,6 +37,13 @@ def sources(data: Path) -> Iterator[tuple[str, list[str]]]:
 
 
 def main() -> None:
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        measure()
+
+
+def measure() -> None:
+    """Print and record the figures of each source."""
     folder = data_folder("refer3d")
     if folder is None:
         return
@@ -46,9 +54,15 @@ def main() -> None:
         found: list[Sentence] = [s for text in texts[:TEXTS_PER_SOURCE] for s in parse_english(text) if not s.heading]
         seconds = time.process_time() - began
         words = sum(sentence.words for sentence in found)
-        understood = sum(sentence.words_understood for sentence in found) / words
-        whole = sum(not sentence.misunderstood for sentence in found) / len(found)
-        print(f"{name:12} {len(found):9} {words:7} {understood:10.3f} {whole:7.3f} {1000 * seconds / len(found):8.2f}")
+        understood = sum(sentence.words_understood for sentence in found)
+        whole = sum(not sentence.misunderstood for sentence in found)
+        share(f"{name}: words understood", understood, words)
+        share(f"{name}: sentences understood whole", whole, len(found))
+        figure(f"{name}: processor time per sentence", 1000 * seconds / len(found), "ms")
+        print(
+            f"{name:12} {len(found):9} {words:7} {understood / words:10.3f} {whole / len(found):7.3f} "
+            f"{1000 * seconds / len(found):8.2f}"
+        )
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ an animal or a part of a body. Many of them are not everyday things (*embassy*, 
 
 from __future__ import annotations
 
-import argparse
 import csv
 import gzip
 import json
@@ -23,6 +22,7 @@ from pathlib import Path
 
 import yaml
 from common import data_folder
+from records import command_line, count, figure, recorded, share
 
 from deixis.ontology.inflection import singulars
 from deixis.ontology.kinds import Kinds
@@ -44,6 +44,7 @@ def report(name: str, words: Counter[str], lexicon: Lexicon, tbox: Kinds) -> Non
         f"{how} {len(found) / len(words):.3f} ({sum(words[word] for word in found) / words.total():.3f})"
         for how, found in known.items()
     )
+    share(f"{name}, known", len(known["head noun"]), len(words))
     print(f"{name:<32} {len(words):>5}  share known, of words (of uses): {', '.join(shares)}")
 
 
@@ -72,10 +73,13 @@ def report_fits(sentences: Sequence[dict[str, str]], labels: dict[str, set[str]]
         fitting += fits.pop(label) >= 0.5
         others += len(fits)
         fitting_others += sum(fit >= 0.5 for fit in fits.values())
-    count = len(sentences)
+    total = len(sentences)
+    share("sentences with a noun that is the label of the target", same, total)
+    share("sentences with a noun that fits the label of the target", fitting, total)
+    share("other labels of the scene that fit", fitting_others, others)
     print(
-        f"{count} sentences that name their target: a noun is its label in {same / count:.3f} of them, fits it in "
-        f"{fitting / count:.3f}; {fitting_others / count:.1f} of {others / count:.1f} other labels of the scene fit"
+        f"{total} sentences that name their target: a noun is its label in {same / total:.3f} of them, fits it in "
+        f"{fitting / total:.3f}; {fitting_others / total:.1f} of {others / total:.1f} other labels of the scene fit"
     )
 
 
@@ -94,36 +98,50 @@ def frequent_nouns(folder: Path) -> list[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--wordnet", type=Path, help="folder of data.noun and index.noun of Princeton WordNet")
-    options = parser.parse_args()
+    with recorded(parser) as options:
+        measure(options.wordnet)
+
+
+def measure(wordnet: Path | None) -> None:
+    """Print and record the figures of each list of words."""
     ontology = load_ontology()
     started = time.process_time()
     every = len(ontology.kinds.every_word)
     print(f"{every} words, {len(ontology.kinds.words)} of them of the TBox; ", end="")
-    print(f"the others are read in {1000 * (time.process_time() - started):.0f} ms")
+    read_ms = 1000 * (time.process_time() - started)
+    print(f"the others are read in {read_ms:.0f} ms")
+    count("words", every)
+    figure("reading of the words", read_ms, "ms")
     lexicon = ontology.lexicon
     if (folder := data_folder("tidybot")) is not None:
         told = yaml.safe_load((folder / "scenarios.yml").read_text(encoding="utf-8"))
         things = Counter(thing for each in told for key in ("seen_objects", "unseen_objects") for thing in each[key])
         report("tidybot things", Counter(re.sub(r" \d+$", "", thing) for thing in things), lexicon, ontology.kinds)
         report(
-            "tidybot places", Counter(place for each in told for place in each["receptacles"]), lexicon, ontology.kinds
+            "tidybot places",
+            Counter(place for each in told for place in each["receptacles"]),
+            lexicon,
+            ontology.kinds,
         )
     if (folder := data_folder("refer3d")) is not None:
         with gzip.open(folder / "scenes.json.gz") as file:
             scenes = {name: [thing["label"].lower() for thing in things] for name, things in json.load(file).items()}
         report(
-            "labels of scenes", Counter(label for each in scenes.values() for label in each), lexicon, ontology.kinds
+            "labels of scenes",
+            Counter(label for each in scenes.values() for label in each),
+            lexicon,
+            ontology.kinds,
         )
         with (folder / "nr3d_train.csv").open(encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if row["mentions_target_class"] == "True"]
         report("labels of targets", Counter(row["instance_type"].lower() for row in rows), lexicon, ontology.kinds)
         report_fits(rows, {name: set(each) for name, each in scenes.items()}, lexicon)
-    if options.wordnet is not None:
-        words = frequent_nouns(options.wordnet)
-        for count in (500, 1000, 2000):
-            report("most frequent nouns of English", Counter(words[:count]), lexicon, ontology.kinds)
+    if wordnet is not None:
+        words = frequent_nouns(wordnet)
+        for first in (500, 1000, 2000):
+            report(f"{first} most frequent nouns of English", Counter(words[:first]), lexicon, ontology.kinds)
 
 
 if __name__ == "__main__":

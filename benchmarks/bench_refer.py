@@ -16,6 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 from common import data_folder
+from records import command_line, figure, recorded, share
 from refer3d import Described, nr3d, read_scenes, sr3d
 
 from deixis.reasoning.errors import DescriptionError
@@ -28,6 +29,13 @@ BINS = 10
 
 
 def main() -> None:
+    parser = command_line(__file__, __doc__)
+    with recorded(parser):
+        measure()
+
+
+def measure() -> None:
+    """Print and record the figures of each set of sentences."""
     folder = data_folder("refer3d")
     if folder is None:
         return
@@ -39,19 +47,23 @@ def main() -> None:
         if not those:
             continue
         told = [(one, shipped_model()) for one in those]
-        print(f"{name}: {figures(told)}")
+        print(f"{name}: {figures(name, told)}")
         blind = [(replace(one, scene=bare[id(one.scene)]), shipped_model()) for one in those]
         chance = np.mean([1 / len(one.scene.objects) for one in those])
-        print(f"{name}, class names hidden (chance {chance:.3f}): {figures(blind)}")
+        unnamed = f"{name}, class names hidden"
+        figure(f"{unnamed}: chance", float(chance), "share")
+        print(f"{unnamed} (chance {chance:.3f}): {figures(unnamed, blind)}")
     timed = sets["Nr3D"] or sets["Sr3D"]
     started = time.process_time()
     for one in timed:
         _quiet(one)
-    print(f"{1000 * (time.process_time() - started) / max(len(timed), 1):.1f} ms a sentence, scene read before")
+    sentence_ms = 1000 * (time.process_time() - started) / max(len(timed), 1)
+    figure("processor time per sentence", sentence_ms, "ms")
+    print(f"{sentence_ms:.1f} ms a sentence, scene read before")
 
 
-def figures(told: Sequence[tuple[Described, Model]]) -> str:
-    """Return the figures of sentences, each answered by its model, as one line."""
+def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
+    """Record the figures of a set of sentences, each answered by its model, and return them as one line."""
     right, certain, asked, settled = np.zeros((4, len(told)))
     for place, (one, model) in enumerate(told):
         room = one.scene.room
@@ -70,11 +82,18 @@ def figures(told: Sequence[tuple[Described, Model]]) -> str:
         settled[place] = room.ids[int(probabilities.argmax())] == one.target
     hard = np.array([one.hard for one, _ in told])
     viewed = np.array([one.view_dependent for one, _ in told])
-    shares = {"easy": ~hard, "hard": hard, "view-dependent": viewed, "view-independent": ~viewed}
-    parts = [f"{name} {right[mask].mean():.3f}" for name, mask in shares.items() if mask.any()]
+    kinds = {"easy": ~hard, "hard": hard, "view-dependent": viewed, "view-independent": ~viewed}
+    parts = [f"{kind} {right[mask].mean():.3f}" for kind, mask in kinds.items() if mask.any()]
     third = np.argsort(-certain, kind="stable")[: max(len(told) // 3, 1)]
     bins = np.minimum((certain * BINS).astype(int), BINS - 1)
     error = sum(abs((certain - right)[bins == k].sum()) for k in range(BINS)) / len(told)
+    share(f"{name}: right", int(right.sum()), len(told))
+    for kind, mask in kinds.items():
+        share(f"{name}, {kind}: right", int(right[mask].sum()), int(mask.sum()))
+    share(f"{name}: right in the most probable third", int(right[third].sum()), len(third))
+    figure(f"{name}: calibration error", error, "share")
+    share(f"{name}: right after questions", int(settled.sum()), len(told))
+    figure(f"{name}: questions per sentence", asked.mean(), "questions")
     return (
         f"{len(told)} sentences, right {right.mean():.3f} ({', '.join(parts)}); most probable third"
         f" {right[third].mean():.3f}, calibration error {error:.3f}; with {asked.mean():.2f} questions a"

@@ -7,7 +7,6 @@ code 0 if at least 0.99 of the answers are right.
 
 from __future__ import annotations
 
-import argparse
 import json
 import random
 import re
@@ -16,6 +15,7 @@ from collections import deque
 from pathlib import Path
 
 from common import data_folder
+from records import command_line, recorded, share
 
 from deixis.errors import DeixisError
 from deixis.grammar.english.reader import read_english
@@ -98,33 +98,36 @@ def answer(story: list[str], first: str, second: str) -> str | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__file__, __doc__)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--sample", type=int, default=50, metavar="N", help="stories of each file")
     parser.add_argument("--verbose", action="store_true", help="print the sentences that state no step")
-    options = parser.parse_args()
-    folder = data_folder("stepgame")
-    if folder is None:
-        return
-    shares: dict[str, float] = {}
-    right = asked = 0
-    for file in sorted(folder.glob("*/qa*_valid.txt")):
-        every = stories(file)
-        drawn = random.Random(0).sample(every, min(options.sample, len(every)))
-        hits = [answer(story, first, second) == said for story, first, second, said in drawn]
-        if options.verbose:
-            for sentence in {s for story, *_ in drawn for s in story if len(steps(s)) != 1}:
-                print("no step:", sentence)
-        shares[f"{file.parent.name} {file.name}"] = sum(hits) / len(hits)
-        right, asked = right + sum(hits), asked + len(hits)
-    share = right / asked
-    if options.json:
-        print(json.dumps({"right": round(share, 4), "asked": asked, "files": shares}))
-    else:
-        for name, part in shares.items():
-            print(f"{name}: {part:.3f}")
-        print(f"{share:.4f} of {asked} answers right")
-    sys.exit(0 if share >= RIGHT_SHARE else 1)
+    with recorded(parser) as options:
+        folder = data_folder("stepgame")
+        if folder is None:
+            return
+        shares: dict[str, float] = {}
+        right = asked = 0
+        for file in sorted(folder.glob("*/qa*_valid.txt")):
+            every = stories(file)
+            drawn = random.Random(0).sample(every, min(options.sample, len(every)))
+            hits = [answer(story, first, second) == said for story, first, second, said in drawn]
+            if options.verbose:
+                for sentence in {s for story, *_ in drawn for s in story if len(steps(s)) != 1}:
+                    print("no step:", sentence)
+            name = f"{file.parent.name} {file.name}"
+            shares[name] = sum(hits) / len(hits)
+            share(f"{name}: answers right", sum(hits), len(hits))
+            right, asked = right + sum(hits), asked + len(hits)
+        right_share = right / asked
+        share("answers right", right, asked)
+        if options.json:
+            print(json.dumps({"right": round(right_share, 4), "asked": asked, "files": shares}))
+        else:
+            for name, part in shares.items():
+                print(f"{name}: {part:.3f}")
+            print(f"{right_share:.4f} of {asked} answers right")
+    sys.exit(0 if right_share >= RIGHT_SHARE else 1)
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ def main() -> None:
     for name, those in (("Nr3D", people), ("Sr3D", generated)):
         kept = {id(one) for one in those}
         held_out = [(one, with_calibration(model, power)) for one, model in told if id(one) in kept]
-        print(f"{name}, held-out rooms: {figures(held_out)}")
+        print(f"{name}, held-out rooms: {figures(name, held_out)}")
     if len(sys.argv) > 1:
         weights = fit(start, [example for _, example in examples], PENALTY, ITERATIONS)
         write(Path(sys.argv[1]), {**weights, "calibration": power}, len(people), min(GENERATED, len(generated)))

@@ -119,6 +119,11 @@ RUNS = (
     Run("kills", "Memory", "writes that are killed"),
     Run("shacl", "Memory", "validation of changed nodes"),
     Run("shapes", "Memory", "engines of SHACL"),
+    Run("lexicon", "English", "nouns of other people's data that the lexicon knows", data=True),
+    Run("english_syntax", "English", "words and sentences that the parser understands", data=True),
+    Run("english", "English", "facts of paragraphs about tables", options="--ground", data=True),
+    Run("stepgame", "English", "relative positions after one to ten sentences", options="--sample 20", data=True),
+    Run("refer", "English", "objects that descriptions of rooms refer to", data=True),
     Run("startup", "Command line", "processor time of commands on small jobs"),
 )
 """The recorded runs, in the order of the page. Each benchmark has one or more."""

@@ -71,3 +71,15 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         raise error(f"{file}: the JSON is nested too deeply") from wrong
     except ValueError as wrong:
         raise error(f"{file}: {wrong}") from wrong
+
+
+def json_type(data: Any) -> str:
+    """Return the JSON type of a value in words, for messages.
+
+    >>> json_type(None), json_type(1.5), json_type([]), json_type("fork")
+    ('null', 'a number', 'a list', 'a string')
+    """
+    if data is None or isinstance(data, bool):
+        return {None: "null", True: "true", False: "false"}[data]
+    names = {str: "a string", int: "a number", float: "a number", list: "a list", tuple: "a list"}
+    return names.get(type(data), "an object")

@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from deixis.ontology.strict_json import json_type
 from deixis.perception.errors import SceneError
 
 MAX_TEXT = 4_096
@@ -19,33 +20,33 @@ MAX_SHOWN = 60
 def mapping(data: Any, where: str) -> Mapping[str, Any]:
     """Return ``data`` if it is a JSON object; else raise SceneError."""
     if not isinstance(data, Mapping):
-        raise SceneError(f"{where}: expected an object {{…}}, got {kind(data)}")
+        raise SceneError(f"{where} must be an object {{…}}, got {json_type(data)}")
     return data
 
 
 def number(data: Any, where: str) -> float:
     """Return ``data`` as a float if it is a finite number; else raise SceneError."""
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise SceneError(f"{where}: expected a number, got {kind(data)}")
+        raise SceneError(f"{where} must be a number, got {json_type(data)}")
     try:
         value = float(data)
     except OverflowError:
         raise SceneError(f"{where}: the number is too large") from None
     if not math.isfinite(value):
-        raise SceneError(f"{where}: expected a finite number, got {json.dumps(value)}; leave the object out")
+        raise SceneError(f"{where} must be a finite number, got {json.dumps(value)}; leave the object out")
     return value
 
 
 def text(data: Any, where: str) -> str:
-    """Return ``data`` if it is a text that is not blank, not too long, and can be encoded as UTF-8."""
+    """Return ``data`` if it is a string that is not blank, not too long, and can be encoded as UTF-8."""
     if not isinstance(data, str):
-        raise SceneError(f"{where}: expected a text, got {kind(data)}")
+        raise SceneError(f"{where} must be a string, got {json_type(data)}")
     if not data.strip():
-        raise SceneError(f"{where}: expected a text, got a blank one")
+        raise SceneError(f"{where} must be a string that is not blank, got {shown(json.dumps(data))}")
     if len(data) > MAX_TEXT:
-        raise SceneError(f"{where}: a text must have at most {MAX_TEXT:,} characters, got {len(data):,}; shorten it")
+        raise SceneError(f"{where} must have at most {MAX_TEXT:,} characters, got {len(data):,}; shorten it")
     if any("\ud800" <= character <= "\udfff" for character in data):
-        raise SceneError(f"{where}: the text contains half of a surrogate pair; correct it")
+        raise SceneError(f"{where} contains half of a surrogate pair; correct it")
     return data
 
 
@@ -64,7 +65,7 @@ def pixels(data: Any, where: str) -> float | None:
         return None
     value = number(data, where)
     if not 0 < value < float("inf"):
-        raise SceneError(f"{where}: expected a number of pixels above 0, got {value:g}")
+        raise SceneError(f"{where} must be a number of pixels above 0, got {value:g}")
     return value
 
 
@@ -73,21 +74,8 @@ def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
     if key not in entry:
         raise SceneError(f"{where}: '{key}' is missing")
     if not isinstance(entry[key], list):
-        raise SceneError(f"{where}: '{key}' must be a list, got {kind(entry[key])}")
+        raise SceneError(f"{where}: '{key}' must be a list, got {json_type(entry[key])}")
     return list(entry[key])
-
-
-def kind(data: Any) -> str:
-    """Return the type of a JSON value in words.
-
-    >>> kind(None), kind(1.5), kind([])
-    ('null', 'a number', 'a list')
-    """
-    if data is None or isinstance(data, bool):
-        return {None: "null", True: "true", False: "false"}[data]
-    return {"str": "a text", "int": "a number", "float": "a number", "list": "a list"}.get(
-        type(data).__name__, "an object"
-    )
 
 
 def shown(value: object) -> str:

@@ -18,7 +18,7 @@ from deixis.errors import DeixisError
 from deixis.grammar.errors import shortened
 from deixis.grammar.files import read_text
 from deixis.ontology.allen import SYMBOLS, Allen, allen_mask, members
-from deixis.ontology.strict_json import parse_json
+from deixis.ontology.strict_json import json_type, parse_json
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import MAX_SECONDS, UNKNOWN, Bounds
 from deixis.reasoning.temporal.fluent import (
@@ -72,11 +72,13 @@ def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
     Raises FluentFileError: with line and column if the text is not JSON, or else with the path to the place.
     """
     parsed = parse_json(text, file, FluentFileError, "is not a time; write null for an unknown bound")
+    if not isinstance(parsed, dict):
+        raise FluentFileError(f"{file}: the content must be an object {{…}}, got {json_type(parsed)}")
     data = _object(parsed, file, ("origin", "unit", "fluents", "relations"), ("origin", "fluents"))
     origin = _text(data["origin"], f"{file}: origin")
     unit = _text(data.get("unit", "s"), f"{file}: unit")
     if unit not in UNITS:
-        raise FluentFileError(f"{file}: unit: must be one of {', '.join(UNITS)}, got '{shortened(unit)}'")
+        raise FluentFileError(f"{file}: unit must be one of {', '.join(UNITS)}, got '{shortened(unit)}'")
     fluents: dict[str, Fluent] = {}
     for position, entry in enumerate(_list(data["fluents"], f"{file}: fluents")):
         fluent = _fluent(entry, f"{file}: fluents[{position}]", UNITS[unit])
@@ -99,7 +101,7 @@ def _fluent(data: Any, where: str, scale: float) -> Fluent:
     words = _list(entry["statement"], f"{where}.statement")
     if len(words) not in (2, 3):
         raise FluentFileError(
-            f"{where}.statement: must be a subject, a predicate and optionally an object, got {len(words)} words"
+            f"{where}.statement must be a subject, a predicate and optionally an object, got {len(words)} words"
         )
     statement = Statement(*(_text(word, f"{where}.statement[{position}]") for position, word in enumerate(words)))
     start = _bounds(entry.get("start"), f"{where}.start", scale)
@@ -115,7 +117,7 @@ def _relation(
         a, b = (_known(entry[end], f"{where}.{end}", fluents, "fluent") for end in "ab")
         names = _list(entry["allen"], f"{where}.allen")
         if not names:
-            raise FluentFileError(f'{where}.allen: must have at least one relation, such as "before"')
+            raise FluentFileError(f'{where}.allen must have at least one relation, such as "before"')
         relations = [_ALLEN[_known(n, f"{where}.allen[{k}]", _ALLEN, "relation")] for k, n in enumerate(names)]
         return AllenStatement(a, allen_mask(relations), b, where)
     entry = _object(data, where, ("from", "to", "bounds"), ("from", "to", "bounds"))
@@ -134,9 +136,7 @@ def _bounds(data: Any, where: str, scale: float) -> Bounds:
         data = [entry["lower"], entry["upper"]]
     ends = _list(data, where)
     if len(ends) != 2:
-        raise FluentFileError(
-            f"{where}: must be two bounds, [lower, upper], each of which may be null, got {len(ends)}"
-        )
+        raise FluentFileError(f"{where} must be two bounds, [lower, upper], each of which may be null, got {len(ends)}")
     lower = -math.inf if ends[0] is None else _number(ends[0], f"{where}[0]", scale)
     upper = math.inf if ends[1] is None else _number(ends[1], f"{where}[1]", scale)
     try:
@@ -147,21 +147,21 @@ def _bounds(data: Any, where: str, scale: float) -> Bounds:
 
 def _flag(entry: dict[str, Any], key: str, where: str) -> bool:
     if not isinstance(entry.get(key, False), bool):
-        raise FluentFileError(f"{where}.{key}: must be true or false, got {_kind(entry[key])}")
+        raise FluentFileError(f"{where}.{key} must be true or false, got {json_type(entry[key])}")
     return bool(entry.get(key, False))
 
 
 def _number(data: Any, where: str, scale: float) -> float:
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise FluentFileError(f"{where}: must be a number or null, got {_kind(data)}")
+        raise FluentFileError(f"{where} must be a number or null, got {json_type(data)}")
     if not abs(data) <= MAX_SECONDS / scale:
-        raise FluentFileError(f"{where}: must be at most {MAX_SECONDS:g} s from zero; check the unit and the origin")
+        raise FluentFileError(f"{where} must be at most {MAX_SECONDS:g} s from zero; check the unit and the origin")
     return data * scale
 
 
 def _object(data: Any, where: str, known: Sequence[str], needed: Sequence[str]) -> dict[str, Any]:
     if not isinstance(data, dict):
-        raise FluentFileError(f"{where}: must be an object {{…}}, got {_kind(data)}")
+        raise FluentFileError(f"{where} must be an object {{…}}, got {json_type(data)}")
     for key in data:
         if key not in known:
             hint = _suggestion(key, known)
@@ -174,16 +174,16 @@ def _object(data: Any, where: str, known: Sequence[str], needed: Sequence[str]) 
 
 def _list(data: Any, where: str) -> list[Any]:
     if not isinstance(data, list):
-        raise FluentFileError(f"{where}: must be a list, got {_kind(data)}")
+        raise FluentFileError(f"{where} must be a list, got {json_type(data)}")
     return data
 
 
 def _text(data: Any, where: str) -> str:
     if not isinstance(data, str):
-        raise FluentFileError(f"{where}: must be a string, got {_kind(data)}")
+        raise FluentFileError(f"{where} must be a string, got {json_type(data)}")
     if not data.strip() or not data.isprintable():
         raise FluentFileError(
-            f"{where}: must be one line of printable text that is not blank, got {shortened(ascii(data))}"
+            f"{where} must be one line of printable text that is not blank, got {shortened(ascii(data))}"
         )
     return data
 
@@ -200,13 +200,6 @@ def _known(data: Any, where: str, names: Collection[str], kind: str) -> str:
 def _suggestion(name: str, names: Collection[str]) -> str:
     close = get_close_matches(name[:100], list(names), n=1)
     return f"did you mean '{shortened(close[0])}'?; " if close else ""
-
-
-def _kind(data: Any) -> str:
-    if data is None or isinstance(data, bool):
-        return {None: "null", True: "true", False: "false"}[data]
-    kinds = {str: "a string", int: "a number", float: "a number", list: "a list"}
-    return kinds.get(type(data), "an object")
 
 
 def format_fluents(content: FluentFile) -> str:

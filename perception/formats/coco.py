@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from deixis.perception.checks import items, kind, mapping, number, pixels, score, shown, text
+from deixis.ontology.strict_json import json_type
+from deixis.perception.checks import items, mapping, number, pixels, score, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.image_boxes import box_around, image_scene
 from deixis.perception.scene import Scene
@@ -181,7 +182,7 @@ def _new_id(entry: Mapping[str, Any], taken: Mapping[_Id, object], where: str) -
 
 def _id(data: Any, where: str) -> _Id:
     if isinstance(data, bool) or not isinstance(data, int | str):
-        raise SceneError(f"{where}: an id must be a whole number or a text, got {kind(data)}")
+        raise SceneError(f"{where} must be a whole number or a string, got {json_type(data)}")
     if isinstance(data, int) and abs(data) >= 2**63:
         raise SceneError(f"{where}: the number is too large")
     return data

@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import Any
 
-from deixis.perception.checks import items, kind, mapping, number, pixels, score, shown, text
+from deixis.ontology.strict_json import json_type
+from deixis.perception.checks import items, mapping, number, pixels, score, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.image_boxes import ImageBox, box_around, image_scene
 from deixis.perception.scene import Scene
@@ -65,7 +66,7 @@ def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = 
         box = _box(mapping(entry, where), where)
         group = entry.get("group_id")
         if group is not None and (isinstance(group, bool) or not isinstance(group, int | str)):
-            raise SceneError(f"{where}: 'group_id' must be a whole number, a text or null, got {kind(group)}")
+            raise SceneError(f"{where}: 'group_id' must be a whole number, a string or null, got {json_type(group)}")
         key = position if group is None else (box.label, group)
         boxes[key] = boxes[key].joined(box) if key in boxes else box
     return image_scene(list(boxes.values()), height, file)
@@ -87,7 +88,7 @@ def _box(entry: Mapping[str, Any], where: str) -> ImageBox:
     at = f"{where}: 'points'"
     least, most = POINTS[shape]
     if not isinstance(data, list):
-        raise SceneError(f"{at} must be a list of points [x, y], got {kind(data)}")
+        raise SceneError(f"{at} must be a list of points [x, y], got {json_type(data)}")
     if len(data) < least or (most is not None and len(data) > most):
         number_of = f"{least} or more" if most is None else f"{least}" if least == most else f"{least} to {most}"
         raise SceneError(f"{at}: a {shape} must have {number_of} points, got {len(data)}")

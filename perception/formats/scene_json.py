@@ -15,9 +15,9 @@ import numpy as np
 
 from deixis.ontology.colours import Rgb, hex_of_rgb, rgb_of_hex
 from deixis.ontology.relation import nearest
-from deixis.ontology.strict_json import parse_json
+from deixis.ontology.strict_json import json_type, parse_json
 from deixis.ontology.tbox import default_ontology
-from deixis.perception.checks import MAX_SHOWN, kind, mapping, number, shown, text
+from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
@@ -106,11 +106,11 @@ def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Sce
     reader = annotation_reader(data)
     if reader is not None:
         return reader(data, file, image)
-    found = _mapping(data, file, _SCENE_KEYS)
+    found = _mapping(mapping(data, f"{file}: the scene"), file, _SCENE_KEYS)
     if "objects" not in found:
         raise SceneError(f"{file}: 'objects' is missing; add the list of the objects")
     if not isinstance(found["objects"], list):
-        raise SceneError(f"{file}: 'objects' must be a list")
+        raise SceneError(f"{file}: 'objects' must be a list, got {json_type(found['objects'])}")
     unit = text(found.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
         raise SceneError(f"{file}: unknown unit '{unit}'; use one of {', '.join(UNITS)}")
@@ -184,7 +184,7 @@ def _colour(data: Any, where: str) -> Rgb:
             raise SceneError(f"{where} as a list must be red, green and blue, each from 0 to 255")
         return round(parts[0]), round(parts[1]), round(parts[2])
     if not isinstance(data, str):
-        raise SceneError(f"{where} must be a word such as red, #rrggbb, or [red, green, blue], got {kind(data)}")
+        raise SceneError(f"{where} must be a word such as red, #rrggbb, or [red, green, blue], got {json_type(data)}")
     said = text(data, where)
     if said.startswith("#"):
         if (found := rgb_of_hex(said)) is None:

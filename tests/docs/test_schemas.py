@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import deixis as deixis_command
 from source_tree import ROOT
 
 import deixis
@@ -69,6 +71,10 @@ def test_references_have_their_schema(text: str, oracle: str | None) -> None:
     assert errors("reference", deixis.refer(text, EXAMPLES / "study.scene.json", oracle=oracle)) == []
 
 
+def test_facts_of_graded_words_have_their_schema() -> None:
+    assert errors("script", deixis.read_script(text="cup near plate")) == []
+
+
 def test_checks_and_retrievals_have_their_schema(scene: deixis.Scene) -> None:
     for table in ("second_table", "place_setting"):
         assert errors("check", deixis.check(EXAMPLES / "formal_dinner.layout", EXAMPLES / f"{table}.scene.json")) == []
@@ -92,6 +98,8 @@ def test_what_is_seen_and_learned_has_its_schema(tmp_path: Path) -> None:
         learned = json.loads(json.dumps(learned_to_dict(session.learn(script, seen))))
         assert list(validator("learned").iter_errors(learned)) == []
         assert errors("recognised", session.recognise(seen)) == []
+        for sparql in ("SELECT ?s ?o WHERE { ?s a ?o } LIMIT 5", "ASK { ?s ?p 1 }"):
+            assert errors("query", session.query(sparql)) == []
 
 
 def test_a_text_in_english_has_its_schema() -> None:
@@ -100,6 +108,51 @@ def test_a_text_in_english_has_its_schema() -> None:
     text = "On the desk there are two cups, each on its saucer. The red pen was on the pad. A lamp is in a corner."
     read = reading_to_dict(deixis.read_script(text=text, english=True))
     assert list(validator("reading").iter_errors(json.loads(json.dumps(read)))) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "command"),
+    [
+        ("formatted", "fmt {e}/script1.layout"),
+        ("relate", "relate {e}/place_setting.scene.json --calculus ra"),
+        ("relate", "relate {e}/place_setting.scene.json --of o1 --of o2"),
+        ("relation", "relation left"),
+        ("relation", "relation near"),
+        ("simulation", "simulate {e}/script1.layout --seed 7"),
+        ("solve", "solve {e}/place_setting.csp --calculus ra --scenario"),
+        ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
+        ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
+        ("time", "time {e}/serving.fluents.json"),
+        ("time", "time {e}/serving.fluents.json --at 25"),
+        ("time", "time {e}/serving.fluents.json --relate fetch served"),
+        ("time", "time {e}/serving.fluents.json --explain fetch.start served.start"),
+    ],
+)
+def test_commands_print_answers_of_their_schema(name: str, command: str) -> None:
+    _, out, err = deixis_command(*shlex.split(command.format(e=EXAMPLES)), "--json")
+    assert out, err
+    assert [error.message for error in validator(name).iter_errors(json.loads(out))] == []
+
+
+def test_conflicts_in_time_have_their_schema(tmp_path: Path) -> None:
+    fluent = {"id": "a", "statement": ["cup", "full"], "start": [0, 1], "finish": [5, 6]}
+    file = tmp_path / "wrong.fluents.json"
+    too_short = {"from": "a.start", "to": "a.finish", "bounds": [1, 2]}
+    content = {"origin": "noon", "fluents": [fluent], "relations": [too_short]}
+    file.write_text(json.dumps(content), encoding="utf-8")
+    code, out, _ = deixis_command("time", file, "--json")
+    assert code == 1
+    assert [error.message for error in validator("time").iter_errors(json.loads(out))] == []
+
+
+def test_what_an_ontology_entails_has_its_schema(tmp_path: Path) -> None:
+    prefixes = "@prefix : <http://e/> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> ."
+    file = tmp_path / "kinds.ttl"
+    file.write_text(f"{prefixes} :F rdfs:subClassOf :C . :f a :F .", encoding="utf-8")
+    for options in ([], ["--explain", ":f a :C"], ["--explain", ":f a :C", "--all"]):
+        _, out, err = deixis_command("reason", file, "--engine", "rl", *options, "--json")
+        assert out, err
+        assert [error.message for error in validator("reason").iter_errors(json.loads(out))] == []
 
 
 def test_an_answer_with_another_key_is_refused() -> None:
