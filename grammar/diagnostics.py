@@ -102,12 +102,14 @@ def _premature_end(tokens: list[Token], accepts: set[str], draft: Draft) -> Stat
         name = str(listed[0])
         message = f"this statement says nothing about '{shortened(name.strip(chr(34)))}'"
         if len(name) <= MAX_NAME_SEARCHED and listed[0].type == "NAME":
-            for word in name.split("_")[1:-1]:
+            words = name.split("_")
+            for at, word in enumerate(words[1:-1], start=1):
                 near = draft.nearest(word, list(draft.phrases))
                 if near is not None:
-                    return StatementError(
-                        span_of(tokens), message, f"did you mean '{draft.phrases[near]}' by '{word}'?"
-                    )
+                    meant = draft.phrases[near]
+                    said = " ".join(("_".join(words[:at]), meant, "_".join(words[at + 1 :])))
+                    whole = said if len(tokens) == 1 else None
+                    return StatementError(span_of(tokens), message, f"did you mean '{meant}' by '{word}'?", whole)
         return StatementError(span_of(tokens), message, RELATION_EXPECTED)
     if last.type == "IS":
         return StatementError(where, f"expected a kind of thing or a relation after '{last}'")
@@ -137,7 +139,7 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", DENIAL_HINT)
     if "RELATION" in accepts and (meant := _nearest_relation(tokens, at, draft)) is not None:
         said, where, phrase = meant
-        return StatementError(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?")
+        return StatementError(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?", phrase)
     if token.type in NAMES:
         return _unexpected_token(tokens, at, accepts)
     if at and tokens[at - 1].type == "NAME":

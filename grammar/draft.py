@@ -82,10 +82,12 @@ class Draft:
                 return kind, colour
         if (colour := colours.of_word(word)) is not None:
             return None, colour
-        rest = colours.split(word)[1]
+        shade, rest = colours.split(word)
         near = self.nearest(rest.replace("_", " "), [*self.ontology.kinds.words, *colours.words])
         hint = f"did you mean '{near}'?" if near else None
-        raise StatementError(source, f"there is no kind of thing and no colour called '{shortened(rest)}'", hint)
+        whole = f"{shade.words[0]} {near}" if near and shade else near
+        message = f"there is no kind of thing and no colour called '{shortened(rest)}'"
+        raise StatementError(source, message, hint, whole)
 
     def paint(self, subjects: tuple[Mention, ...], colour: Colour) -> None:
         """Record a declared colour; raise StatementError for an object that was declared in another colour before."""

@@ -16,6 +16,8 @@ LINE_WINDOW = 100  # characters of a long line that are shown
 class Diagnostic:
     """One problem at one place in a file; as text, with the line, carets and a hint.
 
+    ``replacement`` is a text that would be correct at this place, or None.
+
     >>> print(Diagnostic(Source("t.layout", 1, 6, 1, 9), "what is this?", "fork lft plate", "did you mean 'left'?"))
     t.layout:1:6: what is this?
     fork lft plate
@@ -27,6 +29,7 @@ class Diagnostic:
     message: str
     line_text: str
     hint: str | None = None
+    replacement: str | None = None
 
     def __str__(self) -> str:
         line, caret = _line_with_carets(self.line_text, self.source)
@@ -82,11 +85,12 @@ class ScriptFileError(DeixisError, OSError):
 class StatementError(Exception):
     """A problem that ends one statement; reading goes on at the next statement."""
 
-    def __init__(self, source: Source, message: str, hint: str | None = None) -> None:
+    def __init__(self, source: Source, message: str, hint: str | None = None, replacement: str | None = None) -> None:
         super().__init__(message)
         self.source = source
         self.message = message
         self.hint = hint
+        self.replacement = replacement
 
 
 def shortened(name: str, limit: int = 60) -> str:

@@ -152,7 +152,7 @@ class FileReader:
         here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
         statement: Statement | None
         first = True
-        for tokens in self._statements():
+        for tokens in self.statements():
             previous = place.set(here)
             try:
                 here.statement = span_of(tokens)
@@ -161,7 +161,8 @@ class FileReader:
                 if self._lines is None:
                     self._lines = self.text.split("\n")
                 line = self._lines[refusal.source.line - 1]
-                self.draft.problems.append(Diagnostic(refusal.source, refusal.message, line, refusal.hint))
+                problem = Diagnostic(refusal.source, refusal.message, line, refusal.hint, refusal.replacement)
+                self.draft.problems.append(problem)
                 statement = None
             finally:
                 place.reset(previous)
@@ -169,7 +170,7 @@ class FileReader:
                 yield statement
             first = False
 
-    def _statements(self) -> Iterator[list[Token]]:
+    def statements(self) -> Iterator[list[Token]]:
         """Yield the tokens of each statement, and collect the comments; a comma at a line's end joins the next line."""
         statement: list[Token] = []
         line = 0  # of the last token that is not a comment

@@ -27,6 +27,7 @@ OPTIONAL = {
     "open3d": OptionalPackage("open3d", "perception"),
     "PIL": OptionalPackage("pillow", "perception"),
     "pandas": OptionalPackage("pandas", None),
+    "pygls": OptionalPackage("pygls", "lsp"),
     "sklearn": OptionalPackage("scikit-learn", "experiments"),
 }
 """Optional packages by the names under which they are imported."""

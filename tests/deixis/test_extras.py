@@ -67,6 +67,7 @@ LACKING = {
     "experiment figure6": "plots",
     "experiment scoreboard --plot board.png": "plots",
     "experiment open-ended": "experiments",
+    "lsp": "lsp",
 }
 RUN = """
 import io, json, sys

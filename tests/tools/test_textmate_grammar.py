@@ -9,6 +9,8 @@ import pytest
 from source_tree import ROOT
 from textmate_grammar import GRAMMAR, grammar_text
 
+from deixis.cli.app import COMMANDS
+
 EXTENSION = ROOT / "editors" / "vscode"
 
 
@@ -54,3 +56,12 @@ def test_the_manifest_names_files_of_the_extension() -> None:
     assert language["id"] == grammar["language"]
     assert json.loads((EXTENSION / language["configuration"]).read_text(encoding="utf-8"))["comments"]
     assert json.loads((EXTENSION / grammar["path"]).read_text(encoding="utf-8"))["scopeName"] == grammar["scopeName"]
+
+
+def test_the_extension_starts_a_command_of_deixis() -> None:
+    manifest = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
+    program = (EXTENSION / manifest["main"]).read_text(encoding="utf-8")
+    setting = manifest["contributes"]["configuration"]["properties"]["deixis.command"]
+    assert setting["default"][0] == "deixis" and setting["default"][1] in COMMANDS
+    assert f'"{manifest["contributes"]["languages"][0]["id"]}"' in program
+    assert set(re.findall(r'require\("(vscode-[\w-]+)', program)) == set(manifest["dependencies"])

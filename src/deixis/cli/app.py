@@ -31,6 +31,7 @@ COMMAND_GROUPS = {
         "lint": "lint",
         "infer": "infer",
         "imagine": "imagine",
+        "lsp": "lsp",
     },
     "Scenes and perception": {
         "perceive": "perceive",

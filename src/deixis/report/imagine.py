@@ -34,7 +34,8 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         kind = sized.kind.label if sized.kind else "kind not known"
         size, place = f"{_cm(right - x)} x {_cm(top - y)} cm", f"at {_cm(x)}, {_cm(y)}"
         yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
-    yield f"Facts: {len(table.holds)} of {len(table.holds) + len(table.waived)} hold."
+    total = len(table.holds) + len(table.waived) + len(table.not_shown)
+    yield f"Facts: {len(table.holds)} of {total} hold."
     for waived in table.waived:
         what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
         yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
@@ -44,6 +45,8 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         yield f"Overlap: {a} and {b} could not be laid apart."
     for fact in table.named_otherwise:
         yield f"Note: {fact}{_at(fact)} holds, but the exact word for two things that overlap in part is another one."
+    for fact in table.not_shown:
+        yield f"Note: {fact}{_at(fact)} does not hold on this table; objects are not placed by graded words."
     if not table.finished:
         yield "Note: time limit reached before everything was in its best place; all firm facts hold."
 
@@ -97,6 +100,7 @@ def _table_to_dict(table: ImaginedTable) -> dict[str, Any]:
         ],
         "overlapping": [list(pair) for pair in table.overlapping],
         "named_otherwise": _facts(table.named_otherwise),
+        "not_shown": _facts(table.not_shown),
         "finished": table.finished,
     }
 

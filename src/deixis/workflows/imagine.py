@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
@@ -20,6 +21,7 @@ from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.entailment.realisation.demands import is_firm
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.rectangle import scene_relations
 
 TIME_LIMIT = 30.0
 MAX_ATTEMPTS = 5
@@ -49,7 +51,10 @@ class Waived:
 
 @dataclass(frozen=True)
 class ImaginedTable:
-    """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names."""
+    """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names.
+
+    ``not_shown`` are facts of graded words such as *near*, which the table was not laid to satisfy and does not.
+    """
 
     scene: Scene
     objects: tuple[Sized, ...]
@@ -57,6 +62,7 @@ class ImaginedTable:
     waived: tuple[Waived, ...]
     overlapping: tuple[tuple[str, str], ...]
     named_otherwise: tuple[Fact, ...]
+    not_shown: tuple[Fact, ...]
     finished: bool
 
 
@@ -174,10 +180,11 @@ def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], pic
         for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
     )
     given_up = {entry.edge for entry in picture.given_up}
+    not_shown = _not_shown(graph, picture.boxes) - given_up
     return ImaginedTable(
         scene=Scene(things, viewpoint=script.viewpoint or "chair"),
         objects=objects,
-        holds=tuple(graph.fact(edge) for edge in range(len(graph)) if edge not in given_up),
+        holds=tuple(graph.fact(edge) for edge in range(len(graph)) if edge not in given_up | not_shown),
         waived=tuple(
             Waived(
                 fact=graph.fact(entry.edge),
@@ -188,8 +195,20 @@ def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], pic
         ),
         overlapping=tuple((graph.nodes[a], graph.nodes[b]) for a, b in picture.overlapping),
         named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise),
+        not_shown=tuple(graph.fact(edge) for edge in sorted(not_shown)),
         finished=picture.finished,
     )
+
+
+def _not_shown(graph: RelationGraph, boxes: NDArray[np.float64]) -> set[int]:
+    """Return the edges of graded words that the model of the word denies of the boxes (n, 2, 2)."""
+    from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
+
+    if not any(relation.by_model for fact in graph.facts() for relation in fact.relations):
+        return set()
+    evidence = no_unary_evidence(graph, scene_relations(graph.nodes, boxes, graph.vocabulary))
+    degrees = evidence.degrees(np.arange(len(graph.nodes)))
+    return {int(evidence.facts[place]) for place in evidence.modelled if degrees[place] == 0.0}
 
 
 def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossible) -> NoTable:

@@ -33,7 +33,7 @@ def table(text: str) -> ImaginedTable:
 
 def require_well_laid(script: Script, imagined: ImaginedTable) -> None:
     """Require that check and grounding find every firm fact, except those that the table notes."""
-    noted = {str(fact) for fact in imagined.named_otherwise}
+    noted = {str(fact) for fact in (*imagined.named_otherwise, *imagined.not_shown)}
     checked = Session(memory="not-needed").check(script, imagined.scene)
     assert {str(entry.fact) for entry in checked.table.broken} <= noted
     assert checked.table.well or noted
@@ -53,6 +53,11 @@ def test_imagined_examples_are_checked_and_grounded_as_laid_well(name: str, seed
     found = imagine(script, seed=seed)
     assert [(entry.finished, entry.overlapping, entry.named_otherwise) for entry in found.tables] == [(True, (), ())]
     require_well_laid(script, found.tables[0])
+
+
+def test_a_graded_word_that_the_table_does_not_show_is_noted() -> None:
+    assert [str(fact) for fact in table("fork lower than plate").not_shown] == ["below(fork, plate)"]
+    assert table("fork next to plate").not_shown == ()
 
 
 @settings(max_examples=15, deadline=None)

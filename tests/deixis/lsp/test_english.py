@@ -1,0 +1,26 @@
+"""Texts in English in an editor: what is not understood, contradictions, and the facts of a sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.lsp.english import EnglishText, english_hover, english_problems
+
+TEXT = "The fork is left of the plate.\r\nIt zorbles the quux blargh wibble.\r\nThe knife is right of the plate."
+
+
+def test_phrases_that_are_not_understood_are_marked() -> None:
+    found = english_problems(EnglishText(TEXT))
+    assert {(problem.source.line, problem.is_error) for problem in found} == {(2, False)}
+
+
+@pytest.mark.parametrize("text", ["", " \n", "???", "Bonjour, la fourchette est ici."])
+def test_a_text_without_facts_is_one_error_or_nothing(text: str) -> None:
+    found = english_problems(EnglishText(text))
+    assert [problem.source.line for problem in found[:1]] == ([1] if text.strip() else [])
+    assert english_hover(EnglishText(text), 1, 1) is None
+
+
+def test_hover_shows_the_facts_of_the_sentence() -> None:
+    assert "`right(knife, plate)`" in (english_hover(EnglishText(TEXT), 3, 4) or "")
+    assert "left" not in (english_hover(EnglishText(TEXT), 3, 4) or "left")
