@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pyoxigraph as ox
@@ -14,7 +14,7 @@ from deixis.memory.semantic.opening import open_memory
 from deixis.memory.semantic.queries.union import merge_if_overlapping
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.change import Change, modelling, together
-from deixis.memory.semantic.rdf.files import trig, turtle
+from deixis.memory.semantic.rdf.files import PREFIXES, trig, turtle
 from deixis.memory.semantic.rdf.graphs import (
     CANONICAL,
     CONTRIBUTED,
@@ -25,6 +25,10 @@ from deixis.memory.semantic.rdf.graphs import (
 )
 from deixis.memory.semantic.rdf.package import packaged
 from deixis.memory.semantic.store import SemanticMemory
+from deixis.ontology.triples import with_blank
+from deixis.ontology.vocabulary import W3C
+
+TYPE, NAMED_INDIVIDUAL = ox.NamedNode(W3C.RDF_TYPE), ox.NamedNode(PREFIXES["owl"] + "NamedIndividual")
 
 TURTLE_GRAPHS = (GraphName.ONTOLOGY, GraphName.ASSERTED, GraphName.INFERRED, GraphName.LEARNED, GraphName.EPISODES)
 """Graphs that an export in Turtle merges."""
@@ -39,7 +43,8 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
         The memory.
     format
         ``trig`` is exact: it has every graph, and which lesson contributed what. ``turtle`` merges the ontology with
-        the asserted, inferred and learned graphs and the episodes into one graph, for tools such as Protégé.
+        the asserted, inferred and learned graphs and the episodes into one graph, for tools such as Protégé and
+        owlready2. It declares each individual as an ``owl:NamedIndividual``.
 
     Raises
     ------
@@ -48,12 +53,27 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
     """
     with reading(memory.path):
         if format == "turtle":
-            return turtle(triple for name in TURTLE_GRAPHS for triple in memory.triples(name))
+            return turtle(with_named_individuals([t for name in TURTLE_GRAPHS for t in memory.triples(name)]))
         if format != "trig":
             raise ImportFormatError(f"the export format must be trig or turtle, got '{format}'")
         graphs = [graph for graph in memory.store.named_graphs() if isinstance(graph, ox.NamedNode)]
         copies = sorted((graph for graph in graphs if copied_graph(graph.value)), key=lambda graph: graph.value)
         return trig((graph, ledger.triples_in(memory.store, graph)) for graph in [*CANONICAL, *copies])
+
+
+def with_named_individuals(triples: Sequence[ox.Triple]) -> Iterator[ox.Triple]:
+    """Yield triples, and the declaration of each individual with an IRI as an ``owl:NamedIndividual``.
+
+    An individual has a type outside the vocabularies of RDF, RDFS and OWL, and none in that of OWL: neither a class nor
+    a property is declared. Tools such as owlready2 list declared individuals only.
+    """
+    yield from triples
+    typed = [triple for triple in triples if triple.predicate == TYPE and isinstance(triple.object, ox.NamedNode)]
+    schema = {t.subject for t in typed if t.object.value.startswith(PREFIXES["owl"]) and t.object != NAMED_INDIVIDUAL}
+    built_in = tuple(PREFIXES[name] for name in ("rdf", "rdfs", "owl"))
+    for subject in {t.subject for t in typed if not t.object.value.startswith(built_in)} - schema:
+        if not isinstance(with_blank(subject), ox.BlankNode):
+            yield ox.Triple(subject, TYPE, NAMED_INDIVIDUAL)
 
 
 def import_dump(file: str | Path, target: str | Path) -> None:

@@ -184,15 +184,16 @@ class Session(Closing):
         examples: Sequence[tuple[Script | str | Path, Scene | str | Path | Mapping[str, Any]]],
         engine: str = "exact",
         time_limit: float = DEFAULT_TIME_LIMIT,
+        progress: Progress | None = None,
     ) -> tuple[Learned, ...]:
         """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
 
         Each is grounded with what the memory had learned before this call. ``time_limit`` is in seconds, for each
-        grounding.
+        grounding. ``progress`` is called with the number of grounded examples and of all.
         """
         from deixis.workflows.learn import learn
 
-        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit)
+        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit, progress)
 
     @_one_at_a_time
     def check(

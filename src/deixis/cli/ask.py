@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, MemoryDir, PerceivedScene, print_line, print_lines, print_note, progress_bar
+from deixis.cli.common import NO, MemoryDir, PerceivedScene, print_line, print_lines, print_note
 from deixis.cli.completion import complete_categories
 from deixis.cli.output import StandardInput, note_change
+from deixis.cli.progress import progress_bar
 from deixis.printable import visible_line
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -20,9 +20,6 @@ NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 
 started: float | None = None
 """Start of the process in seconds of ``time.monotonic``; None where the command runs inside another program."""
-
-PATIENCE = 2.0
-"""Seconds before a progress bar appears."""
 
 Script = Annotated[str, typer.Argument(metavar="SCRIPT", help="A layout script (.layout), or English (.txt, or -).")]
 SceneFile = Annotated[
@@ -129,30 +126,6 @@ def require_memory(folder: Path | None) -> None:
     with Session(folder) as session:
         if not session.has_views() and not session.remembers():
             session.memory()  # raises MemoryFormatError
-
-
-@contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int], None] | None]:
-    """Show a progress bar on standard error for work over :data:`PATIENCE` seconds, on a terminal only.
-
-    Yield a function of the steps done and their total, or None without a terminal.
-    """
-    if not sys.stderr.isatty():
-        yield None
-        return
-    import time
-
-    from rich.console import Console
-    from rich.progress import Progress as Bar
-
-    started = time.perf_counter()
-    with Bar(console=Console(file=terminal(sys.stderr)), transient=True) as bar:
-        task = bar.add_task(what, total=None, visible=False)
-
-        def progress(done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total, visible=time.perf_counter() - started > PATIENCE)
-
-        yield progress
 
 
 @contextmanager

@@ -9,7 +9,9 @@ import typer
 
 
 def demo(
-    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the pictures.")] = Path("out"),
+    out: Annotated[
+        Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the pictures and index.html.")
+    ] = Path("out"),
 ) -> None:
     """Show every step on the shipped data, from a script to a recognised table."""
     from deixis.cli.story import tell

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from deixis.cli.common import AsJson, print_json, print_lines, print_written, require_plot
-from deixis.cli.output import terminal
+from deixis.cli.progress import step_bar
 
 experiment = typer.Typer(
     help="Run an experiment from the paper, or one of ours.", no_args_is_help=True, rich_markup_mode=None
@@ -57,7 +54,7 @@ def scoreboard(
     plan = ScoreboardPlan(cases=cases, seed=seed, time_limit=time_limit, photographs=photographs_folder())
     plan = plan.quick() if quick else plan
     plan = plan.only(size) if size else plan
-    with progress(steps(plan)) as tick:
+    with step_bar(steps(plan)) as tick:
         found = run(plan, tick=tick)
     if plot is not None:
         from deixis.experiments.scoreboard.plot import plot_scoreboard
@@ -88,7 +85,7 @@ def open_ended(
 
     require_plot(plot)
     plan = OpenEndedPlan(orders=orders, seed=seed, meshes=meshes_folder(), cache=cache)
-    found = run(plan.quick() if quick else plan, stage=progress)
+    found = run(plan.quick() if quick else plan, stage=step_bar)
     if plot is not None:
         from deixis.experiments.open_ended.plot import plot_open_ended
 
@@ -98,17 +95,3 @@ def open_ended(
     else:
         print_lines(lines(found))
         print_written(plot)
-
-
-@contextmanager
-def progress(total: int) -> Iterator[Callable[[str], None]]:
-    """Show a progress bar of ``total`` steps on standard error; yield a function to call with the name of each step."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(
-        *columns, console=Console(file=terminal(sys.stderr)), transient=True, disable=not sys.stderr.isatty()
-    ) as bar:
-        task = bar.add_task("experiment", total=total)
-        yield lambda done: bar.update(task, advance=1, description=done)

@@ -19,9 +19,9 @@ from deixis.cli.common import (
     print_lines,
     print_note,
     tell_of_compiling,
-    working,
 )
 from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
 from deixis.reasoning.grounding.options import EngineName
 
 
@@ -51,8 +51,8 @@ def learn(
     tell_of_compiling()
     with Session(memory) as session:
         try:
-            with working("grounding"):
-                lessons = session.learn_all(pairs, engine, time_limit)
+            with progress_bar("grounding") as progress:
+                lessons = session.learn_all(pairs, engine, time_limit, progress)
         except NothingFoundError as error:
             print_note(error)
             raise typer.Exit(NO) from error

@@ -19,12 +19,12 @@ from deixis.cli.common import (
     print_lines,
     print_note,
     print_written,
-    progress_bar,
     require_ending,
     require_memory,
 )
 from deixis.cli.completion import complete_lessons
 from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
 from deixis.report.marks import violation
 
 if TYPE_CHECKING:

@@ -17,12 +17,12 @@ from deixis.cli.common import (
     print_lines,
     print_note,
     print_written,
-    progress_bar,
     require_memory,
     require_plot,
     require_scene_name,
     require_writable,
 )
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.perception.scene import Scene

@@ -18,10 +18,10 @@ from deixis.cli.common import (
     print_lines,
     print_note,
     print_written,
-    progress_bar,
     tell_of_compiling,
 )
 from deixis.cli.completion import complete_calculi
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.workflows.solve import SolvedNetwork

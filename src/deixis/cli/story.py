@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from deixis.cli.output import terminal
+from deixis.cli.tour import Tour
 from deixis.examples_data import example
 from deixis.extras import require
 from deixis.grammar.script import Script
@@ -28,10 +27,6 @@ from deixis.workflows.ground import ground
 from deixis.workflows.infer import infer
 from deixis.workflows.read import read_script
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
-
 QUERY = """SELECT ?object ?kind ?lesson WHERE {
   ?match dx:category ?category ; dx:ofRole/dx:ofKind ?kind ; prov:wasGeneratedBy ?lesson .
   ?category rdfs:label ?object ; rdfs:subClassOf dx:Cutlery .
@@ -42,64 +37,81 @@ MORE_TABLES = (8, 9)
 
 
 def tell(out: Path) -> None:
-    """Print the tour and write its pictures into the folder ``out``."""
+    """Print the tour and write its pictures, and a page with all of it, into the folder ``out``."""
     from rich.console import Console
 
     require_picture(out / "script1.png")
     require("open3d", "simulating a depth camera")
-    console = Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True)
+    tour = Tour(Console(file=terminal(sys.stdout), highlight=False, soft_wrap=True), out)
     script1, scene = read_script(example("script1.layout")), read_scene(example("place_setting.scene.json"))
 
-    _chapter(console, 1, "A person describes a laid table")
-    _listing(console, script_lines(script1))
+    tour.chapter("A person describes a laid table", "deixis parse examples/script1.layout")
+    tour.listing(script_lines(script1))
 
-    _chapter(console, 2, "The robot sees a table, but knows no names")
-    _say(console, f"It sees {len(scene.objects)} boxes, from the {scene.viewpoint}: {', '.join(scene.ids)}.")
+    tour.chapter("The robot sees a table, but knows no names")
+    tour.say(f"It sees {len(scene.objects)} boxes, from the {scene.viewpoint}: {', '.join(scene.ids)}.")
 
-    _chapter(console, 3, "Which object does each name refer to, by the words alone?")
+    tour.chapter(
+        "Which object does each name refer to, by the words alone?",
+        "deixis ground examples/script1.layout examples/place_setting.scene.json --no-sizes --plot out/script1.png",
+    )
     found = ground(script1, scene, meaning=Meaning(weights=UnaryWeights(sizes=0.0)))
-    _listing(console, grounding_lines(found))
-    _say(console, *_ambiguity(found, ground(script1, scene)))
+    tour.listing(grounding_lines(found))
+    tour.say(*_ambiguity(found, ground(script1, scene)))
     plot_grounding(found, out / "script1.png", script1.title)
-    _say(console, f"Picture: {out / 'script1.png'}")
+    tour.picture("script1.png", "The scene with the names that the words alone give")
 
-    _chapter(console, 4, "A fuller script settles it")
+    tour.chapter(
+        "A fuller script settles it", "deixis ground examples/formal_dinner.layout examples/place_setting.scene.json"
+    )
     full = read_script(example("formal_dinner.layout"))
-    _listing(console, full_text("formal_dinner.layout"))
+    tour.listing(full_text("formal_dinner.layout"))
     settled = ground(full, scene)
-    _listing(console, grounding_lines(settled))
+    tour.listing(grounding_lines(settled))
 
-    _chapter(console, 5, "A fact that the script implies but does not state")
+    tour.chapter(
+        "A fact that the script implies but does not state",
+        "deixis infer examples/formal_dinner.layout --explain 'left(salad_fork, soup_spoon)'",
+    )
     fact = infer(full).implications.derive(full.ontology.relations["left"], "salad_fork", "soup_spoon")
-    _listing(console, list(fact.lines()) if fact is not None else [])
+    tour.listing(list(fact.lines()) if fact is not None else [])
 
-    _chapter(console, 6, "A script that contradicts itself")
-    _listing(console, inference_lines(infer(example("contradiction.layout"))))
+    tour.chapter("A script that contradicts itself", "deixis infer examples/contradiction.layout")
+    tour.listing(inference_lines(infer(example("contradiction.layout"))))
 
     with tempfile.TemporaryDirectory() as folder, Session(Path(folder) / "memory") as session:
-        _remembered(console, session, full, scene, out)
+        _remembered(tour, session, full, scene, out)
+    tour.write_page()
 
 
-def _remembered(console: Console, session: Session, full: Script, scene: Scene, out: Path) -> None:
+def _remembered(tour: Tour, session: Session, full: Script, scene: Scene, out: Path) -> None:
     """Print the part of the tour that needs a memory."""
-    _chapter(console, 7, "The robot learns the layout")
+    tour.chapter(
+        "The robot learns the layout",
+        "deixis learn examples/formal_dinner.layout examples/place_setting.scene.json --memory out/memory",
+    )
     learned = session.learn(full, scene)
-    _listing(console, learned_lines(learned, "a memory of its own, for this demo"))
+    tour.listing(learned_lines(learned, "a memory of its own, for this demo"))
 
-    _chapter(console, 8, "A SPARQL query: which cutlery is known, and from which lesson?")
-    _listing(console, QUERY.splitlines())
-    _listing(console, session.query(QUERY).to_table())
+    tour.chapter(
+        "A SPARQL query: which cutlery is known, and from which lesson?", f"deixis query '{QUERY}' --memory out/memory"
+    )
+    tour.listing(QUERY.splitlines())
+    tour.listing(session.query(QUERY).to_table())
 
-    _chapter(console, 9, "Another table, with labelled things. What is wrong with it?")
+    tour.chapter(
+        "Another table, with labelled things. What is wrong with it?",
+        "deixis check formal_dinner examples/second_table.scene.json --memory out/memory --plot out/second_table.png",
+    )
     second = read_scene(example("second_table.scene.json"))
     checked = session.check("formal_dinner", second)
-    _listing(console, check_lines(checked))
+    tour.listing(check_lines(checked))
     plot_check(checked, out / "second_table.png")
-    _say(console, f"Picture: {out / 'second_table.png'}")
-    _seen(console, session, full, out)
+    tour.picture("second_table.png", "The second table with its errors")
+    _seen(tour, session, full, out)
 
 
-def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
+def _seen(tour: Tour, session: Session, full: Script, out: Path) -> None:
     """Print the part of the tour that starts from a point cloud."""
     from deixis.plots.seen import plot_perceived, plot_recognised
     from deixis.workflows.lay_table import lay_script
@@ -111,24 +123,34 @@ def _seen(console: Console, session: Session, full: Script, out: Path) -> None:
         write_scene(scene, out / f"{name}.scene.json")
         return scene
 
-    _chapter(console, 10, "The same table seen by a simulated depth camera: points instead of boxes")
+    tour.chapter(
+        "The same table seen by a simulated depth camera: points instead of boxes",
+        "deixis simulate examples/formal_dinner.layout --seed 7 -o out/cloud.pcd",
+        "deixis perceive out/cloud.pcd -o out/seen.scene.json",
+        "deixis learn examples/formal_dinner.layout out/seen.scene.json --memory out/memory",
+    )
     table = look(7, "table")
     points = 0 if table.detection is None else len(table.detection.cloud)
-    _say(console, f"{points} points; {len(table.objects)} things found on the table.")
+    tour.say(f"{points} points; {len(table.objects)} things found on the table.")
     plot_perceived(table, out / "table.png")
-    _say(console, f"Picture: {out / 'table.png'}")
+    tour.picture("table.png", "The things found in the point cloud")
     taught = session.learn(full, table)
-    _listing(console, grounding_lines(taught.grounding)[: len(taught.grounding.matches)])
+    tour.listing(grounding_lines(taught.grounding)[: len(taught.grounding.matches)])
     for seed in MORE_TABLES:
         session.learn(full, look(seed, f"table-{seed}"))
     views = sum(session.categories().values())
-    _say(console, f"After {len(MORE_TABLES)} more tables, the memory holds {views} views with names.")
+    tour.say(f"After {len(MORE_TABLES)} more tables, the memory holds {views} views with names.")
 
-    _chapter(console, 11, "Another cloud without a description. What does the robot recognise?")
+    tour.chapter(
+        "Another cloud without a description. What does the robot recognise?",
+        "deixis simulate examples/formal_dinner.layout --seed 20 -o out/other.pcd",
+        "deixis perceive out/other.pcd -o out/other.scene.json",
+        "deixis recognise out/other.scene.json --memory out/memory",
+    )
     found = session.recognise(look(20, "another"))
-    _listing(console, [f"{id:<5} {answer_words(answer)}" for id, answer in found.answers.items()])
+    tour.listing([f"{id:<5} {answer_words(answer)}" for id, answer in found.answers.items()])
     plot_recognised(found, out / "another.png")
-    _say(console, f"Picture: {out / 'another.png'}")
+    tour.picture("another.png", "The things recognised in another cloud")
 
 
 def full_text(name: str) -> list[str]:
@@ -144,17 +166,3 @@ def _ambiguity(found: Grounding, with_sizes: Grounding) -> list[str]:
         "three pairs could swap their names, and fish knife and soup spoon could be any two in a row on the right.",
         f"Deixis reports this instead of a guess. The usual sizes of such things {settled}.",
     ]
-
-
-def _chapter(console: Console, number: int, title: str) -> None:
-    console.print(f"\n[bold]{number}. {title}[/bold]")
-
-
-def _say(console: Console, *lines: str) -> None:
-    for line in lines:
-        console.print(f"   {line}", markup=False)
-
-
-def _listing(console: Console, lines: Iterable[str]) -> None:
-    for line in lines:
-        console.print(f"   [dim]│[/dim] {line}" if "[" not in line else f"   │ {line}", markup="[" not in line)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -52,11 +52,14 @@ def learn(
     views: ViewStore,
     engine: str = "exact",
     time_limit: float = DEFAULT_TIME_LIMIT,
+    progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Learned, ...]:
     """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
 
-    Each is grounded with what the memory had learned before this call; ``time_limit`` is for each grounding. What is
-    doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too, for
+    Each is grounded with what the memory had learned before this call; ``time_limit`` is for each grounding.
+    ``progress`` is called with the number of grounded examples and of all.
+
+    What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too, for
     :meth:`KnowledgeStore.learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
     DeixisError, having changed nothing, where a script contradicts itself or what was learned before.
     """
@@ -67,7 +70,11 @@ def learn(
     if knowledge.exists():
         knowledge.memory().require_writable()
     taken: set[str] = set()
-    learned = [_lesson(script, scene, knowledge, engine, time_limit, taken) for script, scene in pairs]
+    learned = []
+    for done, (script, scene) in enumerate(pairs, 1):
+        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken))
+        if progress is not None:
+            progress(done, len(pairs))
     if not learned:
         return ()
     groups = [views.except_taught(seen) for _, seen in learned]

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+import shlex
+from html import unescape
 from pathlib import Path
 
 import pytest
+from commands import deixis
 
 from deixis.cli.story import tell
+from deixis.examples_data import EXAMPLES
 
 CHAPTERS = [
     "1. A person describes a laid table",
@@ -23,7 +28,8 @@ CHAPTERS = [
 ]
 
 
-def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     tell(tmp_path / "out")
     told = capsys.readouterr().out
     assert [line for line in told.splitlines() if line[:1].isdigit()] == CHAPTERS
@@ -43,6 +49,18 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         assert said in told
     for name in ("script1.png", "second_table.png", "table.png", "another.png"):
         picture = tmp_path / "out" / name
-        assert str(picture) in told
+        assert f"Picture: out/{name}" in told
         assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
         assert picture.stat().st_size > 20_000
+    assert str(EXAMPLES) not in told and str(tmp_path) not in told
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "All of this on one page: out/index.html" in told
+    assert [unescape(title) for title in re.findall("<h2>(.*)</h2>", page)] == CHAPTERS
+    linked = re.findall('(?:src|href)="([^"]*)"', page)
+    assert len(linked) == 4 and all((tmp_path / "out" / name).is_file() for name in linked)
+    for shown in re.findall(
+        r"^(?:<pre class=\"command\">)?(deixis (?:parse|ground|infer) .*?)(?:</pre>)?$", page, re.M
+    ):
+        _, *argv = shlex.split(unescape(shown).replace("examples/", f"{EXAMPLES}/"))
+        _, printed, errors = deixis(*argv)
+        assert printed and not errors, shown

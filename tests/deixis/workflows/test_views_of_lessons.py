@@ -131,7 +131,7 @@ def test_the_stores_agree_after_each_write(example: Example, memory: Path) -> No
 def test_verify_names_where_the_stores_differ(example: Example, memory: Path) -> None:
     with Session(memory) as session:
         session.views().rename("fork", "prongs")  # behind the back of the lessons
-        session.memory().commit(session.memory().departure("tea-1"))
+        session.memory().forget("tea-1", inferred=[])
     told = " ".join(findings(memory))
     assert "it belongs to the lesson 'tea-1', which is missing" in told
     with Session(memory) as session:

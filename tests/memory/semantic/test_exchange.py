@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import codecs
+import io
 from collections.abc import Callable
 from pathlib import Path
 
+import owlready2
 import pyoxigraph as ox
 import pytest
 import rdflib
@@ -235,3 +237,20 @@ def test_a_foreign_folder_takes_no_import(dump: Path, tmp_path: Path) -> None:
     (tmp_path / "f" / "letter").write_text("dear")
     with pytest.raises(MemoryFormatError, match="is not a memory"):
         import_dump(dump, tmp_path / "f")
+
+
+def test_owlready2_lists_all_individuals_of_a_turtle_export(taught: SemanticMemory) -> None:
+    triples = [*ox.parse(input=export_memory(taught, "turtle"), format=ox.RdfFormat.TURTLE)]
+    world = owlready2.World()
+    content = ox.serialize((quad.triple for quad in triples), format=ox.RdfFormat.N_TRIPLES) or b""
+    world.get_ontology("urn:all#").load(fileobj=io.BytesIO(content), format="ntriples", only_local=True)
+    listed = {one.iri for one in world.individuals()}
+    learned = {
+        triple.subject.value
+        for name in (GraphName.LEARNED, GraphName.ASSERTED, GraphName.EPISODES)
+        for triple in taught.triples(name)
+        if triple.predicate.value.endswith("#type") and "/owl#" not in triple.object.value
+    }
+    assert learned and learned <= listed
+    assert not listed & {one.iri for one in world.classes()}
+    world.close()
