@@ -1,8 +1,8 @@
 """Measure reading on StepGame: where one agent is from another, after one to ten sentences.
 
 StepGame, corrected (Li, Hogg and Cohn 2024), ``$DEIXIS_DATA/stepgame``. The sentences go through the general grammar.
-The convention of StepGame is applied here only: each sentence moves by one unit along each axis that it names. Exit
-code 0 if at least 0.99 of the answers are right.
+The convention of StepGame is applied here only: each sentence moves by one unit along each axis that it names, and
+the front of a corner is its upper side. Exit code 0 if at least 0.99 of the answers are right.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ STEPS = {
     "left": (-1, 0), "right": (1, 0), "top": (0, 1), "bottom": (0, -1), "above": (0, 1), "below": (0, -1),
     "behind": (0, 1), "in_front": (0, -1), "on": (0, 1), "under": (0, -1), "over": (0, 1),
     "top_left": (-1, 1), "top_right": (1, 1), "bottom_left": (-1, -1), "bottom_right": (1, -1), "overlap": (0, 0),
-    "far": (0, 1), "back": (0, 1), "upper": (0, 1), "near": (0, -1), "front": (0, -1), "lower": (0, -1),
+    "far": (0, 1), "back": (0, 1), "upper": (0, 1), "near": (0, -1), "front": (0, 1), "lower": (0, -1),
 }  # fmt: skip
 ANSWERS = {
     (-1, 0): "left", (1, 0): "right", (0, 1): "above", (0, -1): "below", (-1, 1): "upper-left",

@@ -104,6 +104,9 @@ class Assembly:
             front = said if i == 0 else ()
             if verb.thing is not None and (verb.group.lemma in _PLACING or (person and verb.group.lemma in _OWNING)):
                 moved, thing = self._of_the_thing(verb, subject)
+                if subject.phrase.pronoun == "nothing":
+                    misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
+                    continue
                 if not moved.said and not front and verb.group.lemma not in ("have", "see", "find", "notice"):
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
@@ -196,7 +199,7 @@ class Assembly:
         return replace(predicate, relation=relation, arguments=(self.clock,))
 
     def _conditional(self, span: Span, link: str) -> None:
-        text = self.text[span[0] : span[1]]
+        text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
         found = notes.get()
         found[:] = [
             note for note in found if not span[0] <= note.span[0] < span[1]
@@ -225,6 +228,9 @@ class Assembly:
             mood = Mood.QUESTION
         if link == ":" and self._list(phrase, more, span):
             return
+        listed = built.shape == "fragment" and (self.clauses or link == ":") and not phrase.predicates and not more
+        if listed and mood is not Mood.QUESTION and self._each_with_its_place(phrase, link, mood):
+            return
         if built.shape == "fragment" and (self.clauses or self.fragments or mood is Mood.QUESTION):
             predicates = (*more, *phrase.predicates)
             if predicates:
@@ -246,6 +252,24 @@ class Assembly:
             self.sought = phrase
             return
         self.fragments.append(phrase)
+
+    def _each_with_its_place(self, phrase: NounPhrase, link: str, mood: Mood) -> bool:
+        """Take in a list without verbs: *…, the knife on its right and the spoon beside the knife*.
+
+        A member without a place shares that of the next member that has one.
+        """
+        if phrase.joined_by == "or" or not phrase.members or not phrase.members[-1].predicates:
+            return False
+        waiting: list[NounPhrase] = []
+        for member in phrase.members:
+            waiting.append(replace(member, predicates=()))
+            if not member.predicates:
+                continue
+            span = (waiting[0].span[0], member.span[1])
+            subject = waiting[0] if len(waiting) == 1 else NounPhrase(span, plural=True, members=tuple(waiting))
+            self._append(Clause(subject, member.predicates, span, mood, step=self.raw.step), link)
+            waiting = []
+        return True
 
     def _list(self, phrase: NounPhrase, more: tuple[Predicate, ...], span: Span) -> bool:
         """Take in a list after a colon: *from left to right: a cup, a jug*, *in front of it, a row: a cup, a jug*."""

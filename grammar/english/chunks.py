@@ -351,7 +351,7 @@ class Chunker:
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "measured_from")))
         if norm == "to" and previous == "THAN":
             return Chunk("ADVERB", at, at + 1, norm)
-        if norm in ("neither", "either", "both") and after in prepositions():
+        if norm in ("neither", "either", "both") and (after in prepositions() or self._match(at + 1)):
             return Chunk("NOT" if norm == "neither" else "ADVERB", at, at + 1, norm)
         if norm == "of":
             if previous == "MEASURE":

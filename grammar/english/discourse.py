@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -10,10 +11,13 @@ from deixis.grammar.english.nouns import GENERAL, PARTS, SUBSTANCES, SURFACES, S
 from deixis.grammar.english.references import POLES, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
 
-UNCERTAIN = frozenset({"might", "may", "could"})
+UNCERTAIN = frozenset({"might", "may", "could", "would"})
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
 MIN_PAST_OF_STORY = 3
 """Number of clauses in the past tense from which a text is a story, whose past is its present."""
+
+PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
+"""Beginning of a relative clause in the past."""
 
 UNARY = frozenset(
     [
@@ -41,7 +45,9 @@ SUPERLATIVES = {
     ("length", 1): "longest", ("length", -1): "shortest", ("width", 1): "widest", ("width", -1): "narrowest",
     ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
 }  # fmt: skip
-NOT_STATES = frozenset(["roll", "lay", "put", "place", "set", "leave", "open", "water"])
+RARE = frozenset({"hardly", "rarely", "seldom"})
+ABSENT = frozenset(["missing", "absent", "gone"])
+NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 DIRECTIONS = frozenset(
     [
         "left",
@@ -80,7 +86,7 @@ SUPPORTS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Qualification:
-    """What qualifies the facts of a clause."""
+    """Negation, weight, condition and other qualifications of the facts of a clause."""
 
     span: Span
     sentence: int
@@ -190,15 +196,20 @@ class Discourse:
         positive = clause.positive and all(p.positive for p in clause.predicates)
         if modal in NOT_NEEDED and not positive:
             return
-        uncertain = (modal in UNCERTAIN and positive) or weight == 0.5
+        uncertain = (modal in UNCERTAIN and positive) or weight == 0.5 or not RARE.isdisjoint(clause.hedges)
+        none = clause.subject is not None and clause.subject.pronoun == "none"
         self.how = Qualification(
-            clause.span, sentence, clause.positive, min(weight, 0.5) if uncertain else weight,
+            clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
             optional=uncertain or (modal == "can" and positive and weight == 1.0),
             condition=clause.condition or self.condition,
             past=clause.past and not self.story, uncertain=uncertain,
         )  # fmt: skip
         subject = clause.subject
         first = len(self.drafts)
+        missing = [p for p in clause.predicates if p.value is not None and p.value.word in ABSENT and p.positive]
+        if missing and subject is not None and subject.head and not self.how.past and clause.positive:
+            self._absent(subject)
+            return
         if subject is None or subject.pronoun == "nothing" or subject.determiner == "no" or (
             subject.members and all(m.determiner == "no" for m in subject.members)
         ):  # fmt: skip
@@ -210,7 +221,13 @@ class Discourse:
         ):
             self._count(subject)
             return
-        predicates = clause.predicates
+        subject = _with_restrictions_of_contents(subject)
+        if clause.existential and not clause.predicates and subject.predicates:
+            clause = replace(clause, predicates=subject.predicates)
+            subject = replace(subject, predicates=())
+        predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
+        if not predicates and clause.predicates and not clause.existential:
+            return
         if (
             subject.head in PARTS
             and subject.owner is None
@@ -237,6 +254,13 @@ class Discourse:
         if modal in UNCERTAIN:
             self._alternative_to_the_last(first, entity)
 
+    def _remains(self, predicate: Predicate, existential: bool) -> bool:
+        """Return True for *left* that is the participle of *leave*: *there are two forks left*, *it is left over*."""
+        if predicate.relation != "left" or self.text[slice(*predicate.span)].casefold() != "left":
+            return False
+        after = (*self.text[predicate.span[1] :].casefold().split(None, 1)[:1], "")[0].strip(",.;")
+        return existential or after in ("over", "the", "a", "an", "it", "them")
+
     def _alternative_to_the_last(self, first: int, entity: Entity) -> None:
         """Mark *should be there, but might be here* as a choice."""
         before = next((d for d in reversed(self.drafts[:first]) if d.subjects == (entity,)), None)
@@ -259,6 +283,8 @@ class Discourse:
             and not subject.plural
         ):
             for predicate in predicates:
+                if predicate.relation in ("end", "side") and self._at_each(predicate):
+                    return self._introduce(replace(subject, count=2, determiner=None, plural=True))
                 for argument in predicate.arguments:
                     if argument.determiner in ("each", "every"):
                         group = self.references.find(argument)
@@ -277,6 +303,7 @@ class Discourse:
         if phrase.members:
             found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
+        phrase = _with_restrictions_of_contents(phrase)
         known = len(self.references.entities)
         entity = self.references.find(phrase, relation, besides)
         if entity is None:
@@ -287,8 +314,8 @@ class Discourse:
         if phrase.predicates and entity.role is not Role.PERSON:
             outer = self.how
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
-            if any(not p.positive for p in phrase.predicates) and len(phrase.predicates) == 1:
-                self.how = replace(self.how, positive=True)
+            if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
+                self.how = replace(self.how, past=True)
             self._say(entity, phrase.predicates, phrase, focus=False)
             self.how = outer
         return entity
@@ -307,6 +334,10 @@ class Discourse:
                     self._add(
                         adjective.dimension, (entity,), (), value=adjective.word, how=replace(plain, span=phrase.span)
                     )
+        for adjective in phrase.adjectives:
+            name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members:
+                self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
         if new and entity.members:
             self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
         if phrase.of is not None and phrase.of.head and new:
@@ -391,6 +422,9 @@ class Discourse:
         outer = self.how
         places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
         for predicate in predicates:
+            if predicate.relation == "there" and self.text[predicate.span[1] :].lstrip().casefold().startswith("but "):
+                outer = replace(outer, positive=False)  # everywhere but left of the plate
+                continue
             self.how = replace(outer, positive=outer.positive and predicate.positive, quantifier=self.how.quantifier)
             if predicate.relation == "middle" and not predicate.part and places and entity.role is Role.THING:
                 self._add("middle", (entity,), (), value=min(places))
@@ -406,6 +440,9 @@ class Discourse:
         relation = predicate.relation
         handler = getattr(self, f"_say_{relation}", None)
         if subject.role is Role.PART and subject.whole is not None:
+            if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
+                self._add("pointing", (subject.whole,), (), value=relation)
+                return
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON):
             return
@@ -417,6 +454,9 @@ class Discourse:
             self._property(subject, predicate)
         elif relation in PLACES:
             self._place(subject, predicate, others)
+        elif not predicate.arguments and relation == "on" and not predicate.part:
+            if "top" in self.text[slice(*predicate.span)].casefold():
+                self._on_top(subject)
         elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far")):
             self._bare_direction(subject, predicate)
         else:
@@ -425,6 +465,8 @@ class Discourse:
     def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """State a relation between the subject and the arguments."""
         relation = predicate.relation
+        if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
+            relation = "near"
         found: list[Entity | Region] = []
         options = [a for a in predicate.arguments if a.joined_by == "or"]
         if options and relation != "between" and not self.how.alternative:
@@ -438,6 +480,10 @@ class Discourse:
             self.how = outer
             return
         for phrase in predicate.arguments:
+            last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
+            if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
+                found.append(last)  # above the saucer and to the left of it
+                continue
             for member in ([m for m in phrase.members if m.negated] and phrase.members) or (phrase,):
                 if member.negated:
                     other = self._argument(replace(member, negated=False), relation, subject)
@@ -499,6 +545,8 @@ class Discourse:
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
             if subject.role is not Role.SURFACE and relation in ("on", "inside"):
                 self._add("on", (subject,), ())
+            elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
+                self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
         elif other.role is Role.SURROUNDING and relation in (
             "pointing",
             "facing",
@@ -514,6 +562,12 @@ class Discourse:
             self._add(relation, (other,), (subject,))
         else:
             self._add(relation, (subject,), (other,))
+
+    def _within(self, relation: str) -> bool:
+        """Return True if the clause says *at the back of the table*, and not *behind the table*."""
+        words = " ".join(self.text[slice(*self.how.span)].casefold().split())
+        place = "back" if relation == "behind" else "front"
+        return any(f"{preposition} the {place} of" in words for preposition in ("at", "on", "towards", "toward"))
 
     def _holds_substance(self, content: Entity, vessel: Entity, relation: str) -> bool:
         """Read *the tea is in the jar* as the contents of the jar; the words for the tea then mean the jar as well."""
@@ -585,7 +639,27 @@ class Discourse:
         part = predicate.part
         if part in ("either", "each", "both"):
             part = None
+        if predicate.relation in ("end", "side") and subject.size == 2 and self._at_each(predicate):
+            for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
+                self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
+            return
         self._add(predicate.relation, (subject,), tuple(arguments), value=part)
+
+    def _on_top(self, subject: Entity) -> None:
+        """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
+        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        if last is None or last.role is not Role.THING:
+            return
+        rest = [leaf for leaf in last.leaves() if leaf is not subject.itself]
+        if len(rest) < last.size:
+            for other in rest:
+                self._pair(subject, "top", other, False)
+        else:
+            self._pair(subject, "on", last, False)
+
+    def _at_each(self, predicate: Predicate) -> bool:
+        words = self.text[slice(*predicate.span)].casefold().split()
+        return predicate.part is None and not {"each", "either", "both"}.isdisjoint(words[:3])
 
     def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
         last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
@@ -664,6 +738,8 @@ class Discourse:
     def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read what a thing has: contents, a part in some state, or another thing at it."""
         for phrase in predicate.arguments:
+            if not predicate.positive:
+                continue  # without the cup on the saucer
             if phrase.pronoun in ("none", "nothing") or phrase.determiner == "no":
                 for thing in self.shared[1] if self.shared is not None else ():
                     self._add(self.shared[0], (subject,), (thing,), how=replace(self.how, positive=False))  # type: ignore[index]
@@ -682,7 +758,17 @@ class Discourse:
             elif phrase.head:
                 held = self._introduce(phrase, "with", subject)
                 if held is not None and held.role is Role.THING and not phrase.predicates:
-                    self._add("near", (held,), (subject,))
+                    self._hold(subject, held, self.text[slice(*self.how.span)].casefold().split())
+
+    def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
+        """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""
+        noun = last_word(subject.noun)
+        if subject.role is Role.SURFACE or noun in SUPPORTS | SURFACES:
+            self._pair(held, "on", subject, False)
+        elif noun in VESSELS and not {"holds", "hold", "contains", "contain"}.isdisjoint(words):
+            self._pair(held, "inside", subject, False)
+        else:
+            self._add("near", (held,), (subject,))
 
     def _say_share(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         for phrase in predicate.arguments:
@@ -711,9 +797,9 @@ class Discourse:
             return region
         if (phrase.pronoun in ("each", "other") and phrase.determiner in ("each",)) or phrase.pronoun == "another":
             return None
-        if subject is not None and phrase.owner is not None and phrase.head and subject.itself.members:
-            if last_word(phrase.head) not in PARTS and not phrase.plural and self.how.quantifier == "each":
-                return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
+        owned = phrase.owner is not None and phrase.head and last_word(phrase.head) not in PARTS and not phrase.plural
+        if owned and subject is not None and subject.itself.members and self.how.quantifier == "each":
+            return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
         if (
             subject is not None and self.how.quantifier == "each" and subject.size > 1
             and phrase.determiner in ("a", "an") and phrase.head and not phrase.plural
@@ -745,13 +831,21 @@ class Discourse:
         metres: float | None = None,
         how: Qualification | None = None,
     ) -> None:
-        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside"):
+        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside", "from"):
             return
         if relation == "row" and value is None:
             value = None
         draft = Draft(relation, subjects, arguments, how or self.how, value, metres)
         if draft not in self.drafts:
             self.drafts.append(draft)
+
+
+def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
+    """Attach to the vessel what follows its contents: *a box of screws on the left*."""
+    of = phrase.of
+    if of is None or not of.predicates or last_word(phrase.head) not in VESSELS | GENERAL:
+        return phrase
+    return replace(phrase, of=replace(of, predicates=()), predicates=(*phrase.predicates, *of.predicates))
 
 
 def condition_of(sentence: Sentence) -> str | None:
@@ -811,7 +905,7 @@ def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
 
 def _count_restrictions(phrase: NounPhrase | None, counts: dict[str, int]) -> None:
     for own in _own_and_members(phrase):
-        for predicate in own.predicates:
+        for predicate in (*own.predicates, *(own.of.predicates if own.of is not None else ())):
             _count_surfaces(predicate, counts)
 
 

@@ -88,7 +88,6 @@ PEOPLE = frozenset(
         "neighbor",
         "everybody",
         "everyone",
-        "somebody",
         "someone",
     ]
 )

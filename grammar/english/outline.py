@@ -35,7 +35,7 @@ def outline(sentence: Sentence) -> str:
 def clause_outline(clause: Clause) -> str:
     """Return the subject, the predicates and the modality of a clause.
 
-    The marks after the predicates are ``or`` and a choice, ``modal``, ``past``, ``if`` and a condition.
+    The marks after the predicates are ``or`` and a choice, ``modal``, ``past`` and a condition.
     """
     subject = "..." if clause.subject is None else noun_outline(clause.subject)
     parts = [f"{subject}{_MOODS[clause.mood]}: " + ", ".join(predicate_outline(p) for p in clause.predicates)]
@@ -46,7 +46,7 @@ def clause_outline(clause: Clause) -> str:
     if clause.past:
         parts.append("(past)")
     if clause.condition is not None:
-        parts.append(f"(if {clause.condition})")
+        parts.append(f"({clause.condition})")
     return " ".join(part.rstrip() for part in parts)
 
 

@@ -40,8 +40,13 @@ def _clause(stated: StatedFact, surface: str) -> str:
         be = "is probably" if content.weight >= 0.5 else "is rarely"
     if not content.positive:
         be += " not"
+    subjects = (content.subject,) if isinstance(content, Fact) else content.subjects
+    if len(subjects) == 1 and _is_plural(subjects[0]):
+        be = be.replace("is", "are").replace("was", "were")
     said = _fact(content, be) if isinstance(content, Fact) else _claim(content, be, surface)
-    return f"{stated.condition}: {said}" if stated.condition else said
+    if stated.condition:
+        return f"{stated.condition[0].lower()}{stated.condition[1:]}, {said}"
+    return said
 
 
 def _fact(fact: Fact, be: str) -> str:
@@ -66,7 +71,8 @@ def _claim(claim: Claim, be: str, surface: str) -> str:
                 else f"there {be} {value}: {subject}"
             )
         case "corner" | "edge" | "end" | "side":
-            return f"{subject} {be} {'in' if relation == 'corner' else 'at'} the {f'{value} ' if value else ''}{relation} of {where}"
+            preposition = "in" if relation == "corner" else "at"
+            return f"{subject} {be} {preposition} the {f'{value} ' if value else ''}{relation} of {where}"
         case "middle":
             return f"{subject} {be} in the middle of {where if value is None else f'the {value} of {where}'}"
         case "part":
@@ -77,9 +83,8 @@ def _claim(claim: Claim, be: str, surface: str) -> str:
             order = f", {value}" if value else ""
             return f"{subject} {be} in a {relation}{order}"
         case "distance" | "distance_less" | "distance_more":
-            return f"{subject} {be} {PHRASES[relation].replace('away from', '').strip()} {100 * (claim.metres or 0):g} cm from {where}".replace(
-                "  ", " "
-            )
+            bound = PHRASES[relation].replace("away from", "").strip()
+            return " ".join(f"{subject} {be} {bound} {100 * (claim.metres or 0):g} cm from {where}".split())
         case "closer" | "farther" if claim.arguments:
             to = f"the {value}" if value else _the(claim.arguments[0])
             return f"{subject} {be} {PHRASES[relation]} {to} than {_the(claim.arguments[-1])}"
@@ -99,6 +104,11 @@ def _claim(claim: Claim, be: str, surface: str) -> str:
     if value is not None and relation in ("colour", "size", "shape", "material", "state", "height", "length", "width"):
         return f"{subject} {be} {value}"
     return f"{subject} {be} {PHRASES.get(relation, word)}" + (f" the {value}" if value else "")
+
+
+def _is_plural(name: str) -> bool:
+    """Return True for a name that ends in a plural noun, such as ``milk_cups`` and ``tongs``."""
+    return name.endswith("s") and not name.endswith(("ss", "us", "is", "as"))
 
 
 def _the(name: str) -> str:

@@ -45,8 +45,8 @@ _BEFORE_ADJECTIVE = word_set(
 _NEVER_NOUNS = word_set(
     "and or but nor than not of to from with without at by for as if when while because that which who whom whose where"
     " there then so too also is are was were be been being am do does did has have had having n't please let lets"
-    " into onto upon toward towards against among amongst between beside beneath underneath behind until during such"
-    " whether whenever via per through 's 're 'm 'll 've 'd it's although though since unless"
+    " upside into onto upon toward towards against among amongst between beside beneath underneath behind until"
+    " during such whether whenever via per through 's 're 'm 'll 've 'd it's although though since unless"
 )
 _NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
 
@@ -129,9 +129,10 @@ class NounChunker:
         """Return True if the ``'s`` at this place makes an owner, and does not stand for *is*."""
         if self.norms[at] != "'s":
             return False
+        name = at > 0 and self.words[at - 1].text == "I"  # the pronoun has 'I'm'
         if (
             at == 0
-            or (self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
+            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
             or (self.norms[at - 1] in ("there", "here", "where", "what", "who", "how"))
         ):
             return False

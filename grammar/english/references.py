@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.entities import Entity, Role
 from deixis.grammar.english.nouns import (
@@ -141,8 +141,10 @@ class References:
         if last in PARTS and noun == last and (phrase.owner is not None or phrase.of is not None):
             whole = self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
             return None if whole is None else Entity(noun, Role.PART, whole=whole)
-        if phrase.of is not None and (phrase.count is not None or last in GENERAL) and last in GENERAL:
-            return self.find(phrase.of, relation, besides)
+        if phrase.of is not None and last in GENERAL:
+            counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
+            inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
+            return self.find(inner, relation, besides)
         earlier = self._earlier(phrase)
         if earlier is not None:
             return self._seen(earlier, phrase)
@@ -160,6 +162,8 @@ class References:
         lump = next((word for word in words if word in SINGLE_PLURALS), None)
         if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
             count = 2
+        if lump is not None and count == 2 and "pair" in words:
+            count = None
         if count is not None and 1 < count <= 1000:
             entity.split(count)
         elif phrase.plural:

@@ -83,6 +83,7 @@ IDIOMS = tuple(
         "kind of",
         "sort of",
         "as usual",
+        "on the house",
         "more or less",
         "at the moment",
         "for now",

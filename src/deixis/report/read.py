@@ -36,7 +36,7 @@ def reading_lines(script: Script) -> list[str]:
 def _marks(fact: StatedFact) -> str:
     content = fact.content
     marks = [name for name in ("past", "uncertain") if getattr(fact, name)]
-    marks += [f"if: {fact.condition}"] if fact.condition else []
+    marks += [fact.condition] if fact.condition else []
     marks += [f"choice {fact.alternative}"] if fact.alternative is not None else []
     marks += ["optional"] if content.optional else []
     marks += [f"weight {content.weight:g}"] if content.weight != 1 else []

@@ -238,7 +238,7 @@ def test_sentences_about_other_matters_state_nothing(text: str) -> None:
         ("Had the cup been on the tray, the jug would be left of it.",
          "the jug: left(it) (would) (if the cup been on the tray)"),
         ("As soon as the cup is on the tray, put the spoon next to it.",
-         "the spoon!: next_to(it) (if the cup is on the tray)"),
+         "the spoon!: next_to(it) (when the cup is on the tray)"),
         ("All but the cup are on the tray.",
          "all: on(the tray)\n-- but the cup: 'but' does not say where something is"),
         ("The book is about birds.", "-- about birds: 'about' does not say where something is"),

@@ -33,6 +33,17 @@ def asserted(text: str) -> set[str]:
         ("If you have guests, the knife is left of the plate.", set()),
         ("Is the knife left of the fork? The cup is on the mat.", {"on(cup, mat)"}),
         ("The spoon might be on the plate. The cup is on the mat.", {"on(cup, mat)"}),
+        (
+            "The fork goes left of the plate, the knife to its right and the spoon to the right of the knife.",
+            {"left(fork, plate)", "right(knife, plate)", "right(spoon, knife)"},
+        ),
+        ("The cup is above the saucer and to the left of it.", {"above(cup, saucer)", "left(cup, saucer)"}),
+        ("The bowl holds a spoon. The cup is on the mat.", {"inside(spoon, bowl)", "on(cup, mat)"}),
+        ("None of the cups is on the mat.", {"not on(cups, mat)"}),
+        ("The plate is neither left of the fork nor on the mat.", {"not left(plate, fork)", "not on(plate, mat)"}),
+        ("The knife, which used to lie left of the plate, is on the mat.", {"on(knife, mat)"}),
+        ("The glass would be right of the plate. The cup is on the mat.", {"on(cup, mat)"}),
+        ("There are two forks left.", {"count(fork_1, fork_2, '2')"}),
     ],
 )
 def test_a_text_asserts_these_facts(text: str, facts: set[str]) -> None:
