@@ -207,12 +207,13 @@ def _pivotal(
     if alignment.posterior is None or not alignment.proved_best or alignment.of_another:
         return None
     found, seen, probable = [], 0, alignment.posterior.exact
-    for dropped in leave_one_out(evidence.problem, alignment.assignment, probable, deadline):
+    facts = len(evidence.facts)
+    for dropped in leave_one_out(evidence.problem, alignment.assignment, probable, deadline, facts):
         seen += 1
         pivotal = _without(evidence, alignment, matches, dropped)
         if pivotal.changes or pivotal.unsettled or pivotal.settled:
             found.append(pivotal)
-    if seen < len(evidence.facts):
+    if seen < facts:
         return None
 
     def place(pivotal: Pivotal) -> tuple[str, int, str]:

@@ -31,13 +31,13 @@ class WithoutFact:
 
 
 def leave_one_out(
-    problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: Deadline
+    problem: Problem, assignment: NDArray[np.int64], probable: bool, deadline: Deadline, facts: int | None = None
 ) -> Iterator[WithoutFact]:
     """Yield the likeliest map without each fact in turn, until the deadline.
 
     Problems of more than ``MAX_OBJECTS`` objects are not solved. Among equally likely maps, the one closest to the
     current ``assignment`` (n1,) is taken. Probabilities are computed where ``probable`` is true and they can be exact.
-    The iterator ends early at the deadline.
+    The iterator ends early at the deadline. Only the first ``facts`` are left out in turn; by default, all are.
 
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.array([[0, 0.5], [0, 0]]), np.full(2, -1.0))
@@ -49,7 +49,7 @@ def leave_one_out(
     matched = np.flatnonzero(assignment != UNMATCHED)
     stay = np.zeros_like(problem.unary)
     stay[matched, assignment[matched]] = TIE_BREAK_BONUS
-    for fact in range(len(problem.ends)):
+    for fact in range(len(problem.ends) if facts is None else facts):
         kept = np.arange(len(problem.ends)) != fact
         rest = replace(problem, ends=problem.ends[kept], kinds=problem.kinds[kept])
         found = exact(replace(rest, unary=rest.unary + stay), deadline)

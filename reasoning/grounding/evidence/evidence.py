@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
+from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Colours
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
@@ -28,9 +29,10 @@ from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
+from deixis.reasoning.grounding.evidence.claims import ClaimTables, claim_tables
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
-from deixis.reasoning.grounding.evidence.facts import FactEvidence, hedged
+from deixis.reasoning.grounding.evidence.facts import FactEvidence, FactTables, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
@@ -51,6 +53,9 @@ HELD_FROM = 0.5
 
 MAX_KEPT_THINGS = 150
 """Maximum number of things for which the likelihood ratios of all pairs are cached beside the tables."""
+
+MIN_LOG_ODDS_OF_THIRD = -30.0
+"""Evidence of a match that is not allowed, for the third object of a claim."""
 
 UNRELIABLE_PRIOR, UNRELIABLE_ERROR = 0.01, 0.7
 """Probability that the labels of a scene are unreliable, and the probability that an unreliable label is wrong: errors
@@ -156,6 +161,10 @@ class Evidence:
         True where the memory does not suffice for Markov chains, so that marginals come from belief propagation.
     whole
         Whole scene, where ``scene`` is a shortlist of it.
+    claims
+        Claims of the description; only graded words in scenes with boxes take them into account.
+    metric
+        Whether the boxes are in metres; otherwise they are in pixels.
     """
 
     description: RelationGraph
@@ -171,6 +180,8 @@ class Evidence:
     deadline: Deadline = Deadline.never()
     memory_limited: bool = False
     whole: Whole | None = None
+    claims: tuple[Claim, ...] = ()
+    metric: bool = True
 
     def __post_init__(self) -> None:
         shape = (len(self.description.nodes), len(self.scene.nodes))
@@ -180,10 +191,34 @@ class Evidence:
     @property
     def unary(self) -> NDArray[np.float64]:
         """Evidence for each match without the facts, shape (n1, n2); 0 where the match is not allowed."""
-        total: NDArray[np.float64] = self.labels + self.sizes
-        if self.colours is not None:
-            total = total + self.colours
+        total = self._of_things
+        if self._claimed is not None:
+            total = total + self._claimed.unary
         return np.where(self.allowed, total, 0.0)
+
+    @property
+    def _of_things(self) -> NDArray[np.float64]:
+        total: NDArray[np.float64] = self.labels + self.sizes
+        return total if self.colours is None else total + self.colours
+
+    @cached_property
+    def _claimed(self) -> ClaimTables | None:
+        """Evidence of the claims; None where there are none, or nothing to evaluate them by."""
+        if not self.claims or self.scene.boxes is None or not self.meaning.graded:
+            return None
+        alone = np.where(self.allowed, self._of_things, MIN_LOG_ODDS_OF_THIRD)
+        known, models = self.description, self.meaning.models or shipped_models()
+        return claim_tables(self.claims, known.nodes, self.scene.boxes, known.vocabulary, models, alone, self.metric)
+
+    def _with_claims(self, facts: FactTables) -> Problem:
+        """Return the matching problem of the tables of the facts, followed by those of the claims."""
+        ends, kinds, tables = facts.ends, facts.kinds, facts.tables
+        if self._claimed is not None and len(self._claimed.ends):
+            more = self._claimed
+            ends = np.concatenate([ends, more.ends])
+            kinds = np.concatenate([kinds, len(tables) + np.arange(len(more.ends), dtype=np.int64)])
+            tables = np.concatenate([tables, more.tables])
+        return Problem(ends, kinds, tables, self.unary, self.absent, self.allowed)
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -246,16 +281,14 @@ class Evidence:
             ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
             return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
         spoken, unary = self._said(), self.unary
-        facts = spoken.tables(spoken.literal(unary, absent, self.allowed))
-        return Problem(facts.ends, facts.kinds, facts.tables, unary, absent, self.allowed)
+        return self._with_claims(spoken.tables(spoken.literal(unary, absent, self.allowed)))
 
     @cached_property
     def upper_problem(self) -> Problem:
         """Matching problem in which every map has at least its value in :attr:`problem`; needs no search."""
         if self.scene.boxes is None or not self.meaning.graded:
             return self.problem
-        facts = self._said().most()
-        return Problem(facts.ends, facts.kinds, facts.tables, self.unary, self.absent, self.allowed)
+        return self._with_claims(self._said().most())
 
     def _said(self) -> FactEvidence:
         """Return the evidence of the facts for the boxes; for small scenes it is cached, for both label readings."""
@@ -497,6 +530,7 @@ def evidence_from(
     label_error: float = LABEL_ERROR,
     deadline: Deadline = Deadline.never(),
     candidates: Sequence[Candidates | None] = (),
+    claims: Sequence[Claim] = (),
 ) -> Evidence:
     """Combine facts, labels, sizes and colours of a description and a scene into evidence.
 
@@ -524,6 +558,8 @@ def evidence_from(
         Time by which the evidence of the facts must be computed.
     candidates
         Names of each thing with probabilities, weighted like labels; by default, no thing has any.
+    claims
+        Claims of the description beside its facts.
     """
     known = thing_evidence(
         description,
@@ -549,4 +585,6 @@ def evidence_from(
         known.allowed,
         np.any(~known.allowed, axis=0),
         deadline=deadline,
+        claims=tuple(claims),
+        metric=metric,
     )

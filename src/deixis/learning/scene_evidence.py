@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
+from deixis.ontology.claims import Claim
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import PerceivedObject, Scene
@@ -18,8 +20,8 @@ from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
-    """Return the evidence of a script's facts, and a scene's relations, labels, sizes and colours, for each match."""
-    return graph_evidence(script.graph(), scene, script.ontology, meaning)
+    """Return the evidence of a script's facts and claims, and of a scene's labels, sizes and colours."""
+    return graph_evidence(script.graph(), scene, script.ontology, meaning, claims=script.claims)
 
 
 def graph_evidence(
@@ -29,6 +31,7 @@ def graph_evidence(
     meaning: Meaning,
     label_error: float = LABEL_ERROR,
     deadline: Deadline = Deadline.never(),
+    claims: Sequence[Claim] = (),
 ) -> Evidence:
     """Return the evidence for a description that is a graph already; see :func:`evidence_of`.
 
@@ -38,6 +41,8 @@ def graph_evidence(
         Share of the labels with confidence 1 that are wrong.
     deadline
         Time limit of the computation.
+    claims
+        Claims of the description beside its facts.
     """
     return evidence_from(
         description,
@@ -48,6 +53,7 @@ def graph_evidence(
         colours=ontology.colours,
         label_error=label_error,
         deadline=deadline,
+        claims=claims,
         **_perceived(scene),
     )
 

@@ -202,7 +202,14 @@ class GroundingRequest:
             )
             return replace(known, consistent=self._consistent)
         memory_limited = self.memory_limited
-        known = graph_evidence(self.graph, scene, self.script.ontology, self.effective_meaning, deadline=self.due)
+        known = graph_evidence(
+            self.graph,
+            scene,
+            self.script.ontology,
+            self.effective_meaning,
+            deadline=self.due,
+            claims=self.script.claims,
+        )
         return replace(known, memory_limited=memory_limited, consistent=self._consistent)
 
     @cached_property
