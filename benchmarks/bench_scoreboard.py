@@ -17,7 +17,7 @@ from peers import annealing, cp_sat, faq, graph_matching
 from records import command_line, figure, recorded
 
 from deixis.cli.common import print_json, print_lines
-from deixis.cli.experiment import progress
+from deixis.cli.progress import step_bar
 from deixis.experiments.photographs import photographs_folder
 from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnswer, engines, peer
 from deixis.experiments.scoreboard.plot import plot_scoreboard
@@ -101,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         )
         plan = plan.quick() if options.quick else plan
         plan = plan.only(options.size) if options.size else plan
-        with progress(steps(plan)) as tick:
+        with step_bar(steps(plan)) as tick:
             found = run(plan, [*engines(), *peers()], tick)
         for group in found.main.groups:
             for one in found.main.contestants:

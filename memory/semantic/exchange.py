@@ -68,10 +68,10 @@ def with_named_individuals(triples: Sequence[ox.Triple]) -> Iterator[ox.Triple]:
     a property is declared. Tools such as owlready2 list declared individuals only.
     """
     yield from triples
-    typed = [triple for triple in triples if triple.predicate == TYPE and isinstance(triple.object, ox.NamedNode)]
-    schema = {t.subject for t in typed if t.object.value.startswith(PREFIXES["owl"]) and t.object != NAMED_INDIVIDUAL}
+    typed = [(t.subject, t.object) for t in triples if t.predicate == TYPE and isinstance(t.object, ox.NamedNode)]
+    schema = {one for one, of in typed if of.value.startswith(PREFIXES["owl"]) and of != NAMED_INDIVIDUAL}
     built_in = tuple(PREFIXES[name] for name in ("rdf", "rdfs", "owl"))
-    for subject in {t.subject for t in typed if not t.object.value.startswith(built_in)} - schema:
+    for subject in {one for one, of in typed if not of.value.startswith(built_in)} - schema:
         if not isinstance(with_blank(subject), ox.BlankNode):
             yield ox.Triple(subject, TYPE, NAMED_INDIVIDUAL)
 

@@ -90,7 +90,7 @@ def test_only_the_wide_relations_are_transitive() -> None:
     assert not any(r.transitive for r in EXACT)
 
 
-def test_only_graded_words_without_a_wide_one_are_decided_by_model() -> None:
+def test_graded_words_without_a_wide_one_are_decided_by_model() -> None:
     assert {r.name for r in GRADED if not r.by_model} == {"behind", "in_front"}
     assert not any(r.by_model for r in (*WIDE, *EXACT))
     assert R.paper_word(R["behind"]) == "top"

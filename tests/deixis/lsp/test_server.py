@@ -80,7 +80,7 @@ class Client:
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[Client]:
-    """Client that has opened TEXT; the server ends when it is told to."""
+    """Client that has opened TEXT; the server ends on request."""
     client = Client()
     try:
         found = client.ask("initialize", {"processId": None, "rootUri": None, "capabilities": {}})

@@ -1,4 +1,4 @@
-"""What follows from facts of graded words."""
+"""Implications of facts of graded words."""
 
 from __future__ import annotations
 
