@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from deixis.ontology.colours import Colours
 from deixis.reasoning.grounding.reference.likelihood import Score, add_gradients
 from deixis.reasoning.grounding.reference.model import Model
-from deixis.reasoning.grounding.reference.nouns import NOUN_FEATURES
+from deixis.reasoning.grounding.reference.nouns import NOUN_FEATURES, NUMBER_FEATURES
 from deixis.reasoning.grounding.reference.properties import SIZES, property_features
 from deixis.reasoning.grounding.reference.query import Property, Query
 from deixis.reasoning.grounding.reference.relations import FAMILIES, RELATIONS, Pairs
@@ -147,6 +147,7 @@ def feature_names(colours: Colours) -> dict[str, tuple[str, ...]]:
     return {
         **names,
         "noun": NOUN_FEATURES,
+        "number": NUMBER_FEATURES,
         "target": ("rivals", "log_rivals", "surrounds"),
         "seen": views,
         "viewer": views,

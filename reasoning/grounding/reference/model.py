@@ -52,6 +52,7 @@ class Lexis:
 
     noun_fit: NounFit
     similarity: Callable[[str, Room], Array]
+    number_fit: Callable[[bool, Room], Array]
     colours: Colours
 
 
@@ -109,6 +110,9 @@ class Model:
         """Return log scores of the objects ``among`` for a description, shape (v or 1, x)."""
         rivals = rival_groups(room, among)
         found = weighted(self.lexis.noun_fit(said.noun, room)[among], "noun", self.weights)[None]
+        if said.noun:
+            numbers = self.lexis.number_fit(said.plural, room)[among]
+            found = found + weighted(numbers, "number", self.weights)[None]
         if target:
             sizes = np.zeros((len(among), 2))
             for group in rivals:

@@ -24,6 +24,9 @@ FITS = (
 NOUN_FEATURES = (*(str(fit) for fit in FITS), "similarity", "spelling", "head", "unlabelled", "no_noun", "size")
 """Names of the features of a noun and an object."""
 
+NUMBER_FEATURES = ("plural_of_plural", "plural_of_singular", "singular_of_plural")
+"""Names of the features of the number of a noun and that of a label."""
+
 ALIKE = 0.75
 """Ratio of matching letters from which on two words count as spellings of one."""
 
@@ -38,6 +41,7 @@ class Nouns:
     def __init__(self, lexicon: Lexicon) -> None:
         self._lexicon = lexicon
         self._pair = lru_cache(maxsize=100_000)(self._compare)
+        self._is_plural = lru_cache(maxsize=10_000)(self._label_is_plural)
 
     def features(self, noun: str, room: Room) -> Array:
         """Return features of each object."""
@@ -60,6 +64,15 @@ class Nouns:
         if not noun:
             return np.zeros(len(room))
         return np.array([0.0 if label is None else self._pair(noun, label)[-1] for label in room.labels])
+
+    def number(self, plural: bool, room: Room) -> Array:
+        """Return how the number of a noun agrees with that of each label, features NUMBER_FEATURES, shape (n, 3)."""
+        many = np.array([label is not None and self._is_plural(label) for label in room.labels], dtype=np.bool_)
+        return np.stack([many & plural, ~many & plural, many & (not plural)], axis=1).astype(np.float64)
+
+    def _label_is_plural(self, label: str) -> bool:
+        last = label.casefold().replace("_", " ").split()[-1:]
+        return bool(last) and self._lexicon.singular(last[0]) != last[0]
 
     def _compare(self, noun: str, label: str) -> tuple[float, ...]:
         related = self._lexicon.relation(noun, label)

@@ -41,7 +41,8 @@ class Relation:
 class Description:
     """A noun phrase: what it says of the object that it stands for; ``noun`` is empty where no noun is given.
 
-    ``count`` is the number of objects in a group (*between two chairs*); None for one object.
+    ``count`` is the number of objects in a group (*between two chairs*); None for one object. ``plural`` is True for a
+    noun in the plural.
     """
 
     noun: str
@@ -49,6 +50,7 @@ class Description:
     relations: tuple[Relation, ...] = ()
     count: int | None = None
     negated: bool = False
+    plural: bool = False
 
     def parts(self) -> Iterator[Description]:
         """Yield this description and those of all objects that it mentions."""

@@ -1,4 +1,4 @@
-"""Choose yes-or-no questions about the object that is meant, by the information that they give."""
+"""Choose yes-or-no questions about the object that is meant, so that few are needed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.reference.answer import Question
+from deixis.reasoning.grounding.reference.answer import DECIDED, Question
 from deixis.reasoning.grounding.reference.room import Room
 from deixis.reasoning.grounding.reference.wording import named
 
@@ -21,6 +21,9 @@ WRONG_ANSWERS = 0.005
 MIN_PROBABILITY = 2e-3
 """Probability below which an object does not decide how clear a question is."""
 
+COMPARED = 40
+"""Number of questions with the greatest gain whose answers are looked ahead."""
+
 MAX_LANDMARKS = 14
 """Maximum number of landmarks that questions compare."""
 
@@ -29,7 +32,7 @@ CLEAR = 1.15
 
 
 def best_question(probabilities: Array, room: Room, labelled: bool = True) -> Question | None:
-    """Return the question with the greatest information gain; None if no question tells two objects apart.
+    """Return the question after which the fewest questions remain; None if no question tells two objects apart.
 
     Parameters
     ----------
@@ -42,21 +45,36 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True) -> Qu
 
     Notes
     -----
-    The gain of a question with a share q of the probability on *yes* is the entropy of q.
-    Only questions whose answer is clear for all likely objects are asked: two compared lengths differ by a factor of
-    ``CLEAR``.
+    A question with a share q of the probability on *yes* gains the entropy of q. Of the COMPARED questions that
+    gain most, the one is asked that leaves the least expected number of further questions: none if the answer
+    decides, and otherwise the entropy of what is left in bits, at least 1. Only questions whose answer is clear for
+    all likely objects are asked: two compared lengths differ by a factor of ``CLEAR``.
     """
     likely = np.flatnonzero(probabilities >= MIN_PROBABILITY)
     shares = probabilities[likely] / probabilities[likely].sum()
-    best, chosen = 1e-6, None
+    known: dict[bytes, tuple[float, str, Mask, float]] = {}
     for text, yes, cost in _questions(room, likely, labelled):
         share = float(shares[yes].sum())
         if yes.all() or not yes.any():
             continue
-        gain = -share * np.log(share) - (1 - share) * np.log(1 - share) - cost
-        if gain > best:
-            best, chosen = gain, Question(text, tuple(room.ids[index] for index in likely[yes]))
+        gain = -share * np.log2(share) - (1 - share) * np.log2(1 - share) - cost
+        key = yes.tobytes()
+        if gain > 1e-6 and (key not in known or gain > known[key][0]):
+            known[key] = (gain, text, yes, cost)
+    best, chosen = np.inf, None
+    for _, text, yes, cost in sorted(known.values(), key=lambda one: -one[0])[:COMPARED]:
+        left = sum(float(shares[part].sum()) * _remaining(shares[part]) for part in (yes, ~yes)) + cost
+        if left < best - 1e-9:
+            best, chosen = left, Question(text, tuple(room.ids[index] for index in likely[yes]))
     return chosen
+
+
+def _remaining(shares: Array) -> float:
+    """Return about how many questions it takes until one of the objects is decided."""
+    shares = shares / shares.sum()
+    if shares.max() >= DECIDED:
+        return 0.0
+    return max(1.0, float(-(shares * np.log2(shares)).sum()))
 
 
 def answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:
@@ -68,7 +86,7 @@ def answered(probabilities: Array, room: Room, question: Question, yes: bool) ->
 
 
 def _questions(room: Room, likely: NDArray[np.intp], labelled: bool) -> Iterator[tuple[str, Mask, float]]:
-    """Yield questions with the likely objects of the answer yes, and a cost in nats for long questions."""
+    """Yield questions with the likely objects of the answer yes, and a cost in bits for long questions."""
     labels = [room.labels[index] for index in likely]
     if labelled:
         for label in dict.fromkeys(label for label in labels if label is not None):

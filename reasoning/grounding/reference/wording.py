@@ -109,11 +109,13 @@ def _place(said: Property) -> str:
 
 
 def _relation(said: Relation) -> str:
-    name = WORDS.get(said.name, said.name.replace("_", " "))
-    name = DEGREES.get((said.name, said.degree), name)
+    place = WORDS.get(said.name, said.name.replace("_", " "))
+    name = DEGREES.get((said.name, said.degree), place)
     phrase = _joined([noun_phrase(one) for one in said.arguments])
     if said.inverted:
-        return f"with {phrase} {WORDS.get(said.name, said.name.replace('_', ' '))} it"
+        return (
+            f"{'with' if said.positive else 'without'} {phrase} {WORDS.get(said.name, said.name.replace('_', ' '))} it"
+        )
     return f"{'' if said.positive else 'not '}{name} {phrase}"
 
 

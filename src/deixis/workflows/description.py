@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from deixis.grammar.english.tree import Adjective, Clause, NounPhrase, Predicate, Sentence, Viewpoint
+from deixis.grammar.english.tree import Adjective, NounPhrase, Predicate, Sentence, Viewpoint
 from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
 
 SURROUNDINGS = frozenset(
@@ -42,6 +42,9 @@ GROUPS = frozenset(
         "type",
         "stack",
         "pile",
+        "roll",
+        "piece",
+        "sheet",
     }
 )
 """Nouns for several objects, whose kind the complement with *of* tells."""
@@ -82,9 +85,16 @@ EMPTY = frozenset(
         "that",
         "these",
         "those",
+        "option",
+        "choice",
+        "answer",
+        "target",
     }
 )
 """Nouns that say nothing of the kind."""
+
+WALL_RELATIONS = {"on": "near", "against": "near", "along": "near", "touching": "near", "opposite": "opposite"}
+"""Relations to a wall that something singles out (*on the wall with the window*), with the relation to that thing."""
 
 COMPARED = {"big": "bigger", "large": "bigger", "small": "smaller", "little": "smaller", "tall": "taller"}
 COMPARED |= {"short": "shorter", "long": "longer", "wide": "wider", "high": "above", "low": "below"}
@@ -104,46 +114,80 @@ MAX_DEPTH = 6
 def query_of(sentences: Sequence[Sentence]) -> Query:
     """Return the query of the sentences that describe one object.
 
-    The first noun of the text names the object. What is said of *it*, *this one*, or of the same noun belongs to it;
-    a clause about something else that mentions it is a relation of it.
+    The first noun of the text names the object, unless a later sentence picks another one (*there is a shelf between
+    two doors; it is the door on the left*): the first one is then what *it* stands for. What is said of *it*, *this
+    one*, or of the same noun belongs to the object; a clause about something else that mentions it is a relation of it.
     """
     parts = [part for sentence in sentences if not sentence.heading for part in _statements(sentence)]
     words = sum(sentence.words for sentence in sentences)
     understood = sum(sentence.words_understood for sentence in sentences) / words if words else 0.0
     viewer = next((found for sentence in sentences for found in _viewers(sentence)), None)
-    target = Description("")
-    for subject, predicates in parts:
-        named, own = _resolve(subject, predicates)
-        if not target.noun and named is not None and (name := _noun(named)):
-            target = replace(target, noun=name)
+    target, context = Description(""), None
+    for part in parts:
+        named, own = _resolve(part.subject, part.predicates)
         told = _description(named, 0) if named is not None else Description("")
+        pointed = _pointed_at(part) if not target.noun else None
+        if pointed is not None:
+            target = Description(pointed[0], relations=(replace(pointed[1], arguments=(told,)),))
+            continue
+        if not target.noun and named is not None and (name := _noun(named)):
+            target = replace(target, noun=name, plural=told.plural)
         if told.noun and target.noun and not _same(told.noun, target.noun):
             back = _mention(own, target.noun)
-            if back is not None:
-                relation = Relation(RENAMED.get(back.relation, back.relation), (told,), inverted=not back.reversed)
-                target = replace(target, relations=(*target.relations, relation))
-            continue
+            if part.picks:
+                target, context = Description(told.noun, plural=told.plural), target
+            else:
+                if back is not None:
+                    relation = Relation(RENAMED.get(back.relation, back.relation), (told,), inverted=not back.reversed)
+                    target = replace(target, relations=(*target.relations, relation))
+                continue
         properties, relations = _said(own, 0)
         target = replace(
             target,
             properties=_distinct((*target.properties, *told.properties, *properties)),
             relations=_distinct((*target.relations, *told.relations, *relations)),
         )
-    if not target.noun and viewer is not None:  # 'facing the windows, the one on the right'
-        target = replace(target, noun=(viewer.target or viewer.landmark).noun)
-    return Query(_with_nouns(target, viewer), viewer, understood)
+    target = _with_own_noun(target, viewer)
+    return Query(_with_nouns(target, viewer, context), viewer, understood)
 
 
-def _with_nouns(target: Description, viewer: Viewer | None) -> Description:
+def _with_own_noun(target: Description, viewer: Viewer | None) -> Description:
+    """Give a target without a noun one: that of the group it is chosen from, or of what the viewer looks at."""
+    if target.noun:
+        return target
+    among = next((one for one in target.relations if one.name == "among" and one.arguments[0].noun), None)
+    if among is not None:  # 'of the two chairs by the door, the left one'
+        group = among.arguments[0]
+        own = tuple(one for one in group.properties if one.degree == "plain" and one.dimension != "position")
+        rest = (*(one for one in target.relations if one is not among), *group.relations)
+        return replace(target, noun=group.noun, properties=_distinct((*target.properties, *own)), relations=rest)
+    if viewer is not None:  # 'facing the windows, the one on the right'
+        looked = viewer.target or viewer.landmark
+        if looked.noun not in SURROUNDINGS | {"wall"}:
+            return replace(target, noun=looked.noun)
+        carried = [one.arguments[0].noun for one in looked.relations if one.inverted or one.name == "with"]
+        return replace(target, noun=next(filter(None, carried), looked.noun))
+    for relation in target.relations:  # 'on the wall with two pictures, the one on the right'
+        group = relation.arguments[0]
+        if group.noun and group.count is not None and group.count > 1:
+            return replace(
+                target, noun=group.noun, relations=tuple(one for one in target.relations if one is not relation)
+            )
+    return target
+
+
+def _with_nouns(target: Description, viewer: Viewer | None, context: Description | None) -> Description:
     """Give landmarks without a noun theirs.
 
-    *It* is what the viewer looks at (*facing the desk, the lamp to the right of it*); *the others* are of the target's
-    kind (*the chair between the other two*).
+    *It* is what was described before (``context``), or what the viewer looks at (*facing the desk, the lamp to the
+    right of it*); *the others* are of the target's kind (*the chair between the other two*).
     """
 
     def named(told: Description) -> Description:
         if told.noun:
             return told
+        if context is not None and told == Description(""):
+            return context
         if viewer is not None and told == Description(""):
             return viewer.target or viewer.landmark
         return replace(told, noun=target.noun)
@@ -152,17 +196,51 @@ def _with_nouns(target: Description, viewer: Viewer | None) -> Description:
     return replace(target, relations=tuple(relations))
 
 
-def _statements(sentence: Sentence) -> Iterator[tuple[NounPhrase | None, tuple[Predicate, ...]]]:
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """Something said in a description; ``picks`` is True where it names the object that is meant."""
+
+    subject: NounPhrase | None
+    predicates: tuple[Predicate, ...]
+    picks: bool = False
+
+
+def _statements(sentence: Sentence) -> Iterator[Statement]:
     if sentence.fragment is not None:
-        yield sentence.fragment, ()
+        yield Statement(sentence.fragment, (), picks=sentence.fragment.determiner in {"the", "this", "that"})
     for clause in sentence.clauses:
-        yield clause.subject, _positive(clause)
+        predicates = clause.predicates
+        subject = clause.subject
+        picked = [one for one in predicates if one.relation == "kind" and one.arguments and one.positive]
+        picks = subject is not None and bool(subject.pronoun) and any(_is_definite(one) for one in picked)
+        if subject is not None and subject.negated and not _noun(subject):  # 'not the one next to the door'
+            subject, positive = None, not clause.positive
+        else:
+            positive = clause.positive
+        if not positive:
+            predicates = tuple(replace(predicate, positive=not predicate.positive) for predicate in predicates)
+        yield Statement(subject, predicates, picks and positive)
 
 
-def _positive(clause: Clause) -> tuple[Predicate, ...]:
-    if clause.positive:
-        return clause.predicates
-    return tuple(replace(predicate, positive=not predicate.positive) for predicate in clause.predicates)
+def _is_definite(said: Predicate) -> bool:
+    return said.arguments[0].determiner == "the"
+
+
+def _pointed_at(part: Statement) -> tuple[str, Relation] | None:
+    """Return the noun of *this desk* in *there is no lamp on this desk*, and the relation with the desk as landmark."""
+    if part.subject is None or part.subject.determiner not in {"a", "an", "some", "no", None} or part.subject.pronoun:
+        return None
+    for predicate in part.predicates:
+        for phrase in predicate.arguments:
+            for nearest, landmark in (
+                (predicate, phrase),
+                *((one, arg) for one in phrase.predicates for arg in one.arguments),
+            ):
+                if landmark.determiner in {"this", "these"} and (noun := _noun(landmark)):
+                    name = RENAMED.get(nearest.relation, nearest.relation)
+                    positive = predicate.positive != (part.subject.determiner == "no")
+                    return noun, Relation(name, (), str(nearest.degree), positive, not nearest.reversed)
+    return None
 
 
 def _resolve(
@@ -194,7 +272,18 @@ def _noun(phrase: NounPhrase, depth: int = 0) -> str:
 
 
 def _same(first: str, second: str) -> bool:
-    return first == second or first.split()[-1] == second.split()[-1]
+    """Return whether two nouns may stand for one object: the same head, or synonyms."""
+    from deixis.ontology.lexicon.lexicon import Relatedness
+    from deixis.ontology.tbox import default_ontology
+
+    if first == second or first.split()[-1] == second.split()[-1]:
+        return True
+    return default_ontology().lexicon.relation(first, second) in {
+        Relatedness.SAME,
+        Relatedness.SYNONYM,
+        Relatedness.BROADER,
+        Relatedness.NARROWER,
+    }
 
 
 def _mention(predicates: Sequence[Predicate], noun: str) -> Predicate | None:
@@ -212,14 +301,21 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if depth > MAX_DEPTH:
         return Description("")
     if phrase.members:
-        return _description(phrase.members[0], depth + 1)
+        first, *others = (_description(one, depth + 1) for one in phrase.members)
+        denied = [_denied(one) for one in others if one.negated and (not one.noun or _same(one.noun, first.noun))]
+        return replace(
+            first,
+            properties=(*first.properties, *(prop for properties, _ in denied for prop in properties)),
+            relations=(*first.relations, *(relation for _, relations in denied for relation in relations)),
+        )
     head, inner = phrase.head.casefold(), None
     if phrase.of is not None:
         inner = _description(phrase.of, depth + 1)
     properties = [_property(one) for one in phrase.adjectives]
     more, relations = _said(phrase.predicates, depth + 1)
-    noun = "" if head in EMPTY else head
+    noun, plural = "" if head in EMPTY else head, phrase.plural
     if inner is not None and (not noun or noun in GROUPS | PARTS):
+        plural = inner.plural and noun in GROUPS - {"one"}
         noun, properties = inner.noun, [*properties, *inner.properties]
         relations = (*relations, *inner.relations)
     elif inner is not None and inner.noun and inner.noun not in SURROUNDINGS:
@@ -227,7 +323,15 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.owner is not None and not phrase.owner.pronoun:
         relations = (*relations, Relation("with", (_description(phrase.owner, depth + 1),)))
     count = phrase.count if phrase.plural or phrase.count else None
-    return Description(noun, (*properties, *more), relations, count, phrase.negated)
+    return Description(noun, (*properties, *more), relations, count, phrase.negated, plural)
+
+
+def _denied(told: Description) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
+    """Return what *not the one next to the door* tells; nothing if it denies several parts, of which one may hold."""
+    if len(told.properties) + len(told.relations) != 1:
+        return (), ()
+    properties = tuple(replace(one, positive=not one.positive) for one in told.properties)
+    return properties, tuple(replace(one, positive=not one.positive) for one in told.relations)
 
 
 def _property(said: Adjective) -> Property:
@@ -249,6 +353,9 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             told = _description(arguments[0], depth + 1)
             if predicate.positive:
                 properties, relations = [*properties, *told.properties], [*relations, *told.relations]
+            else:
+                refused = _denied(told)
+                properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
             continue
         name = RENAMED.get(predicate.relation, predicate.relation)
         if predicate.value is not None and predicate.value.word in COMPARED:
@@ -259,9 +366,14 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             relations.append(Relation("between", told_all, positive=predicate.positive))
             continue
         for phrase, told in landmarks:
-            positive = predicate.positive != phrase.negated
+            positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
             if told.noun == "wall" and told.relations:  # 'the wall with the window': the window says where
-                relations.append(replace(told.relations[0], name=name, degree=str(predicate.degree), positive=positive))
+                placed = WALL_RELATIONS.get(name, name)
+                relations.append(
+                    replace(
+                        told.relations[0], name=placed, degree=str(predicate.degree), positive=positive, inverted=False
+                    )
+                )
             elif told.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (known := _surface(name, told.noun, positive)):
                 properties += known
             elif told.noun in SURROUNDINGS:

@@ -61,7 +61,8 @@ def refer(
     Raises
     ------
     DescriptionError
-        If the text is blank or too long, nothing of it is understood, or the scene has no object ``oracle``.
+        If the text is blank or too long, nothing of it is understood, no noun of it is known or names an object of the
+        scene, or the scene has no object ``oracle``.
     SceneError
         If the scene is invalid.
 
@@ -88,6 +89,7 @@ def refer(
     if not seen.objects:
         return _answer(text, query, seen, np.zeros(0), None, ())
     room = seen.room
+    _check_words(query, room)
     probabilities = shipped_model().probabilities(query, room)
     turns: list[Turn] = []
     question = _question(probabilities, room)
@@ -119,6 +121,27 @@ def read_description(text: str) -> Query:
             "nothing in `text` describes an object in English; write, say, 'the chair to the left of the desk'"
         )
     return query
+
+
+def _check_words(query: Query, room: Room) -> None:
+    """Raise DescriptionError if no noun is in the lexicon or near a label, and the query has no property.
+
+    Texts in other languages parse as phrases of unknown nouns.
+    """
+    from deixis.ontology.tbox import default_ontology
+
+    nouns = [part.noun for part in query.target.parts() if part.noun]
+    if query.viewer is not None:
+        nouns += [part.noun for part in query.viewer.landmark.parts() if part.noun]
+    lexicon, similarity = default_ontology().lexicon, shipped_model().lexis.similarity
+    known = any(lexicon.knows(noun) or (similarity(noun, room) > 0).any() for noun in nouns)
+    if known or any(one.dimension != "other" for one in query.target.properties):
+        return
+    if nouns:
+        raise DescriptionError(
+            f"no noun of `text` is known, got {', '.join(map(repr, dict.fromkeys(nouns)))};"
+            " describe the object in English with a common noun or a label of the scene"
+        )
 
 
 def refer_batch(lines: Iterable[str], folder: Path) -> Iterator[dict[str, Any]]:
@@ -169,7 +192,7 @@ def model_with(weights: Mapping[str, Array]) -> Model:
 
     ontology = default_ontology()
     nouns = Nouns(ontology.lexicon)
-    return Model(weights, Lexis(nouns.features, nouns.similarity, ontology.colours))
+    return Model(weights, Lexis(nouns.features, nouns.similarity, nouns.number, ontology.colours))
 
 
 def _question(probabilities: Array, room: Room) -> Question | None:

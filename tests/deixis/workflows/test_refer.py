@@ -40,6 +40,12 @@ def study() -> deixis.Scene:
         ("the couch", "o11"),
         ("the trash can near the couch", "o15"),
         ("The lamp is next to the sofa. It is not on a desk.", "o13"),
+        ("There is a desk with a lamp. It is the chair in front of it.", "o9"),
+        ("Of the two bins, the one closest to the door.", "o15"),
+        ("There is no monitor on this desk.", "o5"),
+        ("the desk without a monitor", "o5"),
+        ("the bin farthest from the door, not the one near the door", "o14"),
+        ("the bin that is not the one closest to the door", "o14"),
     ],
 )
 def test_people_mean_the_object_that_fits_best(study: deixis.Scene, text: str, target: str) -> None:
@@ -113,6 +119,19 @@ def test_an_empty_scene_has_no_target() -> None:
 def test_texts_that_describe_nothing_are_refused(study: deixis.Scene, text: str) -> None:
     with pytest.raises(DescriptionError):
         deixis.refer(text, study)
+
+
+@pytest.mark.parametrize(
+    "text", ["der rote Stuhl neben dem Tisch", "la silla roja", "the grommit near the frobble", "椅子"]
+)
+def test_texts_without_a_known_noun_are_refused(study: deixis.Scene, text: str) -> None:
+    with pytest.raises(DescriptionError):
+        deixis.refer(text, study)
+
+
+def test_a_label_of_the_scene_is_a_known_noun(study: deixis.Scene) -> None:
+    labelled = replace(study, objects=(replace(study.objects[0], label="grommit"), *study.objects[1:]))
+    assert deixis.refer("the grommit", labelled).target == study.objects[0].id
 
 
 def test_an_unknown_oracle_is_refused(study: deixis.Scene) -> None:
