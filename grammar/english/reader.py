@@ -61,7 +61,7 @@ def read_english(
     --------
     >>> script = read_english("The fork is left of the plate. The knife is to the right of it.")
     >>> [str(fact) for fact in script.facts]
-    ['left(fork, plate)', 'right(knife, fork)']
+    ['left(fork, plate)', 'right(knife, plate)']
     """
     ontology = ontology or default_ontology()
     sentences = parse_english(text, ontology, deadline)

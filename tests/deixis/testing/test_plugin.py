@@ -42,7 +42,7 @@ def test_a_failed_expectation_names_its_line_and_says_why(pytester: pytest.Pytes
 
 
 def test_a_broken_script_fails_with_its_place(pytester: pytest.Pytester) -> None:
-    (pytester.path / "dinner.layout").write_text("fork beside plate\n# expect:\n#   consistent\n")
+    (pytester.path / "dinner.layout").write_text("fork lft of plate\n# expect:\n#   consistent\n")
     result = pytester.runpytest_inprocess(*OPTIONS)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*dinner.layout:1:*"])

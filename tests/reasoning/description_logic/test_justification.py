@@ -40,7 +40,7 @@ CASES = [
     (":Tray rdfs:subClassOf owl:Nothing", 4),  # through someValuesFrom, which no rule of OWL 2 RL finds
     (":f a dx:Tableware", 3),
     (":f dx:left :k", 4),
-    ("dx:left rdfs:domain dx:Thing", 3),
+    ("dx:left rdfs:domain dx:SpatialEntity", 3),
 ]
 
 
