@@ -15,6 +15,8 @@ from deixis import scratch
 from deixis.scratch import ScratchFolder, remove_stale, scratch_folder
 
 WAITING = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell starts background jobs with SIGINT ignored
 from deixis.reasoning.description_logic import reasoners
 reasoners._java = lambda arguments: ["sleep", "600"]  # a reasoner that takes long
 reasoners.classify("")
@@ -47,12 +49,15 @@ def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_reasoner_ends_with_the_process_that_runs_it(temporary: Path, end: signal.Signals) -> None:
     deadline = time.monotonic() + 60
     with subprocess.Popen([sys.executable, "-c", WAITING], stderr=subprocess.DEVNULL) as run:
-        while not (reasoners := children_of(run.pid)):
-            assert time.monotonic() < deadline and run.poll() is None
-            time.sleep(0.02)
-        time.sleep(0.2)  # until it has become the reasoner
-        os.kill(run.pid, end)
-        assert run.wait(30) == -end
+        try:
+            while not (reasoners := children_of(run.pid)):
+                assert time.monotonic() < deadline and run.poll() is None
+                time.sleep(0.02)
+            time.sleep(0.2)  # until it has become the reasoner
+            os.kill(run.pid, end)
+            assert run.wait(30) == -end
+        finally:
+            run.kill()
     while any(map(is_running, reasoners)):
         assert time.monotonic() < deadline
         time.sleep(0.02)
