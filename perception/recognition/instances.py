@@ -55,11 +55,7 @@ class InstanceCategory:
         cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
     ) -> InstanceCategory:
         """Return a category of packed views, and of the ids of views without a descriptor."""
-        if len(views.descriptors) == len(views):  # one descriptor for each view
-            distances = _distances_of_rows(views.descriptors)
-        else:
-            distances = np.array([view_distances(views[i], views) for i in range(len(views))])
-        return cls(name, views, distances.reshape(len(views), len(views)), empty, dict(things))
+        return cls(name, views, _distances(views, views), empty, dict(things))
 
     def __len__(self) -> int:
         return len(self.views)
@@ -98,8 +94,8 @@ class InstanceCategory:
         n = len(self.views)
         distances = np.zeros((n + 1, n + 1))
         distances[:n, :n] = self.distances
-        distances[n, :n] = view_distances(new[0], self.views)
-        distances[:n, n] = [float(view_distances(self.views[i], new)[0]) for i in range(n)]
+        distances[n, :n] = _distances(new, self.views)[0]
+        distances[:n, n] = _distances(self.views, new)[:, 0]
         return replace(self, views=self.views.joined(new), distances=distances, things=things)
 
     def without_view(self, key: str) -> InstanceCategory:
@@ -114,10 +110,20 @@ class InstanceCategory:
         return replace(self, views=self.views.without(place), distances=distances, things=things)
 
 
-def _distances_of_rows(rows: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the Euclidean distances (n, n) between rows (n, d)."""
+def _distances(seen: PackedViews, views: PackedViews) -> NDArray[np.float64]:
+    """Return D_V (n, m) between each of n views and each of m views.
+
+    Two views of one descriptor each are always compared by the same sum, so that a distance does not depend on the
+    other views that it is computed with.
+    """
     from scipy.spatial.distance import cdist
 
-    wide = rows.astype(np.float64)
-    result: NDArray[np.float64] = cdist(wide, wide)
-    return result
+    rows, columns = (np.flatnonzero(np.diff(one.starts) == 1) for one in (seen, views))
+    distances = np.empty((len(seen), len(views)))
+    if seen is not views or len(rows) < len(seen):  # also checks that the descriptors of other views fit
+        for i in range(len(seen)):
+            distances[i] = view_distances(seen[i], views)
+    single = (one.descriptors[one.starts[at]].astype(np.float64) for one, at in ((seen, rows), (views, columns)))
+    if len(rows) and len(columns):
+        distances[np.ix_(rows, columns)] = cdist(*single)
+    return distances
