@@ -17,6 +17,8 @@ from functools import cache
 from itertools import product
 from pathlib import Path
 
+from calculus_files import write_calculus
+
 Atom = tuple[int | None, int]
 """Directions i and j; None and a direction for two points at the same place."""
 
@@ -123,19 +125,18 @@ def _parts(angles: Angles, between: Angles, full: int) -> list[Angles]:
 
 def write(m: int, folder: Path) -> Path:
     """Write the specification, the converses and the compositions; return the path of the specification."""
-    opra, name = Opra(m), f"opra{m}"
-    atoms = opra.atoms
-    sign = {atom: f"{'s' if atom[0] is None else atom[0]}_{atom[1]}" for atom in atoms}
-    folder.mkdir(parents=True, exist_ok=True)
-    entries = f"comp_table_file {name}.comp\nconverse_file {name}.conv\nidentity s_0\ncalculus_size {len(atoms)}\n"
-    (folder / f"{name}.spec").write_text(entries, encoding="utf-8")
-    lines = [f"{sign[atom]} :: {sign[opra.converse(atom)]}\n" for atom in atoms]
-    (folder / f"{name}.conv").write_text("".join(lines), encoding="utf-8")
-    with (folder / f"{name}.comp").open("w", encoding="utf-8") as out:
-        for first, second in product(atoms, atoms):
-            composed = " ".join(sign[third] for third in atoms if opra.possible(first, second, third))
-            out.write(f"{sign[first]} : {sign[second]} :: ( {composed} )\n")
-    return folder / f"{name}.spec"
+    opra = Opra(m)
+    sign = {atom: f"{'s' if atom[0] is None else atom[0]}_{atom[1]}" for atom in opra.atoms}
+    atom_of = {text: atom for atom, text in sign.items()}
+
+    def compose(first: str, second: str) -> list[str]:
+        ab, bc = atom_of[first], atom_of[second]
+        return [sign[third] for third in opra.atoms if opra.possible(ab, bc, third)]
+
+    def converse(text: str) -> str:
+        return sign[opra.converse(atom_of[text])]
+
+    return write_calculus(folder, f"opra{m}", tuple(atom_of), "s_0", converse, compose)
 
 
 if __name__ == "__main__":
