@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from peers import lccp_pcl
 from records import command_line, mean, recorded, share
 
-from deixis.grammar.parser import read_script
+from deixis.grammar.parser import read_layout
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.detection.detect import detect
@@ -184,7 +184,7 @@ def simulated(seeds: range, compared: dict[str, Method]) -> None:
     print(f"\n{len(seeds)} simulated formal settings: things found, and found within 1 cm; wholly right tables\n")
     totals = {name: np.zeros(4) for name in compared}
     for seed in seeds:
-        look = simulate(lay_script(read_script(LAYOUT), seed, cloth=bool(seed % 2)), seed=seed)
+        look = simulate(lay_script(read_layout(LAYOUT), seed, cloth=bool(seed % 2)), seed=seed)
         for name, method in compared.items():
             labels, middles, taken = method(replace(look.cloud, labels=None))
             found, placed, count = _right(look, labels, middles)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.grammar.parser import read_script
+from deixis.grammar.parser import read_layout
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.simulator.camera import KINECT, Camera, chair_camera, looking_pose
@@ -37,7 +37,7 @@ class Case:
 
 def formal(seed: int) -> Case:
     """Return a table laid for a formal dinner, seen from the chair."""
-    table = lay_script(read_script(LAYOUT), seed, cloth=bool(seed % 2)).table
+    table = lay_script(read_layout(LAYOUT), seed, cloth=bool(seed % 2)).table
     return _case(see(table, chair_camera(table), seed=seed))
 
 
@@ -78,7 +78,7 @@ def clutter(seed: int) -> Case:
 
 def room(seed: int) -> Case:
     """Return a formal table before a wall, on a floor; every point is moved by 0.4 mm along each axis."""
-    table = lay_script(read_script(LAYOUT), seed).table
+    table = lay_script(read_layout(LAYOUT), seed).table
     camera = chair_camera(table, back=0.3, height=0.9)
     x0, x1, y1 = table.top.low[0] - 1.5, table.top.high[0] + 1.5, table.top.high[1] + 0.5
     walls = [

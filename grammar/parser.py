@@ -75,7 +75,7 @@ def parse_script(
     return _script(FileReader(text, file, Draft(ontology), language_of(ontology)), deadline)
 
 
-def read_script(path: str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()) -> Script:
+def read_layout(path: str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()) -> Script:
     """Read the layout script in a file, with the files that it includes.
 
     Parameters

@@ -9,7 +9,7 @@ import pytest
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError, ScriptFileError
 from deixis.grammar.format import format_script
-from deixis.grammar.parser import read_script
+from deixis.grammar.parser import read_layout
 
 
 def write(folder: Path, **texts: str) -> Path:
@@ -21,7 +21,7 @@ def write(folder: Path, **texts: str) -> Path:
 
 def message(path: Path) -> str:
     with pytest.raises(DeixisError) as caught:
-        read_script(path)
+        read_layout(path)
     return str(caught.value).replace(str(path.parent) + "/", "")
 
 
@@ -29,7 +29,7 @@ def test_include(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "c.layout").write_text("Fork above cup")
     path = write(tmp_path, a='include "b.layout"; fork on plate', b='b on c\ninclude "sub/c.layout"')
-    script = read_script(path)
+    script = read_layout(path)
     assert [str(f) for f in script.facts] == ["on(b, c)", "top(Fork, cup)", "on(Fork, plate)"]
     files = [f.source.file.removeprefix(f"{tmp_path}/") for f in script.facts if f.source]
     assert files == ["b.layout", "sub/c.layout", "a.layout"]
@@ -40,12 +40,12 @@ def test_a_file_is_included_once(tmp_path: Path) -> None:
     path = write(
         tmp_path, a='include "b.layout"; include "b.layout"; include "c.layout"', b="x on y", c='include "b.layout"'
     )
-    assert len(read_script(path).facts) == 1
+    assert len(read_layout(path).facts) == 1
 
 
 def test_the_header_of_an_included_file(tmp_path: Path) -> None:
     path = write(tmp_path, a='layout a seen from chair\ninclude "b.layout"', b="layout b seen from Chair\nx on y")
-    assert read_script(path).name == "a"
+    assert read_layout(path).name == "a"
     write(tmp_path, b="layout b seen from door\nx on y")
     assert message(path) == (
         "b.layout:1:1: this file is seen from 'door', but the script that includes it from 'chair'\n"
@@ -56,7 +56,7 @@ def test_the_header_of_an_included_file(tmp_path: Path) -> None:
 def test_errors_of_included_files_are_reported(tmp_path: Path) -> None:
     path = write(tmp_path, a='fork\ninclude "b.layout"\nspoon', b="x on x")
     with pytest.raises(ScriptError) as caught:
-        read_script(path)
+        read_layout(path)
     assert [Path(p.source.file).name for p in caught.value.problems] == ["a.layout", "b.layout", "a.layout"]
 
 
@@ -111,26 +111,26 @@ def test_wrong_encodings(tmp_path: Path, data: bytes, expected: str) -> None:
     path = tmp_path / "a.layout"
     path.write_bytes(data)
     with pytest.raises(ScriptFileError) as caught:
-        read_script(path)
+        read_layout(path)
     assert str(caught.value) == f"{path}: {expected}"
 
 
 def test_unreadable_files(tmp_path: Path) -> None:
     assert message(tmp_path / "none.layout") == "none.layout: there is no such file"
     with pytest.raises(ScriptFileError, match="this is a directory, not a layout script"):
-        read_script(tmp_path)
+        read_layout(tmp_path)
     with pytest.raises(OSError, match="regular file"):
-        read_script("/dev/zero")
+        read_layout("/dev/zero")
     with pytest.raises(ScriptFileError, match="cannot be read"):
-        read_script(tmp_path / ("x" * 5000))
+        read_layout(tmp_path / ("x" * 5000))
 
 
 def test_an_empty_file_is_an_empty_script(tmp_path: Path) -> None:
-    script = read_script(write(tmp_path, a=""))
+    script = read_layout(write(tmp_path, a=""))
     assert (script.facts, script.objects, len(script.graph().nodes)) == ((), (), 0)
 
 
 def test_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("deixis.grammar.files.MAX_FILE_BYTES", 1024 * 1024)
     with pytest.raises(ScriptFileError, match="larger than 1 MB"):
-        read_script(write(tmp_path, a=" " * (1024 * 1024 + 1)))
+        read_layout(write(tmp_path, a=" " * (1024 * 1024 + 1)))

@@ -21,11 +21,11 @@ def fmt(
     """Print a script in its canonical form, with its comments."""
     from deixis.errors import DeixisError
     from deixis.grammar.format import format_script
-    from deixis.grammar.parser import read_script
+    from deixis.grammar.parser import read_layout
 
     if write and check:
         raise DeixisError("fmt: --check and --write exclude each other")
-    formatted = format_script(read_script(script))
+    formatted = format_script(read_layout(script))
     same = formatted == Path(script).read_bytes().decode("utf-8-sig")
     if write and not same:
         _replace(Path(script), formatted)

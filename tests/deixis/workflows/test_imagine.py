@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_scripts import scripts
 
-from deixis.grammar.parser import parse_script, read_script
+from deixis.grammar.parser import parse_script, read_layout
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
@@ -49,7 +49,7 @@ def require_well_laid(script: Script, imagined: ImaginedTable) -> None:
 @pytest.mark.parametrize("name", POSSIBLE)
 @pytest.mark.parametrize("seed", [0, 1])
 def test_imagined_examples_are_checked_and_grounded_as_laid_well(name: str, seed: int) -> None:
-    script = read_script(str(EXAMPLES / f"{name}.layout"))
+    script = read_layout(str(EXAMPLES / f"{name}.layout"))
     found = imagine(script, seed=seed)
     assert [(entry.finished, entry.overlapping, entry.named_otherwise) for entry in found.tables] == [(True, (), ())]
     require_well_laid(script, found.tables[0])
@@ -259,7 +259,7 @@ def test_bad_input_is_one_message_and_exit_code_2(tmp_path: Path) -> None:
 def test_no_name_in_a_picture_covers_another(name: str) -> None:
     from deixis.plots.imagine import table_figure
 
-    script = read_script(str(EXAMPLES / f"{name}.layout"))
+    script = read_layout(str(EXAMPLES / f"{name}.layout"))
     imagined = imagine(script).tables[0]
     figure = table_figure(imagined, script.ontology.kinds, script.title)
     extents = [text.get_window_extent() for text in figure.axes[0].texts]

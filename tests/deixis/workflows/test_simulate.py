@@ -15,7 +15,7 @@ from typer.testing import CliRunner, Result
 
 from deixis.cli.simulate import simulate as simulate_command
 from deixis.errors import DeixisError
-from deixis.grammar.parser import parse_script, read_script
+from deixis.grammar.parser import parse_script, read_layout
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
@@ -28,7 +28,7 @@ from deixis.workflows.lay_table import LaidScript, NoTableError, TimeIsUpError, 
 from deixis.workflows.simulate import CameraSetup, simulate
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-FORMAL = read_script(str(EXAMPLES / "formal_dinner.layout"))
+FORMAL = read_layout(str(EXAMPLES / "formal_dinner.layout"))
 CUPS = (
     "teacup on saucer; teaspoon on saucer; mug right of saucer; plate left of saucer; napkin on plate; fork on napkin"
 )
@@ -39,7 +39,7 @@ def box_mesh(width: float, length: float, height: float) -> Mesh:
 
 
 def require_true(script_text: str | None, laid: LaidScript, file: str | None = None) -> None:
-    script = parse_script(script_text) if script_text is not None else read_script(str(EXAMPLES / f"{file}.layout"))
+    script = parse_script(script_text) if script_text is not None else read_layout(str(EXAMPLES / f"{file}.layout"))
     checked = Session(memory="not-needed").check(script, truth_scene(laid.table))
     assert checked.table.well, [str(entry.fact) for entry in checked.table.broken]
 
@@ -47,7 +47,7 @@ def require_true(script_text: str | None, laid: LaidScript, file: str | None = N
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("name", ["formal_dinner", "script1", "script2"])
 def test_what_a_layout_says_is_true_of_the_table_that_is_laid(name: str, seed: int) -> None:
-    laid = lay_script(read_script(str(EXAMPLES / f"{name}.layout")), seed)
+    laid = lay_script(read_layout(str(EXAMPLES / f"{name}.layout")), seed)
     assert laid.missed == ()
     require_true(None, laid, name)
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.experiments.place_settings import formal_setting
-from deixis.grammar.parser import parse_script, read_script
+from deixis.grammar.parser import parse_script, read_layout
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts import fact_tables
@@ -24,7 +24,7 @@ from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint
 
 Boxes = NDArray[np.float64]
-FORMAL = read_script(str(Path(__file__).parents[3] / "examples" / "formal_dinner.layout")).graph()
+FORMAL = read_layout(str(Path(__file__).parents[3] / "examples" / "formal_dinner.layout")).graph()
 QUARTER = math.pi / 2
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.grammar.parser import read_script
+from deixis.grammar.parser import read_layout
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables
 from deixis.reasoning.grounding.matching.problem import Problem
@@ -28,7 +28,7 @@ def inquiry_of() -> Callable[..., Inquiry]:
         script: str, margin: float = 0.0, crisp: bool = False, kinds: tuple[QuestionKind, ...] = tuple(QuestionKind)
     ) -> Inquiry:
         scene = read_scene(EXAMPLES / "place_setting.scene.json")
-        read = read_script(str(EXAMPLES / f"{script}.layout"))
+        read = read_layout(str(EXAMPLES / f"{script}.layout"))
         description, seen = read.graph(), scene.relations(read.ontology.relations)
         said = crisp_tables(description, seen.names) if crisp else fact_tables(description, scene.boxes)
         n1 = len(description.nodes)
