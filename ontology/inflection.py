@@ -53,6 +53,8 @@ SAME = frozenset(
     | {"clothing", "luggage", "equipment", "scissors", "trousers", "jeans", "pants", "shorts", "tights", "leggings"}
     | {"pyjamas", "pajamas", "overalls", "dungarees", "pliers", "tweezers", "tongs", "binoculars", "headphones"}
     | {"earphones", "goggles", "sunglasses", "eyeglasses", "spectacles", "clothes", "stairs", "barracks", "chess"}
+    | {"crockery", "tableware", "cookware", "stationery", "jewellery", "jewelry", "bedding", "footwear", "underwear"}
+    | {"outerwear", "headwear", "seafood"}
 )
 """Nouns with one form for both numbers, and nouns that are plural only."""
 

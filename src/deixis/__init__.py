@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from deixis.workflows.ask import ask
     from deixis.workflows.check import Check, check
     from deixis.workflows.ground import ground
+    from deixis.workflows.habits import Placements, habits
     from deixis.workflows.imagine import Imagination, imagine
     from deixis.workflows.infer import Inference, infer
     from deixis.workflows.lint import Lint, lint
@@ -61,6 +62,7 @@ __all__ = [
     "Match",
     "OrientedBox",
     "PerceivedObject",
+    "Placements",
     "PointCloud",
     "QueryResult",
     "Recognised",
@@ -74,6 +76,7 @@ __all__ = [
     "check",
     "format_script",
     "ground",
+    "habits",
     "imagine",
     "infer",
     "lint",
@@ -98,6 +101,7 @@ _HOMES = {
     "Match": "deixis.ontology.lessons.types",
     "OrientedBox": "deixis.perception.scene",
     "PerceivedObject": "deixis.perception.scene",
+    "Placements": "deixis.workflows.habits",
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "Recognised": "deixis.learning.views",
@@ -111,6 +115,7 @@ _HOMES = {
     "check": "deixis.workflows.check",
     "format_script": "deixis.grammar.format",
     "ground": "deixis.workflows.ground",
+    "habits": "deixis.workflows.habits",
     "imagine": "deixis.workflows.imagine",
     "infer": "deixis.workflows.infer",
     "lint": "deixis.workflows.lint",

@@ -48,6 +48,7 @@ COMMAND_GROUPS = {
         "query": "query",
         "relation": "relation",
         "learn-relation": "learn_relation",
+        "habits": "habits",
         "category": "category_app",
         "memory": "memory_app",
     },
