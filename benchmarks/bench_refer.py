@@ -2,7 +2,9 @@
 
 Prints the share of targets that are right (Nr3D: valid sentences, easy and hard, view-dependent and independent), the
 most probable third of the answers, the calibration error in ten bins, the milliseconds for each sentence, and the
-share and the number of yes-or-no questions until the answer is decided; then the same with class names hidden.
+share and the number of yes-or-no questions until the answer is decided, and until it has the probability ENOUGH, beside
+the entropy of the answers in bits, the least number of questions that leaves no doubt; then the same with class names
+hidden.
 The weights were fitted to the training sentences that the folder holds, so that figures for these are not held out:
 ``fit_reference.py`` prints those for held-out rooms.
 """
@@ -16,6 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 from common import data_folder
+from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 from refer3d import Described, nr3d, read_scenes, sr3d
 
@@ -26,6 +29,9 @@ from deixis.reasoning.grounding.reference.questions import answered, best_questi
 from deixis.workflows.refer import MAX_QUESTIONS, read_description, refer, shipped_model
 
 BINS = 10
+
+ENOUGH = 0.9
+"""Probability of an answer from which on the shorter of the two dialogues asks no more questions."""
 
 
 def main() -> None:
@@ -64,7 +70,8 @@ def measure() -> None:
 
 def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
     """Record the figures of a set of sentences, each answered by its model, and return them as one line."""
-    right, certain, asked, settled = np.zeros((4, len(told)))
+    right, certain, bits = np.zeros((3, len(told)))
+    asked, settled = np.zeros((2, 2, len(told)))
     for place, (one, model) in enumerate(told):
         room = one.scene.room
         try:
@@ -72,14 +79,10 @@ def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
         except DescriptionError:
             probabilities = np.full(len(room), 1 / len(room))
         certain[place] = probabilities.max()
+        bits[place] = -(probabilities * np.log2(np.maximum(probabilities, 1e-300))).sum()
         right[place] = room.ids[int(probabilities.argmax())] == one.target
-        while probabilities.max() < DECIDED and asked[place] < MAX_QUESTIONS:
-            question = best_question(probabilities, room, room.labels[0] is not None)
-            if question is None:
-                break
-            probabilities = answered(probabilities, room, question, one.target in question.yes)
-            asked[place] += 1
-        settled[place] = room.ids[int(probabilities.argmax())] == one.target
+        for row, enough in enumerate((DECIDED, ENOUGH)):
+            asked[row, place], settled[row, place] = dialogue(probabilities, one, enough)
     hard = np.array([one.hard for one, _ in told])
     viewed = np.array([one.view_dependent for one, _ in told])
     kinds = {"easy": ~hard, "hard": hard, "view-dependent": viewed, "view-independent": ~viewed}
@@ -92,13 +95,28 @@ def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
         share(f"{name}, {kind}: right", int(right[mask].sum()), int(mask.sum()))
     share(f"{name}: right in the most probable third", int(right[third].sum()), len(third))
     figure(f"{name}: calibration error", error, "share")
-    share(f"{name}: right after questions", int(settled.sum()), len(told))
-    figure(f"{name}: questions per sentence", asked.mean(), "questions")
+    figure(f"{name}: entropy of the answers", bits.mean(), "bits")
+    for row, ending in enumerate(("", f" until {ENOUGH:g}")):
+        share(f"{name}: right after questions{ending}", int(settled[row].sum()), len(told))
+        figure(f"{name}: questions per sentence{ending}", asked[row].mean(), "questions")
     return (
         f"{len(told)} sentences, right {right.mean():.3f} ({', '.join(parts)}); most probable third"
-        f" {right[third].mean():.3f}, calibration error {error:.3f}; with {asked.mean():.2f} questions a"
-        f" sentence {settled.mean():.3f}"
+        f" {right[third].mean():.3f}, calibration error {error:.3f}; with {asked[0].mean():.2f} questions a"
+        f" sentence {settled[0].mean():.3f}, with {asked[1].mean():.2f} (until {ENOUGH:g}) {settled[1].mean():.3f};"
+        f" entropy {bits.mean():.2f} bits"
     )
+
+
+def dialogue(probabilities: NDArray[np.float64], one: Described, enough: float) -> tuple[int, bool]:
+    """Return the number of questions until an object has the probability ``enough``, and whether it is the target."""
+    room, asked = one.scene.room, 0
+    while probabilities.max() < enough and asked < MAX_QUESTIONS:
+        question = best_question(probabilities, room, room.labels[0] is not None, enough)
+        if question is None:
+            break
+        probabilities = answered(probabilities, room, question, one.target in question.yes)
+        asked += 1
+    return asked, room.ids[int(probabilities.argmax())] == one.target
 
 
 def _quiet(one: Described) -> None:

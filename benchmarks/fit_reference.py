@@ -1,4 +1,4 @@
-"""Fit the weights of ``deixis refer`` to Nr3D and Sr3D in ``$DEIXIS_DATA/refer3d``, and write them as JSON.
+"""Fit the weights of ``deixis refer`` to Nr3D, ScanRefer and Sr3D in ``$DEIXIS_DATA/refer3d``, and write them as JSON.
 
 ``python benchmarks/fit_reference.py FILE`` writes the weights; without FILE it only prints figures for held-out rooms.
 The power of the probabilities (``calibration``) is fitted to the answers for held-out rooms.
@@ -6,10 +6,8 @@ The power of the probabilities (``calibration``) is fitted to the answers for he
 
 from __future__ import annotations
 
-import json
 import random
 import sys
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,19 +15,20 @@ import numpy as np
 from bench_refer import figures
 from common import data_folder
 from numpy.typing import NDArray
-from refer3d import Described, nr3d, read_scenes, sr3d
+from refer3d import Described, nr3d, read_scenes, scanrefer, sr3d
 
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import DescriptionError
-from deixis.reasoning.grounding.reference.fitting import Example, feature_names, fit, fit_calibration, initial_weights
+from deixis.reasoning.grounding.reference.fitting import Example, fit, fit_calibration, initial_weights
 from deixis.reasoning.grounding.reference.model import Model
+from deixis.workflows.learn_reference import write_reference
 from deixis.workflows.refer import model_with, read_description
 
 FOLDS = 4
 GENERATED = 1500
 """Number of sentences of Sr3D to fit to; more would outweigh those of people."""
 
-PENALTY = 2.0
+PENALTY = 1.0
 ITERATIONS = 40
 
 Array = NDArray[np.float64]
@@ -41,7 +40,8 @@ def main() -> None:
         return
     scenes = read_scenes(folder)
     people, generated = list(nr3d(folder, scenes)), list(sr3d(folder, scenes))
-    chosen = people + random.Random(0).sample(generated, min(GENERATED, len(generated)))
+    longer = list(scanrefer(folder, scenes))
+    chosen = people + longer + random.Random(0).sample(generated, min(GENERATED, len(generated)))
     examples = [(one, example) for one in chosen if (example := example_of(one)) is not None]
     rooms = sorted({one.room for one in chosen})
     random.Random(1).shuffle(rooms)
@@ -61,7 +61,8 @@ def main() -> None:
         print(f"{name}, held-out rooms: {figures(name, held_out)}")
     if len(sys.argv) > 1:
         weights = fit(start, [example for _, example in examples], PENALTY, ITERATIONS)
-        write(Path(sys.argv[1]), {**weights, "calibration": power}, len(people), min(GENERATED, len(generated)))
+        counts = (len(people), len(longer), min(GENERATED, len(generated)))
+        write_reference(model_with({**weights, "calibration": power}), Path(sys.argv[1]), source(*counts))
 
 
 def example_of(one: Described) -> Example | None:
@@ -77,21 +78,12 @@ def with_calibration(model: Model, power: Array) -> Model:
     return replace(model, weights={**model.weights, "calibration": power})
 
 
-def write(file: Path, weights: dict[str, Array], people: int, generated: int) -> None:
-    """Write weights with the names of their features; those of words that keep to their family are left out."""
-    named = feature_names(default_ontology().colours)
-    named |= {"calibration": ("power", "unread", "vain"), "towards": ("towards",)}
-    told = {}
-    for name, values in sorted(weights.items()):
-        if np.abs(values).max() < 5e-4:
-            continue
-        names: Sequence[str] = named[name if name in named else name.partition("/")[0]]
-        told[name] = dict(zip(names, (round(float(value), 3) for value in values), strict=True))
-    source = (
-        f"Fitted to {people} sentences of Nr3D (Achlioptas et al. 2020) and {generated} of Sr3D, rooms of ScanNet,"
-        " by benchmarks/fit_reference.py"
+def source(people: int, longer: int, generated: int) -> str:
+    """Return what the weights were fitted to."""
+    return (
+        f"Fitted to {people} sentences of Nr3D and {generated} of Sr3D (Achlioptas et al. 2020) and {longer}"
+        " descriptions of ScanRefer (Chen et al. 2020), rooms of ScanNet, by benchmarks/fit_reference.py"
     )
-    file.write_text(json.dumps({"source": source, "weights": told}, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Read the descriptions of objects in rooms of ``$DEIXIS_DATA/refer3d``: Nr3D, Sr3D and their scenes."""
+"""Read the descriptions of objects in rooms of ``$DEIXIS_DATA/refer3d``: Nr3D, Sr3D, ScanRefer and their scenes."""
 
 from __future__ import annotations
 
@@ -61,6 +61,17 @@ def sr3d(folder: Path, scenes: dict[str, Scene]) -> Iterator[Described]:
     for row in _rows(folder, "sr3d*.csv"):
         if row["scan_id"] in scenes:
             yield _described(row, scenes, row["distractor_ids"].count(",") > 0)
+
+
+def scanrefer(folder: Path, scenes: dict[str, Scene]) -> Iterator[Described]:
+    """Yield the descriptions of ScanRefer (Chen et al. 2020), of one or more sentences; none counts as hard."""
+    for file in sorted(folder.glob("scanrefer*.json")):
+        for row in json.loads(file.read_text(encoding="utf-8")):
+            scene = scenes.get(row["scene_id"])
+            if scene is not None and row["object_id"] in scene.ids:
+                words = set(re.findall("[a-z]+", row["description"].casefold()))
+                room = row["scene_id"].split("_")[0]
+                yield Described(row["description"], scene, row["object_id"], room, False, bool(words & VIEW_WORDS))
 
 
 def _described(row: dict[str, str], scenes: dict[str, Scene], hard: bool) -> Described:

@@ -66,8 +66,6 @@ IDIOMS = tuple(
         "once again",
         "in fact",
         "in addition to",
-        "by itself",
-        "all by itself",
         "by the way",
         "so that",
         "at most",
@@ -382,8 +380,8 @@ beside: beside
 inside: inside, within
 outside: outside
 near: nearby, close by, near by, close, close at hand
-left: left, leftward, leftwards, far left, west
-right: right, rightward, rightwards, far right, east
+left: left, leftward, leftwards, far left, farthest left, furthest left, most left, west
+right: right, rightward, rightwards, far right, farthest right, furthest right, most right, east
 between: in between
 around: all around, around
 opposite: opposite, across
@@ -396,6 +394,7 @@ parallel_each_other: parallel, parallel to each other, in parallel
 one_each: one each, one apiece, one for each, respectively
 there: over there, there, here, out there, up there, down there
 apart: apart, away, far away
+alone: by itself, all by itself, on its own, all on its own, by themselves, on their own, all alone
 forward: forward, forwards, ahead
 backward: backward, backwards, rearward
 there: anywhere, everywhere, somewhere, nowhere

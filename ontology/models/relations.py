@@ -20,6 +20,10 @@ SAYING = "saying"
 """Name of the model of the pairs that people mention at all, in whatever relation."""
 
 
+UNDECIDED = "undecided"
+"""Name of the model of the words that boxes say nothing about, such as *facing*."""
+
+
 class Trend(IntEnum):
     """Direction in which the values of a term must go for the word to keep its meaning."""
 
@@ -77,7 +81,7 @@ class RelationModel:
     ``outliers`` is the share of facts that fit any pair, ``chance`` the mean degree of a random pair.
     """
 
-    name: str  # 'horizontal', 'vertical', 'diagonal', 'support' or 'saying'
+    name: str  # a value of FAMILIES or GRADED_FAMILIES, or 'saying'
     terms: tuple[Term, ...]
     outliers: float
     chance: float
@@ -141,13 +145,16 @@ GRADED_FAMILIES: Mapping[str, str] = {
     "less_long": "comparison",
     "wider": "comparison",
     "narrower": "comparison",
-    "opposite": "undecided",
-    "facing": "undecided",
-    "faced_by": "undecided",
-    "pointing": "undecided",
-    "pointed_at_by": "undecided",
+    "opposite": UNDECIDED,
+    "facing": UNDECIDED,
+    "faced_by": UNDECIDED,
+    "pointing": UNDECIDED,
+    "pointed_at_by": UNDECIDED,
 }
 """Model of each word in the graded reading; boxes say nothing about the words of the model ``undecided``."""
+
+MODEL_OF_WORD: Mapping[str, str] = {**FAMILIES, **GRADED_FAMILIES}
+"""Model of every word that has one."""
 
 
 @dataclass(frozen=True)
@@ -177,12 +184,11 @@ class RelationModels:
     @staticmethod
     def family(word: str) -> str:
         """Return the name of the model of a word; raise UnknownTermError if the word has no model."""
-        known = {**FAMILIES, **GRADED_FAMILIES}
-        if word not in known:
-            hint = nearest(word, known)
+        if word not in MODEL_OF_WORD:
+            hint = nearest(word, MODEL_OF_WORD)
             advice = f"; did you mean '{hint}'?" if hint else ""
             raise UnknownTermError(f"the word '{word}' has no graded model{advice}")
-        return known[word]
+        return MODEL_OF_WORD[word]
 
     def replaced(self, *models: RelationModel) -> RelationModels:
         """Return a copy in which these models replace those of the same names."""

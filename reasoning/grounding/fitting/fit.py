@@ -20,7 +20,9 @@ from numpy.typing import NDArray
 from deixis.ontology.models.relations import (
     FAMILIES,
     GRADED_FAMILIES,
+    MODEL_OF_WORD,
     SAYING,
+    UNDECIDED,
     Provenance,
     RelationModel,
     RelationModels,
@@ -210,12 +212,13 @@ def take_out(
 
 
 def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
-    """Return the weight of the stated words of each family with at least one."""
+    """Return the weight of the stated words of each family with at least one; *facing* and its like have none."""
     weights: dict[str, float] = {}
     for scene in scenes:
         for word, weight in zip(scene.words, scene.weights.tolist(), strict=True):
-            if word in FAMILIES and weight > 0:
-                weights[FAMILIES[word]] = weights.get(FAMILIES[word], 0.0) + weight
+            family = MODEL_OF_WORD.get(word, UNDECIDED)
+            if family != UNDECIDED and weight > 0:
+                weights[family] = weights.get(family, 0.0) + weight
     return weights
 
 
@@ -270,12 +273,14 @@ _KNOTS = {
         **dict.fromkeys(("rest", "upper", "lower", "level"), _SIGNED),
         "foot": _LEVEL,
     },
+    **{name: {"gap": _UNIT, "crowd": _UNIT} for name in ("nearness", "adjacency", "farness")},
 }
 
 
 def extended(model: RelationModel) -> RelationModel:
     """Return the model with more knots, and with terms of value 0 for the features that the prior does not use."""
-    finer = _KNOTS[model.name if model.name in _KNOTS else "direction"]
+    direction = model.name in {"horizontal", "vertical", "diagonal"}
+    finer = _KNOTS.get("direction" if direction else model.name, {})
     known = {term.feature: term for term in model.terms}
     terms = []
     for feature in dict.fromkeys([*known, *finer]):

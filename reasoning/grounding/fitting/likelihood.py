@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.errors import GraphError
 from deixis.ontology.graph import RelationGraph
-from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel
+from deixis.ontology.models.relations import FAMILIES, MODEL_OF_WORD, SAYING, RelationModel
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
 from deixis.reasoning.grounding.evidence.pair_features import View, view
@@ -25,7 +25,7 @@ class SaidPairs:
     """
 
     pairs: PairGeometry
-    words: tuple[str, ...]  # (m,) of the ten words
+    words: tuple[str, ...]  # (m,) words with a graded model
     ends: NDArray[np.int64]  # (m, 2): subject, object
     weights: NDArray[np.float64]  # (m,), at least 0
 
@@ -141,10 +141,12 @@ class _Designed:
         apart = ~np.eye(len(scene.pairs), dtype=bool)
         saying = view(scene.pairs, SAYING)
         known = {model.name for model in layout.models}
-        words = [word for word in FAMILIES if FAMILIES[word] in known] if all_words else dict.fromkeys(scene.words)
+        stated = [word for word in scene.words if MODEL_OF_WORD.get(word) in known]
+        others = [word for word in FAMILIES if FAMILIES[word] in known] if all_words else []
+        words = dict.fromkeys([*others, *stated])
         self.designs = {}
         for word in words:
-            model = layout.model(FAMILIES[word])
+            model = layout.model(MODEL_OF_WORD[word])
             parts = [hats(model, view(scene.pairs, word), apart), hats(layout.model(SAYING), saying, apart)]
             columns = np.concatenate([layout.columns(model.name), layout.columns(SAYING)])
             self.designs[word] = (np.concatenate(parts, axis=1), columns, model.outliers)
@@ -153,6 +155,7 @@ class _Designed:
         self.said = [
             (word, int(position[a, b]), float(weight))
             for word, (a, b), weight in zip(scene.words, scene.ends.tolist(), scene.weights.tolist(), strict=True)
+            if word in words
         ]
 
     def scores(self, values: Array) -> tuple[dict[str, Array], dict[str, Array]]:

@@ -74,6 +74,9 @@ def log_probability(model: Model, example: Example) -> Score | None:
     return model.scores(example.query, example.room)[int(at[0])] if len(at) else None
 
 
+LEAST_WEIGHT = 5e-4
+"""Least magnitude of a weight that is written to a file."""
+
 INITIAL: Mapping[str, float] = {
     "same": 3.0,
     "synonym": 3.0,
@@ -106,6 +109,7 @@ INITIAL: Mapping[str, float] = {
     "at": 2.0,
     "off": 0.5,
     "median": 1.0,
+    "exact": 0.5,
     "hue": 0.5,
     "tint": 0.5,
     "lightness": 0.5,
@@ -126,6 +130,7 @@ def initial_weights(colours: Colours) -> dict[str, Array]:
     weights["viewer/own"] = np.array([0.0, -2.0, -1.0, 0.0, 0.0, 0.0])
     weights["viewer/facing"] = np.array([2.0, 2.0, 2.0, 0.0, 0.0, 0.0])
     weights["towards"] = np.array([8.0])
+    weights["lifted"] = np.array([-1.5])
     return weights
 
 
@@ -149,8 +154,30 @@ def feature_names(colours: Colours) -> dict[str, tuple[str, ...]]:
         "noun": NOUN_FEATURES,
         "number": NUMBER_FEATURES,
         "target": ("rivals", "log_rivals", "surrounds"),
+        "count": ("exact", "off"),
         "seen": views,
         "viewer": views,
+    }
+
+
+def weight_names(colours: Colours) -> dict[str, tuple[str, ...]]:
+    """Return the names of the weights of each block in a file of weights, in order."""
+    return feature_names(colours) | {
+        "calibration": ("power", "unread", "vain"),
+        "towards": ("towards",),
+        "lifted": ("lifted",),
+    }
+
+
+def named_weights(weights: Mapping[str, Array], colours: Colours) -> dict[str, dict[str, float]]:
+    """Return weights by the names of their features, to three digits, without words that keep to their family."""
+    names = weight_names(colours)
+    return {
+        block: dict(
+            zip(names.get(block, names.get(block.partition("/")[0], ())), np.round(values, 3).tolist(), strict=True)
+        )
+        for block, values in sorted(weights.items())
+        if np.abs(values).max() >= LEAST_WEIGHT
     }
 
 

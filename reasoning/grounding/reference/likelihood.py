@@ -6,7 +6,7 @@ computes the derivatives of one number by all weights, in one pass backwards (re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -74,6 +74,19 @@ def log_sum(score: Score, axis: int) -> Score:
     return Score(np.squeeze(value, axis), ((score, lambda given: np.expand_dims(given, axis) * shares),))
 
 
+def log_mixture(parts: Sequence[Score], shares: Score) -> Score:
+    """Return the log probabilities of a mixture of distributions with log shares of shape (len(parts),)."""
+    joint = np.stack([part.value + share for part, share in zip(parts, shares.value, strict=True)])
+    value = np.logaddexp.reduce(joint, axis=0)
+    blame = np.exp(joint - value)
+    operands = [(part, _times(one)) for part, one in zip(parts, blame, strict=True)]
+    return Score(value, (*operands, (shares, lambda given: (given * blame).reshape(len(parts), -1).sum(axis=1))))
+
+
+def _times(factor: Array) -> Pull:
+    return lambda given: given * factor
+
+
 def log_shares(score: Score, axis: int) -> Score:
     """Return log probabilities along an axis (log-softmax)."""
     top = score.value.max(axis=axis, keepdims=True)
@@ -98,15 +111,17 @@ def add_gradients(result: Score, found: Mapping[str, Array]) -> None:
     """Add the derivatives of a score of shape () by all weights to ``found``, arrays by the names of the weights."""
     order: list[Score] = []
     seen: set[int] = set()
-
-    def visit(node: Score) -> None:
-        if id(node) not in seen:
-            seen.add(id(node))
-            for operand, _ in node.operands:
-                visit(operand)
+    open_nodes = [(result, iter(result.operands))]
+    while open_nodes:  # depth first; an operand comes before what is computed from it
+        node, rest = open_nodes[-1]
+        for operand, _ in rest:
+            if id(operand) not in seen:
+                seen.add(id(operand))
+                open_nodes.append((operand, iter(operand.operands)))
+                break
+        else:
             order.append(node)
-
-    visit(result)
+            open_nodes.pop()
     result.gradient = np.ones_like(result.value)
     for node in reversed(order):
         given = node.gradient

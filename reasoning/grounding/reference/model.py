@@ -9,7 +9,8 @@ model with latent landmarks and viewers, whose weights are fitted by maximum lik
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,17 +20,19 @@ from deixis.reasoning.grounding.reference.likelihood import (
     Score,
     constant,
     log_complement,
+    log_mixture,
     log_shares,
     log_sum,
     weighted,
 )
 from deixis.reasoning.grounding.reference.properties import property_features
-from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
+from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer, readings
 from deixis.reasoning.grounding.reference.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
 from deixis.reasoning.grounding.reference.room import Room
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Kept = TypeVar("Kept")
 NounFit = Callable[[str, Room], Array]
 """Function from a noun and a room to features of each object, shape (n, f)."""
 
@@ -41,6 +44,15 @@ MAX_UNKNOWN_LANDMARKS = 40
 
 MISNAMED = 0.005
 """Share of descriptions whose noun names none of the objects that it may name, so that any object is meant."""
+
+UNLISTED = {"wall": Property("position", "wall")}
+"""Landmarks that the objects of a scene seldom include, with the property that a relation to them then stands for."""
+
+COUNTED = frozenset({"proximity", "support", "inside"})
+"""Families of relations whose landmarks are counted (*the table with four chairs*)."""
+
+COUNTED_GAP = 0.4
+"""Greatest distance of a counted landmark over the scale of the scene."""
 
 MAX_LANDMARKS = 12
 """Maximum number of objects that a landmark may be; the rest fit its noun less well."""
@@ -62,19 +74,27 @@ class Model:
 
     weights: Mapping[str, Array]
     lexis: Lexis
-    kept: dict[tuple[int, str], Array] | None = None
+    kept: dict[tuple[int, str], Any] | None = None
 
     def candidates(self, query: Query, room: Room) -> Indices:
         """Return the objects that the query may mean: those that its noun may name, or all if it names none."""
-        fit = self.lexis.similarity(query.target.noun, room)
-        known = np.flatnonzero(fit > 0)
-        return known if len(known) else np.arange(len(room))
+
+        def named() -> Indices:
+            known = np.flatnonzero(self._fit(query.target, room) > 0)
+            return known if len(known) else np.arange(len(room))
+
+        return self._keep(query, "candidates", named)
 
     def scores(self, query: Query, room: Room) -> Score:
-        """Return the log probability of each candidate, shape (x,)."""
-        found = self._description(query.target, room, self.candidates(query, room), target=True)
-        views = self._viewer(query, room)
-        return log_shares(log_sum(views[:, None] + found, 0), 0)
+        """Return the log probability of each candidate, shape (x,), summed over the readings of the query."""
+        among, views = self.candidates(query, room), self._viewer(query, room)
+        targets = self._keep(query, "readings", lambda: tuple(readings(query.target)))
+        found = [self._description(target, room, among, target=True) for target in targets]
+        scores = [log_shares(log_sum(views[:, None] + one, 0), 0) for one in found]
+        if len(scores) == 1:
+            return scores[0]
+        lifted = (np.arange(len(scores)) > 0).astype(np.float64)[:, None]
+        return log_mixture(scores, log_shares(weighted(lifted, "lifted", self.weights), 0))
 
     def probabilities(self, query: Query, room: Room) -> Array:
         """Return the calibrated probability of each object, shape (n,).
@@ -97,21 +117,29 @@ class Model:
         unseen = sum(any(self._unseen(one, room) for one in relation.arguments) for relation in relations)
         return 1 - query.understood + unseen / (1 + len(relations))
 
-    def _keep(self, said: object, what: str, features: Callable[[], Array]) -> Array:
-        """Return features, computed once for each part of a query while weights are fitted."""
+    def _keep(self, said: object, what: str, compute: Callable[[], Kept]) -> Kept:
+        """Return what does not depend on the weights, computed once for each part of a query while these are fitted."""
         if self.kept is None:
-            return features()
-        key = (id(said), what)
+            return compute()
+        key = (id(said), what)  # a query keeps its parts, so that their ids are not used again
         if key not in self.kept:
-            self.kept[key] = features()
-        return self.kept[key]
+            self.kept[key] = compute()
+        found: Kept = self.kept[key]
+        return found
 
     def _description(self, said: Description, room: Room, among: Indices, target: bool = False) -> Score:
         """Return log scores of the objects ``among`` for a description, shape (v or 1, x)."""
-        rivals = rival_groups(room, among)
-        found = weighted(self.lexis.noun_fit(said.noun, room)[among], "noun", self.weights)[None]
+        rivals, nouns, numbers = self._keep(
+            said,
+            f"noun of {among.tobytes()!r}",
+            lambda: (
+                rival_groups(room, among),
+                self._noun_features(said, room)[among],
+                self.lexis.number_fit(said.plural, room)[among],
+            ),
+        )
+        found = weighted(nouns, "noun", self.weights)[None]
         if said.noun:
-            numbers = self.lexis.number_fit(said.plural, room)[among]
             found = found + weighted(numbers, "number", self.weights)[None]
         if target:
             sizes = np.zeros((len(among), 2))
@@ -127,21 +155,31 @@ class Model:
         return found
 
     def _property(self, said: Property, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
-        known = property_features(said, room, among, rivals, self.lexis.colours)
+        def measured() -> tuple[str, Array] | None:
+            known = property_features(said, room, among, rivals, self.lexis.colours)
+            return None if known is None else (known[0], stacked(known[1]))
+
+        known = self._keep(said, f"property of {among.tobytes()!r}", measured)
         if known is None:
             return None
-        name, features = known
-        score = weighted(stacked(features), name, self.weights)
+        score = weighted(known[1], known[0], self.weights)
         return score if said.positive else _denied(score)
 
     def _relation(self, said: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
-        if not said.arguments or any(self._unseen(argument, room) for argument in said.arguments):
+        if not said.arguments:
             return None
+        if any(self._unseen(argument, room) for argument in said.arguments):
+            if (unlisted := UNLISTED.get(said.arguments[0].noun)) is None:
+                return None
+            instead = self._keep(said, "instead", lambda: replace(unlisted, positive=said.positive))
+            return self._property(instead, room, among, rivals)
         family, sign = RELATIONS.get(said.name, ANY_RELATION)
         if family == "between":
             score = self._between(said, room, among, rivals)
         else:
             score = self._binary(said, family, sign, room, among, rivals)
+            if family in COUNTED and (said.arguments[0].count or 0) > 1:
+                score = score + self._counted(said.arguments[0], room, among)
         return score if said.positive else _denied(score)
 
     def _binary(
@@ -157,7 +195,7 @@ class Model:
                 return np.swapaxes(stacked(FAMILIES[family](pairs, sign)), 1, 2)
             return stacked(FAMILIES[family](Pairs(room, among, landmarks, rivals), sign))
 
-        features = self._keep(said, "pairs", compared)
+        features = self._keep(said, f"pairs of {among.tobytes()!r}", compared)
         name = said.name if said.degree == "plain" else f"{said.name} {said.degree}"
         block = f"{family} inverted" if said.inverted else family
         score = weighted(features, f"{block}/{name}", self.weights)
@@ -174,7 +212,7 @@ class Model:
         one = log_shares(self._description(first, room, landmarks), 1)
         other = log_shares(self._description(second, room, landmarks), 1)
         pairs = Pairs(room, among, landmarks, rivals)
-        features = self._keep(said, "pairs", lambda: stacked(FAMILIES["between"](pairs, 1.0)))
+        features = self._keep(said, f"pairs of {among.tobytes()!r}", lambda: stacked(FAMILIES["between"](pairs, 1.0)))
         score = weighted(features, "between/between", self.weights)
         n = len(landmarks)
         ends = np.stack([np.repeat(landmarks, n), np.tile(landmarks, n)])
@@ -182,17 +220,52 @@ class Model:
         both = _outer(one, other)
         return log_sum(score + constant(IMPOSSIBLE * bad[None].astype(np.float64)) + both[:, None, :], 2)
 
+    def _counted(self, said: Description, room: Room, among: Indices) -> Score:
+        """Return log scores of having the stated number of landmarks close by, shape (1, x)."""
+
+        def counted() -> Array:
+            close = (room.gaps[among] < COUNTED_GAP) & (self._fit(said, room) > 0)
+            close[np.arange(len(among)), among] = False
+            off = np.abs(close.sum(axis=1) - (said.count or 1))
+            return np.stack([off == 0, -np.minimum(off, 3)], axis=1).astype(np.float64)
+
+        return weighted(self._keep(said, f"count of {among.tobytes()!r}", counted), "count", self.weights)[None]
+
+    def _noun_features(self, said: Description, room: Room) -> Array:
+        """Return the features of the noun that fits each object best, shape (n, f)."""
+        first = self.lexis.noun_fit(said.noun, room)
+        if not said.other_nouns:
+            return first
+        features = np.stack([first, *(self.lexis.noun_fit(noun, room) for noun in said.other_nouns)])
+        best = np.argmax([self.lexis.similarity(noun, room) for noun in said.nouns], axis=0)
+        found: Array = features[best, np.arange(len(room))]
+        return found
+
+    def _fit(self, said: Description, room: Room) -> Array:
+        """Return how well the nouns of a description fit each object, shape (n,), in [0, 1]."""
+        fit = self.lexis.similarity(said.noun, room)
+        for noun in said.other_nouns:
+            fit = np.maximum(fit, self.lexis.similarity(noun, room))
+        return fit
+
     def _unseen(self, said: Description, room: Room) -> bool:
         """Return whether a landmark has a noun that names none of the labelled objects."""
-        if not said.noun or all(label is None for label in room.labels):
-            return False
-        return not (self.lexis.similarity(said.noun, room) > 0).any()
+
+        def unnamed() -> bool:
+            if not said.noun or all(label is None for label in room.labels):
+                return False
+            return not (self._fit(said, room) > 0).any()
+
+        return self._keep(said, "unseen", unnamed)
 
     def _landmarks(self, said: Description, room: Room) -> Indices:
         """Return the objects that a landmark may be: those that fit its noun best."""
-        fit = self.lexis.similarity(said.noun, room)
+        return self._keep(said, "landmarks", lambda: self._best_landmarks(said, room))
+
+    def _best_landmarks(self, said: Description, room: Room) -> Indices:
+        fit = self._fit(said, room)
         if fit.max(initial=0.0) <= 0:  # no labels: the objects of about the right size
-            fit = self.lexis.noun_fit(said.noun, room)[:, -1]
+            fit = self._noun_features(said, room)[:, -1]
             most = MAX_UNKNOWN_LANDMARKS
         else:
             most = min(int((fit > 0).sum()), MAX_LANDMARKS)
@@ -214,10 +287,15 @@ class Model:
             return constant(np.log(np.where(away, 0.95, 0.05 / max(len(away) - 1, 1))))
         if any(RELATIONS.get(relation.name, ("", 0))[0] in VIEWED for relation in query.target.relations):
             return constant(np.zeros(len(room.views)))
-        fit = self.lexis.similarity(query.target.noun, room)
-        shares = np.where(fit >= max(fit.max(), 1e-9), 1.0, 0.0) if fit.max() > 0 else np.ones(len(room))
-        features = np.einsum("vnf,n->vf", room.facing, shares / shares.sum())
+        features = self._keep(query, "viewer", lambda: self._seen_from(query, room))
         return log_shares(weighted(features, "viewer", self.weights), 0)
+
+    def _seen_from(self, query: Query, room: Room) -> Array:
+        """Return the mean features of viewers who look at the objects that fit the noun best, shape (v, f)."""
+        fit = self._fit(query.target, room)
+        shares = np.where(fit >= max(fit.max(), 1e-9), 1.0, 0.0) if fit.max() > 0 else np.ones(len(room))
+        result: Array = np.einsum("vnf,n->vf", room.facing, shares / shares.sum())
+        return result
 
     def _stated(self, viewer: Viewer, room: Room) -> Score:
         landmarks = self._landmarks(viewer.landmark, room)

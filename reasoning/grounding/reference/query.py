@@ -42,7 +42,7 @@ class Description:
     """A noun phrase: what it says of the object that it stands for; ``noun`` is empty where no noun is given.
 
     ``count`` is the number of objects in a group (*between two chairs*); None for one object. ``plural`` is True for a
-    noun in the plural.
+    noun in the plural. ``other_nouns`` are further nouns, of which one may fit instead (*the window or mirror*).
     """
 
     noun: str
@@ -51,6 +51,12 @@ class Description:
     count: int | None = None
     negated: bool = False
     plural: bool = False
+    other_nouns: tuple[str, ...] = ()
+
+    @property
+    def nouns(self) -> tuple[str, ...]:
+        """All nouns of the description, of which one fits."""
+        return (self.noun, *self.other_nouns)
 
     def parts(self) -> Iterator[Description]:
         """Yield this description and those of all objects that it mentions."""
@@ -62,6 +68,21 @@ class Description:
     def without_relations(self) -> Description:
         """Return the noun and its properties alone."""
         return replace(self, relations=())
+
+
+def readings(said: Description) -> Iterator[Description]:
+    """Yield a description, and the one in which its last phrase belongs to the described object.
+
+    In *the pillow on the bed that is closest to the door*, the bed or the pillow may be closest to the door.
+    """
+    yield said
+    last = said.relations[-1] if said.relations else None
+    if last is None or len(last.arguments) != 1 or not last.positive or not last.arguments[0].relations:
+        return
+    (landmark,) = last.arguments
+    *rest, lifted = landmark.relations
+    bare = replace(last, arguments=(replace(landmark, relations=tuple(rest)),))
+    yield replace(said, relations=(*said.relations[:-1], bare, lifted))
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from heapq import heappop, heappush
 from itertools import pairwise
 
 import numpy as np
@@ -15,7 +16,7 @@ from deixis.reasoning.grounding.reference.wording import named
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-WRONG_ANSWERS = 0.005
+WRONG_ANSWERS = 0.002
 """Share of answers that are wrong, for which a later answer can make up."""
 
 MIN_PROBABILITY = 2e-3
@@ -31,7 +32,7 @@ CLEAR = 1.15
 """Least ratio of two lengths that an answer tells apart."""
 
 
-def best_question(probabilities: Array, room: Room, labelled: bool = True) -> Question | None:
+def best_question(probabilities: Array, room: Room, labelled: bool = True, enough: float = DECIDED) -> Question | None:
     """Return the question after which the fewest questions remain; None if no question tells two objects apart.
 
     Parameters
@@ -42,39 +43,59 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True) -> Qu
         The scene.
     labelled
         Whether questions may use the labels of the scene.
+    enough
+        Probability of an object from which on no more questions are asked.
 
     Notes
     -----
     A question with a share q of the probability on *yes* gains the entropy of q. Of the COMPARED questions that
-    gain most, the one is asked that leaves the least expected number of further questions: none if the answer
-    decides, and otherwise the entropy of what is left in bits, at least 1. Only questions whose answer is clear for
-    all likely objects are asked: two compared lengths differ by a factor of ``CLEAR``.
+    gain most, the one is asked that leaves the least expected number of further questions (:func:`fewest_questions`
+    of both answers). Only questions whose answer is clear for all likely objects are asked: two compared lengths
+    differ by a factor of ``CLEAR``.
     """
     likely = np.flatnonzero(probabilities >= MIN_PROBABILITY)
     shares = probabilities[likely] / probabilities[likely].sum()
-    known: dict[bytes, tuple[float, str, Mask, float]] = {}
+    known: dict[bytes, tuple[str, Mask, float]] = {}
     for text, yes, cost in _questions(room, likely, labelled):
-        share = float(shares[yes].sum())
-        if yes.all() or not yes.any():
-            continue
-        gain = -share * np.log2(share) - (1 - share) * np.log2(1 - share) - cost
         key = yes.tobytes()
-        if gain > 1e-6 and (key not in known or gain > known[key][0]):
-            known[key] = (gain, text, yes, cost)
-    best, chosen = np.inf, None
-    for _, text, yes, cost in sorted(known.values(), key=lambda one: -one[0])[:COMPARED]:
-        left = sum(float(shares[part].sum()) * _remaining(shares[part]) for part in (yes, ~yes)) + cost
+        if not yes.all() and yes.any() and (key not in known or cost < known[key][2]):
+            known[key] = (text, yes, cost)
+    if not known:
+        return None
+    asked = [*known.values()]
+    masks = np.array([mask for _, mask, _ in asked])
+    costs = np.array([cost for *_, cost in asked])
+    on_yes = masks @ shares
+    gains = -on_yes * np.log2(on_yes) - (1 - on_yes) * np.log2(1 - on_yes) - costs
+    best, chosen = np.inf, 0
+    for place in np.argsort(-gains, kind="stable")[:COMPARED]:
+        yes = masks[place]
+        parts = (shares[yes], shares[~yes])
+        left = sum(float(part.sum()) * fewest_questions(part, enough) for part in parts) + costs[place]
         if left < best - 1e-9:
-            best, chosen = left, Question(text, tuple(room.ids[index] for index in likely[yes]))
-    return chosen
+            best, chosen = left, int(place)
+    text, yes, _ = asked[chosen]
+    return Question(text, tuple(room.ids[index] for index in likely[yes]))
 
 
-def _remaining(shares: Array) -> float:
-    """Return about how many questions it takes until one of the objects is decided."""
-    shares = shares / shares.sum()
-    if shares.max() >= DECIDED:
-        return 0.0
-    return max(1.0, float(-(shares * np.log2(shares)).sum()))
+def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
+    """Return about the least expected number of yes-or-no questions until an object has the probability ``enough``.
+
+    It is the mean length of a Huffman code (1952) for the objects, without the least probable ones that together have
+    less than the share ``1 - enough``: for these, no question needs to be asked.
+
+    >>> fewest_questions(np.array([0.96, 0.04])), fewest_questions(np.array([0.5, 0.3, 0.2]))
+    (0.0, 1.5)
+    """
+    ranked = np.sort(shares)[::-1] / shares.sum()
+    kept = int(np.searchsorted(np.cumsum(ranked), enough)) + 1
+    heap = [float(share) for share in ranked[:kept][::-1]]
+    total = 0.0
+    while len(heap) > 1:
+        joined = heappop(heap) + heappop(heap)
+        total += joined
+        heappush(heap, joined)
+    return total / float(ranked[:kept].sum())
 
 
 def answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:

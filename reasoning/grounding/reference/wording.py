@@ -45,8 +45,12 @@ DEGREES = {
 
 ORDINALS = {1: "first", 2: "second", 3: "third", 4: "fourth", 5: "fifth", -1: "last"}
 
-PLACES = {"corner": "in the corner", "wall": "against a wall", "middle": "in the middle", "back": "at the back"}
-PLACES |= {
+PLACES = {
+    "alone": "by itself",
+    "corner": "in the corner",
+    "wall": "against a wall",
+    "middle": "in the middle",
+    "back": "at the back",
     "left": "on the left",
     "right": "on the right",
     "front": "at the front",
@@ -73,7 +77,7 @@ def noun_phrase(said: Description) -> str:
     after += [f"not {_adjective(one)}" for one in said.properties if not one.positive]
     after += [_relation(one) for one in said.relations]
     count = "" if said.count is None or said.count < 2 else f"{said.count} "
-    phrase = " ".join(["the", f"{count}{' '.join([*before, said.noun or 'one'])}", _joined(after)])
+    phrase = " ".join(["the", f"{count}{' '.join([*before, ' or '.join(said.nouns) or 'one'])}", _joined(after)])
     return phrase.strip()
 
 

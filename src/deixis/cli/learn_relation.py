@@ -40,6 +40,13 @@ def learn_relation(
         Path | None,
         typer.Option("-o", "--out", metavar="FILE", help="Write the models to a file (.ttl), not to the memory."),
     ] = None,
+    descriptions: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help='Descriptions with the object that each means, lines {"text", "scene", "target"}, for deixis refer.',
+        ),
+    ] = None,
     models: Models = None,
     strength: Annotated[float, typer.Option(help="Weight of the shipped models, above 0.")] = 3.0,
     reset: Annotated[bool, typer.Option("--reset", help="Remove the learned models; keep the lessons.")] = False,
@@ -47,10 +54,18 @@ def learn_relation(
     no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Learn what relation words mean, from the memory and from scripts with labelled scenes."""
+    """Learn what relation words mean, from the memory and from scripts with labelled scenes.
+
+    With --descriptions, learn what the words of deixis refer mean: relations, properties and frames of reference.
+    """
     from deixis.report.relation import learned_words_lines, learned_words_to_dict
     from deixis.session import Session
 
+    if descriptions is not None:
+        if files or models or reset:
+            raise typer.BadParameter("--descriptions takes no scripts, no --models and no --reset")
+        _learn_reference(descriptions, out, strength, as_json)
+        return
     _require_fitting(files, out, models, reset, no_memory)
     if out is not None:
         require_ending(out, (".ttl",), "a file of models")
@@ -74,6 +89,26 @@ def learn_relation(
     else:
         print_lines(learned_words_lines(learned))
         print_lines([f"{where} now uses these models."] if out is None else [])
+        print_written(out)
+
+
+def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_json: bool) -> None:
+    """Learn the weights of ``deixis refer`` from a file of descriptions, and write them to ``out``."""
+    from deixis.cli.output import read_lines
+    from deixis.errors import DeixisError
+    from deixis.report.relation import learned_reference_lines, learned_reference_to_dict
+    from deixis.workflows.learn_reference import learn_reference, write_reference
+
+    if out is None:
+        raise DeixisError("--descriptions needs a file for the weights; name it with -o FILE.json")
+    require_ending(out, (".json",), "a file of weights")
+    require_writable([out], [descriptions])
+    learned = learn_reference(read_lines(descriptions), descriptions.parent, strength)
+    write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
+    if as_json:
+        print_json(learned_reference_to_dict(learned, str(out)))
+    else:
+        print_lines(learned_reference_lines(learned))
         print_written(out)
 
 

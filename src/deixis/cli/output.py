@@ -100,18 +100,30 @@ def colour_of(line: str) -> str | None:
 class StandardInput:
     """Lines of standard input; a closed one has no lines. Raises DeixisError where it cannot be read or decoded."""
 
-    def readline(self) -> str:
-        """Return the next line, cut after :data:`MAX_ANSWER` characters; an empty text at the end."""
+    def readline(self, most: int = MAX_ANSWER) -> str:
+        """Return the next line, cut after ``most`` characters; an empty text at the end."""
         from deixis.errors import DeixisError
 
         if sys.stdin is None:
             return ""
         try:
-            return sys.stdin.readline(MAX_ANSWER)
+            return sys.stdin.readline(most)
         except UnicodeDecodeError as error:
             raise DeixisError(f"standard input: not text ({error.reason})") from error
         except (OSError, ValueError) as error:
             raise DeixisError(f"standard input: cannot be read ({error})") from error
+
+
+def read_lines(file: Path) -> list[str]:
+    """Return the lines of a text file; raise DeixisError if it cannot be read or is not UTF-8."""
+    from deixis.errors import DeixisError
+
+    try:
+        return file.read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise DeixisError(f"{file}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
 
 
 def note_change(memory: Path) -> None:

@@ -14,8 +14,12 @@ from deixis.cli.common import NO, UNDECIDED, AsJson, HideLabels, Image, print_js
 from deixis.cli.output import StandardInput
 from deixis.printable import visible_line
 
+MAX_LINE = 100_000
+"""Maximum number of characters of a line of a batch on standard input."""
+
 if TYPE_CHECKING:
     from deixis.reasoning.grounding.reference.answer import Question
+    from deixis.reasoning.grounding.reference.model import Model
     from deixis.workflows.refer import Answerer
 
 
@@ -34,6 +38,13 @@ def refer(
     oracle: Annotated[
         str | None, typer.Option(metavar="ID", help="Have the object with this id answer the questions.")
     ] = None,
+    until: Annotated[
+        float, typer.Option(metavar="P", help="Probability from which on --ask and --oracle ask no more, up to 0.95.")
+    ] = 0.95,
+    models: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Weights of deixis learn-relation --descriptions (.json), not the shipped."),
+    ] = None,
     hide_labels: HideLabels = False,
     image: Image = None,
     as_json: AsJson = False,
@@ -44,8 +55,8 @@ def refer(
     """
     if batch is not None:
         if text is not None or ask or oracle is not None or hide_labels or image is not None:
-            raise typer.BadParameter("--batch takes no other argument; a line may have its 'oracle'")
-        _answer_lines(batch)
+            raise typer.BadParameter("--batch takes --until and --models only; a line may have its 'oracle'")
+        _answer_lines(batch, until, _model(models))
         return
     if text is None or scene is None:
         raise typer.BadParameter("give a TEXT and a SCENE, or --batch FILE")
@@ -54,7 +65,8 @@ def refer(
     from deixis.workflows.refer import refer as find
 
     out = sys.stderr if as_json else sys.stdout
-    found = find(text, load_scene(scene, hide_labels, image), ask=_terminal(out) if ask else None, oracle=oracle)
+    seen = load_scene(scene, hide_labels, image)
+    found = find(text, seen, ask=_terminal(out) if ask else None, oracle=oracle, until=until, model=_model(models))
     if as_json:
         print_json(reference_to_dict(found))
     else:
@@ -64,26 +76,33 @@ def refer(
     raise typer.Exit(NO if found.target is None else 0 if found.decided else UNDECIDED)
 
 
-def _answer_lines(file: str) -> None:
-    from deixis.errors import DeixisError
+def _model(file: Path | None) -> Model | None:
+    if file is None:
+        return None
+    from deixis.workflows.learn_reference import read_reference
+
+    return read_reference(file)
+
+
+def _answer_lines(file: str, until: float, model: Model | None) -> None:
+    from deixis.cli.output import read_lines
     from deixis.workflows.refer import refer_batch
 
     if file == "-":
         lines, folder = _standard_lines(), Path()
     else:
-        try:
-            lines = iter(Path(file).read_text(encoding="utf-8-sig").splitlines())
-        except OSError as error:
-            raise DeixisError(f"{file}: cannot be read: {error.strerror}") from error
-        except UnicodeDecodeError as error:
-            raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
-        folder = Path(file).parent
-    for answer in refer_batch(lines, folder):
+        lines, folder = iter(read_lines(Path(file))), Path(file).parent
+    for answer in refer_batch(lines, folder, until, model):
         print_line(json.dumps(answer, ensure_ascii=False))
 
 
 def _standard_lines() -> Iterator[str]:
-    while line := StandardInput().readline():
+    """Yield the lines of standard input; a longer line is cut after MAX_LINE characters."""
+    source = StandardInput()
+    while line := source.readline(MAX_LINE):
+        rest = line
+        while rest and not rest.endswith("\n"):
+            rest = source.readline(MAX_LINE)
         yield line
 
 
@@ -98,5 +117,6 @@ def _terminal(out: object) -> Answerer:
                 return None
             if said in {"y", "yes", "n", "no"}:
                 return said[0] == "y"
+            print("Answer yes or no.", file=out)  # type: ignore[call-overload]
 
     return answer

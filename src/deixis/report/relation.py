@@ -11,6 +11,7 @@ from deixis.ontology.relation import Relation, Relations
 
 if TYPE_CHECKING:
     from deixis.learning.words import LearnedWords
+    from deixis.workflows.learn_reference import LearnedReference
 
 
 def relation_lines(relation: Relation, relations: Relations, models: RelationModels) -> list[str]:
@@ -90,6 +91,30 @@ def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
         "learned": [model_to_dict(model) for model in learned.changed],
         "lessons": list(learned.lessons),
         "kept": list(learned.kept),
+        "left_out": list(learned.left_out),
+        "written": where,
+    }
+
+
+MAX_LISTED = 10
+"""Maximum number of words that the text lists with their changes."""
+
+
+def learned_reference_lines(learned: LearnedReference) -> list[str]:
+    """Return from how many descriptions the words of reference were learned, and which weights changed most."""
+    before, after = learned.right
+    lines = [f"learned from {learned.descriptions} descriptions: {before} were right before, {after} are now"]
+    lines += [f"{name:<24} changed by up to {step:.2f}" for name, step in [*learned.changed.items()][:MAX_LISTED]]
+    return lines + [f"left out    {why}" for why in learned.left_out]
+
+
+def learned_reference_to_dict(learned: LearnedReference, where: str) -> dict[str, Any]:
+    """Return learned words of reference as plain data."""
+    return {
+        "descriptions": learned.descriptions,
+        "right_before": learned.right[0],
+        "right_after": learned.right[1],
+        "changed": dict(learned.changed),
         "left_out": list(learned.left_out),
         "written": where,
     }

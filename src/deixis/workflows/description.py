@@ -105,6 +105,12 @@ UPON = {"on": "on", "top": "on", "above": "above", "under": "under", "underneath
 RENAMED = {"top": "behind", "bottom": "in_front", "nearest": "near", "closer": "near", "farthest": "far"}
 """Relations of a table that a room has under another name."""
 
+SIDE_NOUNS = frozenset({"left", "right", "middle", "center", "centre"})
+"""Nouns that stand for the object at that side (*it is the one on the far right*: *the far right*)."""
+
+ORDER_ENDS = {"left": "right", "right": "left", "top": "bottom", "bottom": "top", "front": "back", "back": "front"}
+"""Sides from which objects in a row are counted, with the opposite side."""
+
 Item = TypeVar("Item")
 
 MAX_DEPTH = 6
@@ -130,10 +136,11 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
         if pointed is not None:
             target = Description(pointed[0], relations=(replace(pointed[1], arguments=(told,)),))
             continue
-        if not target.noun and named is not None and (name := _noun(named)):
+        back = _mention(own, target.noun) if target != Description("") else None
+        begins = not target.noun and (back is None or part.picks)
+        if begins and named is not None and (name := _noun(named)):
             target = replace(target, noun=name, plural=told.plural)
-        if told.noun and target.noun and not _same(told.noun, target.noun):
-            back = _mention(own, target.noun)
+        if told.noun and target != Description("") and not (target.noun and _same(told.noun, target.noun)):
             if part.picks:
                 target, context = Description(told.noun, plural=told.plural), target
             else:
@@ -144,7 +151,8 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
         properties, relations = _said(own, 0)
         target = replace(
             target,
-            properties=_distinct((*target.properties, *told.properties, *properties)),
+            properties=_ranked(_distinct((*target.properties, *told.properties, *properties))),
+            other_nouns=target.other_nouns or told.other_nouns,
             relations=_distinct((*target.relations, *told.relations, *relations)),
         )
     target = _with_own_noun(target, viewer)
@@ -206,8 +214,11 @@ class Statement:
 
 
 def _statements(sentence: Sentence) -> Iterator[Statement]:
-    if sentence.fragment is not None:
-        yield Statement(sentence.fragment, (), picks=sentence.fragment.determiner in {"the", "this", "that"})
+    if (fragment := sentence.fragment) is not None and fragment.negated:  # 'Not the lamp between the beds.'
+        told = replace(fragment, negated=False)
+        yield Statement(None, (Predicate("kind", (told,), fragment.span, positive=False),))
+    elif fragment is not None:
+        yield Statement(fragment, (), picks=fragment.determiner in {"the", "this", "that"})
     for clause in sentence.clauses:
         predicates = clause.predicates
         subject = clause.subject
@@ -268,7 +279,7 @@ def _noun(phrase: NounPhrase, depth: int = 0) -> str:
     head = phrase.head.casefold()
     if phrase.of is not None and depth < MAX_DEPTH and (not head or head in GROUPS | PARTS | EMPTY):
         return _noun(phrase.of, depth + 1)
-    return "" if head in EMPTY else head
+    return "" if head in EMPTY or (head in SIDE_NOUNS and phrase.of is None) else head
 
 
 def _same(first: str, second: str) -> bool:
@@ -289,7 +300,7 @@ def _same(first: str, second: str) -> bool:
 def _mention(predicates: Sequence[Predicate], noun: str) -> Predicate | None:
     """Return the predicate among whose arguments the noun is."""
     for predicate in predicates:
-        if any(_same(name, noun) for one in predicate.arguments if (name := _noun(one))):
+        if noun and any(_same(name, noun) for one in predicate.arguments if (name := _noun(one))):
             return predicate
         if any(one.pronoun in {"it", "one", "this", "that"} for one in predicate.arguments):
             return predicate
@@ -302,6 +313,8 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
         return Description("")
     if phrase.members:
         first, *others = (_description(one, depth + 1) for one in phrase.members)
+        if phrase.joined_by == "or":
+            return _either(first, others)
         denied = [_denied(one) for one in others if one.negated and (not one.noun or _same(one.noun, first.noun))]
         return replace(
             first,
@@ -314,6 +327,8 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     properties = [_property(one) for one in phrase.adjectives]
     more, relations = _said(phrase.predicates, depth + 1)
     noun, plural = "" if head in EMPTY else head, phrase.plural
+    if noun in SIDE_NOUNS and inner is None:
+        noun, properties = "", [*properties, Property("position", noun)]
     if inner is not None and (not noun or noun in GROUPS | PARTS):
         plural = inner.plural and noun in GROUPS - {"one"}
         noun, properties = inner.noun, [*properties, *inner.properties]
@@ -323,7 +338,33 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.owner is not None and not phrase.owner.pronoun:
         relations = (*relations, Relation("with", (_description(phrase.owner, depth + 1),)))
     count = phrase.count if phrase.plural or phrase.count else None
-    return Description(noun, (*properties, *more), relations, count, phrase.negated, plural)
+    return Description(noun, _ranked(_distinct((*properties, *more))), relations, count, phrase.negated, plural)
+
+
+def _either(first: Description, others: Sequence[Description]) -> Description:
+    """Return the description of *the window or mirror by the bed*: what follows the last noun holds of each."""
+    nouns = tuple(dict.fromkeys(one.noun for one in others if one.noun and one.noun != first.noun))
+    last = others[-1]
+    return replace(
+        first,
+        other_nouns=nouns,
+        properties=_distinct((*first.properties, *last.properties)) if not first.properties else first.properties,
+        relations=first.relations or last.relations,
+    )
+
+
+def _ranked(properties: Sequence[Property]) -> tuple[Property, ...]:
+    """Return properties with *second* and *on the left* joined to *second from the left*.
+
+    The last one on a side is the first one from it.
+    """
+    rank = next((one for one in properties if one.rank is not None and one.word not in ORDER_ENDS), None)
+    side = next((one for one in properties if one.rank is None and one.positive and one.word in ORDER_ENDS), None)
+    if rank is None or side is None or rank.rank is None:
+        return tuple(properties)
+    place = 1 if rank.rank == -1 else rank.rank
+    joined = Property("rank", side.word, rank=place, positive=rank.positive)
+    return tuple(joined if one is rank else one for one in properties if one is not side)
 
 
 def _denied(told: Description) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
@@ -345,7 +386,11 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
     for predicate in predicates:
         if depth > MAX_DEPTH:
             break
-        arguments = [part for one in predicate.arguments for part in (one.members or (one,))]
+        arguments = [
+            part
+            for one in predicate.arguments
+            for part in (one.members if one.members and one.joined_by != "or" else (one,))
+        ]
         if not arguments:
             properties += _place(predicate)
             continue
@@ -354,8 +399,8 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             if predicate.positive:
                 properties, relations = [*properties, *told.properties], [*relations, *told.relations]
             else:
-                refused = _denied(told)
-                properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
+                for refused in (_denied(_description(one, depth + 1)) for one in arguments):
+                    properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
             continue
         name = RENAMED.get(predicate.relation, predicate.relation)
         if predicate.value is not None and predicate.value.word in COMPARED:
@@ -374,6 +419,8 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
                         told.relations[0], name=placed, degree=str(predicate.degree), positive=positive, inverted=False
                     )
                 )
+            elif told.noun == "wall" and name in {*WALL_RELATIONS, "near", "far"} and _is_chosen(told, predicate):
+                relations.append(Relation(name, (told,), str(predicate.degree), positive))
             elif told.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (known := _surface(name, told.noun, positive)):
                 properties += known
             elif told.noun in SURROUNDINGS:
@@ -386,6 +433,11 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
                     continue
                 relations.append(Relation(name, (told,), degree, positive, predicate.reversed))
     return tuple(properties), tuple(relations)
+
+
+def _is_chosen(wall: Description, said: Predicate) -> bool:
+    """Return whether one wall is meant (*the green wall*, *closest to the wall*) rather than any."""
+    return bool(wall.properties) or str(said.degree) != "plain"
 
 
 def _surface(relation: str, noun: str, positive: bool) -> list[Property]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -38,7 +38,12 @@ MIN_LISTED = 1e-3
 
 
 def refer(
-    text: str, scene: Scene | str | Path | Mapping[str, Any], ask: Answerer | None = None, oracle: str | None = None
+    text: str,
+    scene: Scene | str | Path | Mapping[str, Any],
+    ask: Answerer | None = None,
+    oracle: str | None = None,
+    until: float = DECIDED,
+    model: Model | None = None,
 ) -> Reference:
     """Find which object of a scene a description refers to.
 
@@ -52,6 +57,12 @@ def refer(
         Function that answers yes-or-no questions until the reference is decided; it returns None to end the dialogue.
     oracle
         Id of the object that is meant, which answers the questions in place of ``ask``, for experiments.
+    until
+        Probability from which on no more questions are asked, above 0 and at most 0.95. Fewer questions leave more
+        answers wrong; an answer below 0.95 stays undecided.
+    model
+        Model with other weights than the shipped ones
+        (:func:`deixis.workflows.learn_reference.learn_reference`).
 
     Returns
     -------
@@ -62,7 +73,7 @@ def refer(
     ------
     DescriptionError
         If the text is blank or too long, nothing of it is understood, no noun of it is known or names an object of the
-        scene, or the scene has no object ``oracle``.
+        scene, the scene has no object ``oracle``, or ``until`` is not in (0, 0.95].
     SceneError
         If the scene is invalid.
 
@@ -79,6 +90,8 @@ def refer(
     >>> deixis.refer("the chair next to the desk", scene).target
     'o2'
     """
+    if not 0 < until <= DECIDED:
+        raise DescriptionError(f"`until` must be above 0 and at most {DECIDED:g}, got {until:g}")
     query, seen = read_description(text), as_scene(scene)
     if oracle is not None:
         if oracle not in seen.ids:
@@ -90,16 +103,16 @@ def refer(
         return _answer(text, query, seen, np.zeros(0), None, ())
     room = seen.room
     _check_words(query, room)
-    probabilities = shipped_model().probabilities(query, room)
+    probabilities = (model or shipped_model()).probabilities(query, room)
     turns: list[Turn] = []
-    question = _question(probabilities, room)
+    question = _question(probabilities, room, until)
     while ask is not None and question is not None and len(turns) < MAX_QUESTIONS:
         yes = ask(question)
         if yes is None:
             break
         probabilities = _answered(probabilities, room, question, yes)
         turns.append(Turn(question, yes))
-        question = _question(probabilities, room)
+        question = _question(probabilities, room, until)
     return _answer(text, query, seen, probabilities, question, tuple(turns))
 
 
@@ -144,37 +157,56 @@ def _check_words(query: Query, room: Room) -> None:
         )
 
 
-def refer_batch(lines: Iterable[str], folder: Path) -> Iterator[dict[str, Any]]:
+def refer_batch(
+    lines: Iterable[str], folder: Path, until: float = DECIDED, model: Model | None = None
+) -> Iterator[dict[str, Any]]:
     """Yield the answer of each line ``{"text", "scene"}`` as plain data, ``{"error": …}`` for a line that is wrong.
 
-    Paths of scenes are relative to ``folder`` unless they exist as they are; blank lines are skipped.
+    Paths of scenes are relative to ``folder`` unless they exist as they are; blank lines are skipped. The questions of
+    lines with an ``oracle`` end at the probability ``until``; ``model`` is used in place of the shipped one.
     """
     scenes: dict[str, Scene] = {}
     for number, line in enumerate(lines, start=1):
         if not line.strip():
             continue
         try:
-            yield _batch_line(line, folder, scenes).to_dict()
+            yield _batch_line(line, folder, scenes, until, model).to_dict()
         except DeixisError as error:
             yield {"error": f"line {number}: {error}"}
 
 
-def _batch_line(line: str, folder: Path, scenes: dict[str, Scene]) -> Reference:
+def _batch_line(line: str, folder: Path, scenes: dict[str, Scene], until: float, model: Model | None) -> Reference:
+    data = line_of_batch(line, ("text", "scene"), ("oracle", "id"))
+    scene, oracle = scene_of_line(data, folder, scenes), data.get("oracle")
+    return refer(data["text"], scene, oracle=None if oracle is None else str(oracle), until=until, model=model)
+
+
+def line_of_batch(line: str, required: Sequence[str], others: Sequence[str] = ()) -> dict[str, Any]:
+    """Return the object of a line of JSON, whose ``required`` keys are texts; raise DescriptionError otherwise."""
+    form = ", ".join(f'"{key}": …' for key in required)
     try:
         data = json.loads(line)
     except (ValueError, RecursionError) as error:
-        raise DescriptionError(f'not JSON: {error}; write {{"text": …, "scene": …}}') from error
-    if not isinstance(data, dict) or not all(isinstance(data.get(key), str) for key in ("text", "scene")):
-        raise DescriptionError("a line must be an object with the texts 'text' and 'scene'")
-    unknown = sorted(set(data) - {"text", "scene", "oracle", "id"})
+        raise DescriptionError(f"not JSON: {error}; write {{{form}}}") from error
+    if not isinstance(data, dict) or not all(isinstance(data.get(key), str) for key in required):
+        texts = " and ".join([", ".join(map(repr, required[:-1])), repr(required[-1])])
+        raise DescriptionError(f"a line must be an object with the texts {texts}; write {{{form}}}")
+    keys = sorted([*required, *others])
+    unknown = sorted(set(data) - set(keys))
     if unknown:
-        raise DescriptionError(f"'{unknown[0]}' is not a key of a line; the keys are id, oracle, scene, text")
+        raise DescriptionError(f"'{unknown[0]}' is not a key of a line; the keys are {', '.join(keys)}")
+    return data
+
+
+def scene_of_line(data: Mapping[str, Any], folder: Path, scenes: dict[str, Scene]) -> Scene:
+    """Return the scene of a line, read once; its path is relative to ``folder`` unless it exists as it is."""
     name = data["scene"]
+    if not name.strip():
+        raise DescriptionError("'scene' must be the path of a scene, got a blank text")
     if name not in scenes:
         given = Path(name)
-        scenes[name] = as_scene(given if given.exists() or given.is_absolute() else folder / given)
-    oracle = data.get("oracle")
-    return refer(data["text"], scenes[name], oracle=None if oracle is None else str(oracle))
+        scenes[name] = as_scene(given if "\0" in name or given.is_absolute() or given.exists() else folder / given)
+    return scenes[name]
 
 
 @cache
@@ -195,12 +227,12 @@ def model_with(weights: Mapping[str, Array]) -> Model:
     return Model(weights, Lexis(nouns.features, nouns.similarity, nouns.number, ontology.colours))
 
 
-def _question(probabilities: Array, room: Room) -> Question | None:
+def _question(probabilities: Array, room: Room, until: float) -> Question | None:
     from deixis.reasoning.grounding.reference.questions import best_question
 
-    if probabilities.max() >= DECIDED:
+    if probabilities.max() >= until:
         return None
-    return best_question(probabilities, room, labelled=any(label is not None for label in room.labels))
+    return best_question(probabilities, room, any(label is not None for label in room.labels), until)
 
 
 def _answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:

@@ -50,15 +50,50 @@ def test_a_batch_prints_a_line_for_each_line(tmp_path: Path) -> None:
     assert ["error" in answer for answer in answers] == [False, True, True]
 
 
+def test_a_long_line_of_a_batch_is_one_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    good = json.dumps({"text": "the sofa", "scene": str(STUDY)})
+    monkeypatch.setattr("sys.stdin", io.StringIO("[" * 250_000 + "\n" + good + "\n"))
+    code, out, _ = deixis("refer", "--batch", "-")
+    answers = [json.loads(line) for line in out.splitlines()]
+    assert code == 0
+    assert ["error" in answer for answer in answers] == [True, False]
+
+
+def test_fewer_questions_are_asked_for_less_certainty() -> None:
+    turns = []
+    for until in ("0.95", "0.45"):
+        code, out, _ = deixis("refer", "the chair", STUDY, "--oracle", "o9", "--until", until, "--json")
+        turns.append(len(json.loads(out)["turns"]))
+    assert code == 3
+    assert turns[0] > turns[1]
+
+
+def test_words_learned_from_descriptions_are_used(tmp_path: Path) -> None:
+    """Teach that the bin far from the door is near it."""
+    lines = [{"text": "the bin near the door", "scene": str(STUDY), "target": target} for target in ("o14", "o99")]
+    (tmp_path / "said.jsonl").write_text("\n".join(map(json.dumps, lines * 3)), encoding="utf-8")
+    before = json.loads(deixis("refer", "the bin near the door", STUDY, "--json")[1])
+    code, out, _ = deixis(
+        "learn-relation", "--descriptions", tmp_path / "said.jsonl", "--strength", "0.3", "-o", tmp_path / "words.json"
+    )
+    assert code == 0
+    assert "learned from 3 descriptions: 0 were right before, 3 are now" in out
+    assert "left out    line 2: " in out and "there is no object 'o99'" in out
+    _, out, _ = deixis("refer", "the bin near the door", STUDY, "--models", tmp_path / "words.json", "--json")
+    assert before["target"] != "o14" and json.loads(out)["target"] == "o14"
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (["the chair"], "give a TEXT and a SCENE, or --batch FILE"),
-        (["the chair", STUDY, "--batch", "x"], "--batch takes no other argument"),
+        (["the chair", STUDY, "--batch", "x"], "--batch takes --until and --models only"),
         (["--batch", "missing.jsonl"], "missing.jsonl: cannot be read"),
         (["", STUDY], "got a blank text"),
         (["the chair", "missing.json"], "missing.json: cannot be read"),
         (["the chair", STUDY, "--oracle", "o99"], "there is no object 'o99'"),
+        (["the chair", STUDY, "--until", "0.99"], "`until` must be above 0 and at most 0.95, got 0.99"),
+        (["the chair", STUDY, "--models", STUDY], "there must be an object 'weights'"),
     ],
 )
 def test_bad_input_is_one_message(arguments: list[object], said: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from deixis.grammar.english.parse import parse_english
-from deixis.reasoning.grounding.reference.query import Query
+from deixis.reasoning.grounding.reference.query import Query, readings
 from deixis.reasoning.grounding.reference.wording import paraphrase
 from deixis.workflows.description import query_of
 
@@ -26,10 +26,41 @@ def query(text: str) -> Query:
         ("facing the mugs, the one on the left", "facing the mugs, the mug on the left"),
         ("The mug is blue. It is next to the jar.", "the blue mug next to the jar"),
         ("the jug in the middle of the kettle and the jar", "the jug between the kettle and the jar"),
+        ("The mug by the sink. Not the mug on the tray.", "the mug near the sink and not on the tray"),
+        (
+            "The mug. It is not the one by the jar and not the one by the jug.",
+            "the mug not near the jar and not near the jug",
+        ),
+        ("the second mug to the left", "the mug that is second from the left"),
+        ("the last mug on the right", "the mug that is first from the right"),
+        ("the mug standing by itself", "the mug by itself"),
+        ("the blue jug or vase by the sink", "the blue jug or vase near the sink"),
+        ("the mug closest to the green wall", "the mug closest to the green wall"),
+        ("the mug against the wall", "the mug against a wall"),
+        ("It is the far right, under the shelf.", "the one at the far and on the right and under the shelf"),
+        (
+            "facing the mugs, the right one. There is a jar by it.",
+            "facing the mugs, the mug on the right and with the jar near it",
+        ),
     ],
 )
 def test_descriptions_become_queries(text: str, said: str) -> None:
     assert paraphrase(query(text)) == said.replace("facing the mugs", "facing the mug")
+
+
+def test_one_of_two_nouns_may_fit() -> None:
+    said = query("the jug or vase next to the bowl or dish").target
+    (near,) = said.relations
+    assert said.nouns == ("jug", "vase")
+    assert near.arguments[0].nouns == ("bowl", "dish")
+
+
+def test_the_last_phrase_may_belong_to_either_noun() -> None:
+    said = query("the mug on the tray that is closest to the sink").target
+    nested, lifted = readings(said)
+    assert [relation.name for relation in nested.relations] == ["on"]
+    assert [relation.name for relation in lifted.relations] == ["on", "near"]
+    assert lifted.relations[0].arguments[0].relations == ()
 
 
 def test_a_landmark_keeps_its_own_landmark() -> None:

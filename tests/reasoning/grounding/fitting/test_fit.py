@@ -66,6 +66,38 @@ def test_a_fact_that_counts_nothing_teaches_nothing() -> None:
     assert learn_relations([said_pairs(graph, boxes, [0, 1], [0.0, 1.0])], PRIOR) is PRIOR
 
 
+@pytest.mark.parametrize(("word", "model"), [("near", "nearness"), ("behind", "vertical"), ("inside", "containment")])
+def test_every_graded_word_can_be_learned(word: str, model: str) -> None:
+    """Fit a word to scenes in which it is said of two boxes that fit it less than five others."""
+    rng, lessons = np.random.default_rng(4), []
+    for _ in range(8):
+        low = rng.uniform(0, 10, (5, 3))
+        boxes = np.stack([low, low + rng.uniform(0.5, 2.0, (5, 3))], axis=1)
+        pairs = pair_geometry(boxes)
+        degrees = word_degree(pairs, word, PRIOR) - 9 * np.eye(5)
+        ends = divmod(int(np.argsort(degrees, axis=None)[-6]), 5)
+        lessons.append(said_pairs(RelationGraph.from_facts(R, "ab", [Fact("a", (R[word],), "b")]), boxes, ends))
+    learned = learn_relations(lessons, PRIOR, FitSettings(0.1))
+
+    def log_probability(models: RelationModels) -> float:
+        """Return the mean log probability of the stated pair among all pairs of its scene."""
+        found = []
+        for one in lessons:
+            score = relation_evidence(one.pairs, R[word], models) + np.log(saying_degree(one.pairs, models))
+            np.fill_diagonal(score, -np.inf)
+            found.append(score[tuple(one.ends[0])] - np.logaddexp.reduce(score, axis=None))
+        return float(np.mean(found))
+
+    assert {name for name in learned.models if learned[name] != PRIOR[name]} == {model, SAYING}
+    assert log_probability(learned) > log_probability(PRIOR) + 0.1
+
+
+def test_words_that_boxes_say_nothing_about_teach_nothing() -> None:
+    graph = RelationGraph.from_facts(R, ["a", "b"], [Fact("a", (R["facing"],), "b")])
+    boxes = np.array([[[0, 0], [1, 1]], [[2, 0], [3, 1]]], dtype=float)
+    assert learn_relations([said_pairs(graph, boxes, [0, 1])], PRIOR) is PRIOR
+
+
 def test_an_overwhelming_prior_stays() -> None:
     lessons = alike_left(5)
     learned = learn_relations(lessons, PRIOR, FitSettings(strength=1e7))

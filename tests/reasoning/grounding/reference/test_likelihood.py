@@ -10,6 +10,7 @@ from deixis.reasoning.grounding.reference.likelihood import (
     add_gradients,
     constant,
     log_complement,
+    log_mixture,
     log_shares,
     log_sum,
     weighted,
@@ -26,10 +27,12 @@ def score(values: Array) -> Score:
     pairs = weighted(PAIRS, "near/beside", weights) + constant(RANDOM_OFFSET)
     related = log_sum(pairs + log_shares(pairs, 0), 2)
     denied = log_complement(log_shares(related, 1), 0.95)
-    return log_shares(log_sum(nouns + related + denied, 0), 0)[2]
+    first, second = (log_shares(log_sum(one, 0), 0) for one in (nouns + related + denied, nouns + related))
+    return log_mixture([first, second], log_shares(weighted(READINGS, "noun", weights), 0))[2]
 
 
 RANDOM_OFFSET = RANDOM.normal(size=(1, 4, 5))
+READINGS = RANDOM.normal(size=(2, 3))
 
 
 def test_gradients_are_those_of_finite_differences() -> None:

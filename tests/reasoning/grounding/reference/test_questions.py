@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.reasoning.grounding.reference.answer import Question
-from deixis.reasoning.grounding.reference.questions import answered, best_question
+from deixis.reasoning.grounding.reference.questions import answered, best_question, fewest_questions
 from deixis.reasoning.grounding.reference.room import Room
 
 
@@ -37,12 +37,26 @@ def test_objects_without_labels_are_asked_for_by_measures() -> None:
     assert "door" not in question.text and len(question.yes) == 1
 
 
+@pytest.mark.parametrize(
+    ("shares", "enough", "expected"),
+    [([0.96, 0.04], 0.95, 0.0), ([0.9, 0.1], 0.95, 1.0), ([0.9, 0.1], 0.9, 0.0), ([0.25] * 4, 0.95, 2.0)],
+)
+def test_the_least_number_of_questions_is_that_of_a_code(shares: list[float], enough: float, expected: float) -> None:
+    assert fewest_questions(np.array(shares), enough) == pytest.approx(expected)
+
+
+def test_the_least_number_of_questions_is_near_the_entropy() -> None:
+    for shares in np.random.default_rng(3).dirichlet(np.ones(6), size=50):
+        entropy = float(-(shares * np.log2(shares)).sum())
+        assert entropy <= fewest_questions(shares, 1.0) < entropy + 1
+
+
 def test_there_is_no_question_about_equal_objects() -> None:
     boxes = np.array([[[0.0, 0, 0], [1, 1, 1]], [[0.0, 0, 0], [1, 1, 1]]])
     assert best_question(np.array([0.5, 0.5]), Room.of(("a", "b"), boxes, ("cup", "cup"))) is None
 
 
-@pytest.mark.parametrize(("yes", "expected"), [(True, 0.995), (False, 0.005)])
+@pytest.mark.parametrize(("yes", "expected"), [(True, 0.998), (False, 0.002)])
 def test_an_answer_is_wrong_in_a_few_of_a_thousand_cases(yes: bool, expected: float) -> None:
     after = answered(np.array([0.5, 0.5, 0, 0]), row_of_chairs(), Question("Is it the first one?", ("c1",)), yes)
     assert after[0] == pytest.approx(expected)
