@@ -121,6 +121,7 @@ RUNS = (
     Run("shapes", "Memory", "engines of SHACL"),
     Run("lexicon", "English", "nouns of other people's data that the lexicon knows", data=True),
     Run("english_syntax", "English", "words and sentences that the parser understands", data=True),
+    Run("tell", "English", "layouts and scenes told and read again", data=True),
     Run("english", "English", "facts of paragraphs about tables", options="--ground", data=True),
     Run("stepgame", "English", "relative positions after one to ten sentences", options="--sample 20", data=True),
     Run("refer", "English", "objects that descriptions of rooms refer to", data=True),

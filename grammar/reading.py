@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from deixis.grammar.errors import Diagnostic
 from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact
+from deixis.ontology.relation import Reading as WordReading
 
 Span = tuple[int, int]
 """First and last character of a phrase in the text, counted from 0, the end exclusive."""
@@ -20,7 +21,7 @@ class StatedFact:
     ``sentence`` counts the sentences from 0. ``condition`` is the text of an *if* clause. ``past`` is True for what
     need not hold any more, ``uncertain`` for what only may hold (*might be*). Facts with the same number as
     ``alternative`` are a choice: one of them holds. ``quantifier`` is ``each`` where the facts of a sentence pair the
-    members of two groups.
+    members of two groups. ``need_not_hold`` is True for an alternative of a choice of which none need hold.
     """
 
     content: Fact | Claim
@@ -31,6 +32,7 @@ class StatedFact:
     uncertain: bool = False
     alternative: int | None = None
     quantifier: str | None = None
+    need_not_hold: bool = False
 
     @property
     def asserted(self) -> bool:
@@ -56,12 +58,23 @@ class ReadSentence:
     problem_spans: tuple[Span, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class DoubtfulPronoun:
+    """A pronoun that could stand for several objects, and the one that it was taken for."""
+
+    span: Span
+    word: str
+    chosen: str
+    others: tuple[str, ...]
+
+
 @dataclass(frozen=True)
 class Reading:
     """Everything that was read in a text.
 
     ``mentions`` holds the phrases used for each object. ``absent`` are the things that the text says are not there.
     ``surface`` is the name of what everything stands on (``desk``), or None where the text does not name it.
+    ``uncounted`` are groups of unknown size (*the cups*), which are one object each.
     """
 
     text: str
@@ -70,6 +83,8 @@ class Reading:
     mentions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     absent: tuple[str, ...] = ()
     surface: str | None = None
+    uncounted: tuple[str, ...] = ()
+    doubtful_pronouns: tuple[DoubtfulPronoun, ...] = ()
 
     @property
     def understood(self) -> float:
@@ -81,3 +96,29 @@ class Reading:
     def claims(self) -> tuple[Claim, ...]:
         """Asserted claims, in the order of the text."""
         return tuple(s.content for s in self.stated if s.asserted and isinstance(s.content, Claim))
+
+
+def joined_choices(stated: Sequence[StatedFact]) -> Iterator[StatedFact]:
+    """Yield facts in order; a choice between relations of one pair becomes one fact with all these relations.
+
+    >>> from deixis.grammar.english.reader import read_english
+    >>> script = read_english("The fork is either left of the plate or on the plate.")
+    >>> [str(fact.content) for fact in script.reading.stated], [str(fact) for fact in script.facts]
+    (['left(fork, plate)', 'on(fork, plate)'], ['left or on(fork, plate)'])
+    """
+    choices: dict[int, list[StatedFact]] = {}
+    for fact in stated:
+        if fact.alternative is not None:
+            choices.setdefault(fact.alternative, []).append(fact)
+    for fact in stated:
+        options = choices.get(fact.alternative, []) if fact.alternative is not None else []
+        contents = [option.content for option in options if isinstance(option.content, Fact)]
+        pairs = {(c.subject, c.object, c.positive, c.relations[0].reading is WordReading.EXACT) for c in contents}
+        if len(options) < 2 or len(contents) < len(options) or len(pairs) > 1:
+            yield fact
+        elif fact is options[0]:
+            relations = tuple(dict.fromkeys(relation for c in contents for relation in c.relations))
+            weight = min(1.0, round(sum(c.weight for c in contents), 6))
+            yield replace(
+                fact, content=replace(contents[0], relations=relations, optional=fact.need_not_hold, weight=weight)
+            )

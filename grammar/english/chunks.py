@@ -640,7 +640,10 @@ class Chunker:
                 positive, i = False, i + 2
             elif norm in NEGATIONS and i > first:
                 positive = not positive if norm != "nor" else positive
-            elif (norm in ADVERBS or norm in HEDGES) and i > first and self._goes_on(i + 1):
+            elif i > first and (
+                ((norm in ADVERBS or norm in HEDGES) and self._goes_on(i + 1))
+                or (verb == "be" and norm in HEDGES and norm not in _HEDGES_OF_PLACES)
+            ):
                 adverbs.append(norm)
             elif norm in ("has", "have", "had", "having", "'ve") and self._perfect(i):
                 past = past or norm == "had"
@@ -919,6 +922,9 @@ _LATERAL = frozenset({"left", "right"})
 _CHOOSE = word_set("choose select pick click locate")
 _AIMS = word_set("left right up down forward forwards backward backwards away upward downward sideways")
 _NOUNS_TOO = word_set("stand rest set place position face point back front top bottom")
+_HEDGES_OF_PLACES = word_set("about around roughly approximately approx almost nearly")
+"""Hedges that belong to the place or the measure after them, and not to the verb."""
+
 _MEASURE_WORDS = HEDGES | frozenset(
     {
         "within",

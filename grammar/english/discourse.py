@@ -6,8 +6,18 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from deixis.grammar.english.entities import Entity, Role
-from deixis.grammar.english.nouns import GENERAL, PARTS, SUBSTANCES, SURFACES, SURROUNDINGS, VESSELS, last_word
+from deixis.grammar.english.entities import Entity, Role, plain_noun
+from deixis.grammar.english.nouns import (
+    GENERAL,
+    PARTS,
+    SUBSTANCES,
+    SURFACES,
+    SURROUNDINGS,
+    VESSELS,
+    VIEWER,
+    VIEWER_WORDS,
+    last_word,
+)
 from deixis.grammar.english.references import POLES, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
 
@@ -64,6 +74,9 @@ DIRECTIONS = frozenset(
         "bottom_right",
     ]
 )
+EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"}
+"""Relations that have an exact reading: *exactly left of*."""
+
 SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
 SUPPORTS = frozenset(
     [
@@ -98,6 +111,7 @@ class Qualification:
     uncertain: bool = False
     alternative: int | None = None
     quantifier: str | None = None
+    need_not_hold: bool = False  # of a choice: none of its alternatives need hold
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +128,8 @@ class Draft:
     @property
     def collective(self) -> bool:
         """True if the relation is one of all subjects together."""
-        return self.relation in COLLECTIVE or self.relation == "count"
+        one_on_another = self.relation == "stacked" and bool(self.arguments)
+        return (self.relation in COLLECTIVE and not one_on_another) or self.relation == "count"
 
 
 class Discourse:
@@ -200,7 +215,7 @@ class Discourse:
         none = clause.subject is not None and clause.subject.pronoun == "none"
         self.how = Qualification(
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
-            optional=uncertain or (modal == "can" and positive and weight == 1.0),
+            optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
             condition=clause.condition or self.condition,
             past=clause.past and not self.story, uncertain=uncertain,
         )  # fmt: skip
@@ -245,8 +260,10 @@ class Discourse:
         if choices:
             self.alternatives += 1
             for option in (predicates, *choices):
+                share = weight / (len(choices) + 1)
+                need_not = self.how.optional if self.how.alternative is None else self.how.need_not_hold
                 self.how = replace(
-                    self.how, alternative=self.alternatives, optional=True, weight=1 / (len(choices) + 1)
+                    self.how, alternative=self.alternatives, optional=True, weight=share, need_not_hold=need_not
                 )
                 self._say(entity, option, clause.subject)
         else:
@@ -426,6 +443,8 @@ class Discourse:
                 outer = replace(outer, positive=False)  # everywhere but left of the plate
                 continue
             self.how = replace(outer, positive=outer.positive and predicate.positive, quantifier=self.how.quantifier)
+            if outer.weight == 1 and outer.alternative is None:
+                self._hedge(predicate.adverbs)
             if predicate.relation == "middle" and not predicate.part and places and entity.role is Role.THING:
                 self._add("middle", (entity,), (), value=min(places))
                 continue
@@ -435,6 +454,13 @@ class Discourse:
             self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
         else:
             self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
+
+    def _hedge(self, adverbs: tuple[str, ...]) -> None:
+        """Give the next fact the weight of a hedge of its own: *on the tray and probably next to the jug*."""
+        weight = min([self.hedges.get(word, 1.0) for word in adverbs] or [1.0])
+        uncertain = weight == 0.5 or not RARE.isdisjoint(adverbs)
+        optional = self.how.optional or uncertain or "optionally" in adverbs
+        self.how = replace(self.how, weight=weight, optional=optional, uncertain=self.how.uncertain or uncertain)
 
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         relation = predicate.relation
@@ -450,6 +476,9 @@ class Discourse:
             return  # said of a part: 'whose stick is in the pot'
         if handler is not None:
             handler(subject, predicate, others)
+        elif self._is_seen_from_the_viewer(predicate):
+            nearer = replace(predicate, relation="bottom" if relation == "near" else "top", degree=Degree.PLAIN)
+            self._relate(subject, replace(nearer, arguments=(predicate.than,), than=None), others)  # type: ignore[arg-type]
         elif relation in UNARY or (predicate.value is not None and not predicate.arguments and not predicate.part):
             self._property(subject, predicate)
         elif relation in PLACES:
@@ -462,9 +491,20 @@ class Discourse:
         else:
             self._relate(subject, predicate, others)
 
+    def _is_seen_from_the_viewer(self, predicate: Predicate) -> bool:
+        """Return True for *nearer to you than X* and *farther than X*, which compare along the line of sight."""
+        return (
+            predicate.relation in ("near", "far")
+            and predicate.degree is Degree.COMPARATIVE
+            and predicate.than is not None
+            and all(a.pronoun in VIEWER_WORDS or last_word(a.head) == VIEWER for a in predicate.arguments)
+        )
+
     def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """State a relation between the subject and the arguments."""
         relation = predicate.relation
+        if "exactly" in predicate.adverbs and relation in EXACT:
+            relation = f"exactly_{relation}"
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
         found: list[Entity | Region] = []
@@ -519,7 +559,7 @@ class Discourse:
         if relation == "between":
             self._between(subject, entities)
             return
-        if relation in COLLECTIVE:
+        if relation in COLLECTIVE and not (relation == "stacked" and entities):
             value = predicate.part if relation == "row" else None
             if relation == "stacked" and "inside" in self.text[predicate.span[0] : predicate.span[1]]:
                 relation = "nested"
@@ -727,7 +767,7 @@ class Discourse:
                 and not phrase.adjectives
                 and phrase.determiner in ("a", "an")
             ):
-                self._add("kind", (subject,), (), value=phrase.head)
+                self._add("kind", (subject,), (), value=plain_noun(phrase.head))
             if phrase.predicates:
                 self._say(subject, phrase.predicates, phrase, focus=False)
 

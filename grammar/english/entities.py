@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from deixis.grammar.english.nouns import SINGLE_PLURALS, last_word
+from deixis.grammar.english.tokens import LITERAL
 
 
 class Role(StrEnum):
@@ -108,6 +109,8 @@ def names_of(entities: Iterable[Entity]) -> dict[Entity, str]:
 
 def _stem(leaf: Entity) -> str:
     noun = leaf.noun
+    if noun.startswith(LITERAL):
+        return noun.strip(LITERAL)
     if leaf.plural and leaf.written:
         noun = leaf.written
     return "_".join(noun.replace("'", "").replace("-", "_").split()) or "thing"
@@ -120,6 +123,11 @@ def _described(leaf: Entity, sharing: list[Entity]) -> str:
     others = {pair for other in sharing if other is not leaf for pair in other.adjectives}
     own = sorted(pair for pair in leaf.adjectives if pair not in others and pair[0] in ("colour", "size", "material"))
     return own[0][1].replace(" ", "_") if own else ""
+
+
+def plain_noun(noun: str) -> str:
+    """Return a noun as it is written, also one that was given between backticks."""
+    return noun.strip(LITERAL).replace("_", " ") if noun.startswith(LITERAL) else noun
 
 
 def is_one_thing(noun_as_written: str) -> bool:

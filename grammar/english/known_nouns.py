@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from deixis.grammar.english.tokens import LITERAL
 from deixis.grammar.english.words import adjectives, word_set
 from deixis.ontology.inflection import SAME, singulars
 from deixis.ontology.kinds import Kinds
@@ -43,6 +44,8 @@ class KnownNouns:
         >>> nouns.singular("vases"), nouns.singular("glass"), nouns.singular("scissors"), nouns.singular("cookies")
         (('vase', True), ('glass', False), ('scissors', True), ('cookie', True))
         """
+        if noun.startswith(LITERAL):
+            return noun, False
         found = self._singulars.get(noun)
         if found is None:
             candidates = singulars(noun)

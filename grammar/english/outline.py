@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from deixis.grammar.english.tokens import LITERAL
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Viewpoint
 
 _DEGREES = {Degree.PLAIN: "", Degree.COMPARATIVE: "+", Degree.SUPERLATIVE: "++"}
@@ -96,7 +97,7 @@ def noun_outline(phrase: NounPhrase) -> str:
     words += [phrase.determiner] if phrase.determiner is not None else []
     words += [] if phrase.count is None else [str(phrase.count)]
     words += [f"{adjective.word}{_DEGREES[adjective.degree]}" for adjective in phrase.adjectives]
-    words += [word for word in (phrase.head, phrase.pronoun) if word]
+    words += [word.replace(LITERAL, "") for word in (phrase.head, phrase.pronoun) if word]
     if phrase.of is not None:
         words.append(f"of {noun_outline(phrase.of)}")
     return negation + " ".join(words) + said

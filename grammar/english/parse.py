@@ -13,7 +13,7 @@ from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
 from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
 from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
 from deixis.grammar.english.phrases import is_known
-from deixis.grammar.english.tokens import MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
+from deixis.grammar.english.tokens import LITERAL, MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
 from deixis.grammar.english.tree import Misunderstood, Sentence
 from deixis.grammar.errors import ScriptTimeError
 from deixis.ontology.tbox import Ontology, default_ontology
@@ -122,9 +122,9 @@ def _is_foreign(words: list[Word]) -> bool:
     longest = run = known = 0
     for word in words:
         run = run + 1 if word.norm[:1].isalpha() else 0
-        known += is_known(word.norm)
+        known += is_known(word.norm) or word.norm.startswith(LITERAL)
         longest = max(longest, run)
-    letters = [c for word in words for c in word.norm if c.isalpha()]
+    letters = [c for word in words if not word.norm.startswith(LITERAL) for c in word.norm if c.isalpha()]
     if sum(c > LAST_LATIN_LETTER for c in letters) > len(letters) / 2:
         return True
     return longest >= 4 and known < MIN_KNOWN_SHARE * len(words)

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from deixis.deadline import Deadline
 from deixis.grammar.english.discourse import Discourse
 from deixis.grammar.english.discourse import Draft as FactDraft
-from deixis.grammar.english.entities import Entity, Role, names_of
+from deixis.grammar.english.entities import Entity, Role, is_one_thing, names_of
 from deixis.grammar.english.paraphrase import paraphrase
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.tree import Mood, Sentence
 from deixis.grammar.errors import Diagnostic, ScriptError
-from deixis.grammar.reading import Reading, ReadSentence, StatedFact
+from deixis.grammar.reading import DoubtfulPronoun, Reading, ReadSentence, StatedFact, joined_choices
 from deixis.grammar.script import (
     ClaimStatement,
     Comment,
@@ -76,10 +76,15 @@ def read_english(
         mentions=writer.mentions(),
         absent=tuple(name for entity, name in writer.names.items() if entity.absent),
         surface=discourse.references.surface.noun.replace(" ", "_") if discourse.references.surface else None,
+        uncounted=tuple(
+            name for entity, name in writer.names.items() if entity.plural and not is_one_thing(name.replace("_", " "))
+        ),
+        doubtful_pronouns=tuple(writer.doubtful_pronouns()),
     )
     if not stated and not any(s.clauses and s.clauses[0].mood is Mood.QUESTION for s in sentences):
         raise ScriptError(_nothing_understood(text, file, reading, writer))
-    statements = tuple(statement for fact in stated if fact.asserted for statement in writer.statements(fact, reading))
+    asserted = joined_choices([fact for fact in stated if fact.asserted])
+    statements = tuple(statement for fact in asserted for statement in writer.statements(fact, reading))
     return Script(file, None, None, None, statements, tuple(writer.comments(reading)), ontology, reading)
 
 
@@ -115,6 +120,13 @@ class _Writer:
         """Return the words used for each object, by its name."""
         return {name: tuple(entity.mentions) for entity, name in self.names.items()}
 
+    def doubtful_pronouns(self) -> Iterator[DoubtfulPronoun]:
+        """Yield the pronouns that could stand for several objects."""
+        for use in self.discourse.references.doubtful:
+            names = [self.names[leaf] for e in (use.chosen, *use.others) for leaf in e.leaves() if leaf in self.names]
+            if len(names) > 1:
+                yield DoubtfulPronoun(use.span, use.word, names[0], tuple(dict.fromkeys(names[1:])))
+
     def facts(self, draft: FactDraft) -> Iterator[StatedFact]:
         """Yield the facts of a draft: one for each object, or for each pair of members."""
         subjects = [leaf for s in draft.subjects for leaf in s.leaves() if leaf in self.names]
@@ -135,7 +147,15 @@ class _Writer:
             contents += [self._binary(draft, a, b) for a in names for b in ends if a != b]
         for content in contents:
             yield StatedFact(
-                content, how.sentence, how.span, how.condition, how.past, how.uncertain, how.alternative, how.quantifier
+                content,
+                how.sentence,
+                how.span,
+                how.condition,
+                how.past,
+                how.uncertain,
+                how.alternative,
+                how.quantifier,
+                how.need_not_hold,
             )
 
     def _binary(self, draft: FactDraft, subject: str, thing: str) -> Fact | Claim:
@@ -190,8 +210,9 @@ class _Writer:
         subjects = tuple(self._mention(name, source) for name in content.subjects)
         arguments = tuple(self._mention(name, source) for name in content.arguments)
         colour = self.ontology.colours.of_word(content.value or "") if content.relation == "colour" else None
-        if colour is not None and content.positive:
-            yield Declaration(subjects, None, colour, source)
+        kind = self.ontology.kinds.words.get(content.value or "") if content.relation == "kind" else None
+        if (colour is not None or kind is not None) and content.positive:
+            yield Declaration(subjects, kind, colour, source)
         yield ClaimStatement(subjects, arguments, content, source)
 
     def _hedge(self, weight: float) -> str | None:

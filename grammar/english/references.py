@@ -18,7 +18,7 @@ from deixis.grammar.english.nouns import (
     VIEWER_WORDS,
     last_word,
 )
-from deixis.grammar.english.tree import Adjective, Degree, NounPhrase
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 
 REGIONS = frozenset(
     [
@@ -74,6 +74,16 @@ class Focus:
     sentence: int
 
 
+@dataclass(frozen=True, slots=True)
+class PronounUse:
+    """A pronoun, the object that it was taken for, and the others of the clause before that it could stand for."""
+
+    span: Span
+    word: str
+    chosen: Entity
+    others: tuple[Entity, ...]
+
+
 @dataclass
 class References:
     """Objects of a text so far, and the rules by which a phrase refers to one of them.
@@ -90,6 +100,7 @@ class References:
     start: int = 0  # of the sentence in the text
     text: str = ""
     surface: Entity | None = None
+    doubtful: list[PronounUse] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.viewer = Entity(VIEWER, Role.VIEWER)
@@ -204,7 +215,8 @@ class References:
             phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
         ):
             return None
-        for entity in reversed(list(self._known())):
+        known = list(reversed(list(self._known())))
+        for entity in sorted(known, key=lambda e: e.noun != phrase.head):  # the same noun before one that contains it
             if not _same_noun(entity.noun, phrase.head) or _conflicting(entity, phrase):
                 continue
             if phrase.determiner == "other" and not entity.members:
@@ -303,7 +315,9 @@ class References:
         if word in ("it", "itself") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
-            return self._singular(relation, besides)
+            chosen = self._singular(relation, besides)
+            self._note_doubt(phrase, chosen, relation, besides)
+            return chosen
         if word in ("former", "latter"):
             pair = next((f for f in self.recent if f.subject is not None and f.others), None)
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
@@ -367,6 +381,24 @@ class References:
                     continue
                 return entity
         return None
+
+    def _note_doubt(
+        self, phrase: NounPhrase, chosen: Entity | None, relation: str | None, besides: Entity | None
+    ) -> None:
+        """Record a pronoun after a relation where the clause before names two objects that it could stand for.
+
+        A pronoun that is the subject goes on with the subject before it, and one after the opposite of the relation
+        before (*left of the plate … right of it*) with its object; neither is in doubt.
+        """
+        last = self.recent[0] if self.recent else None
+        if chosen is None or last is None or besides is None or chosen.role is not Role.THING:
+            return
+        if relation in OPPOSITES and OPPOSITES[relation] == last.relation:
+            return
+        named = [e for e in (last.subject, *last.others) if e is not None and e.role is Role.THING]
+        others = [e for e in named if e.itself not in (chosen.itself, besides.itself) and not e.itself.members]
+        if others and chosen.itself in [e.itself for e in named]:
+            self.doubtful.append(PronounUse(phrase.span, phrase.pronoun or "", chosen, tuple(others)))
 
     def _plural(self, relation: str | None, besides: Entity | None) -> Entity | None:
         for focus in self.recent[:4]:

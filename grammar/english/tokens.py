@@ -14,7 +14,12 @@ MAX_SENTENCE_WORDS = 400
 """Number of words after which a text without a full stop is cut."""
 
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
+LITERAL = "\u02bc"
+"""First and last letter, in ``Word.norm``, of a name that is taken as it is: ``left_shoe``, or words in backticks."""
+
 _WORD = re.compile(
+    r"`[^`\n]{1,1000}`|"
+    r"(?<!\w)\w[\w-]*?_[\w-]*\w(?!\w)|"  # left_shoe
     r"\b[wW]/(?:o\b)?|"  # with, without
     r"[^\W\d_]+(?:['\u2019][^\W\d_]+)*(?:-[^\W_]+(?:['\u2019][^\W\d_]+)*)*"  # words, with apostrophes and hyphens
     r"|\d+(?:[.,:]\d+)*(?:st|nd|rd|th)?(?:-[^\W\d_]+)*"  # numbers, ordinals, 3-level
@@ -130,6 +135,10 @@ def words_of(text: str, span: Span) -> list[Word]:
         start, end = match.span()
         norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
         norm = TYPOS.get(norm, norm)
+        name = "_".join(raw.strip("`").split()).casefold() if raw[0] == "`" or "_" in raw[1:-1] else ""
+        if name:
+            found.append(Word(raw, f"{LITERAL}{name}{LITERAL}", start, end, True))
+            continue
         if not raw[0].isalnum() and norm not in _CLITICS:
             if norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))

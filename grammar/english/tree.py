@@ -79,11 +79,11 @@ class Viewpoint:
 class NounPhrase:
     """A phrase that stands for one or more objects.
 
-    ``head`` is the noun in the singular with the nouns before it (``water bottle``), empty for a pronoun or an ellipsis
-    (``the left one`` has the pronoun ``one``; ``the leftmost`` has neither). ``members`` are the parts of a
-    coordination, joined by ``joined_by`` (``and``, ``or``); a coordination has no head of its own. ``of`` is the
-    complement of a phrase such as *end of the shelf*, *row of pawns*, *one of the forks*. ``owner`` is the possessor
-    (*the cup's handle*, *its lid*).
+    ``head`` is the noun in the singular with the nouns before it (``water bottle``; between two ``LITERAL`` letters
+    for a name that is taken as it is), empty for a pronoun or an ellipsis (``the left one`` has the pronoun
+    ``one``; ``the leftmost`` has neither). ``members`` are the parts of a coordination, joined by ``joined_by``
+    (``and``, ``or``); a coordination has no head of its own. ``of`` is the complement of a phrase such as *end of
+    the shelf*, *row of pawns*, *one of the forks*. ``owner`` is the possessor (*the cup's handle*, *its lid*).
     """
 
     span: Span

@@ -318,6 +318,7 @@ DEGREE_ADVERBS = word_set(
 # Relation words that take an object. The key is the relation's name in the ontology; '-' is no spatial relation.
 _PREPOSITIONS = """
 material: made of, made out of, made from, made up of, built of, built from, composed of, consisting of
+stacked: stacked upon
 on: on, upon, onto, atop, on top of, ontop of, on to, over top of
 inside: in, inside, inside of, within, into, in side of
 at: at

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from deixis.workflows.refer import refer
     from deixis.workflows.retrieve import Retrieval, retrieve
     from deixis.workflows.simulate import simulate
+    from deixis.workflows.tell import tell
+    from deixis.workflows.telling import Telling
 
 __version__ = VERSION
 __all__ = [
@@ -72,6 +74,7 @@ __all__ = [
     "Scene",
     "Script",
     "Session",
+    "Telling",
     "ask",
     "check",
     "format_script",
@@ -86,6 +89,7 @@ __all__ = [
     "refer",
     "retrieve",
     "simulate",
+    "tell",
     "write_scene",
 ]
 
@@ -111,6 +115,7 @@ _HOMES = {
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
+    "Telling": "deixis.workflows.telling",
     "ask": "deixis.workflows.ask",
     "check": "deixis.workflows.check",
     "format_script": "deixis.grammar.format",
@@ -125,6 +130,7 @@ _HOMES = {
     "refer": "deixis.workflows.refer",
     "retrieve": "deixis.workflows.retrieve",
     "simulate": "deixis.workflows.simulate",
+    "tell": "deixis.workflows.tell",
     "write_scene": "deixis.workflows.perceive",
 }
 

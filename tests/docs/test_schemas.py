@@ -110,6 +110,11 @@ def test_a_text_in_english_has_its_schema() -> None:
     assert list(validator("reading").iter_errors(json.loads(json.dumps(read)))) == []
 
 
+@pytest.mark.parametrize("told", ["formal_dinner.layout", "second_table.scene.json"])
+def test_what_is_told_has_its_schema(told: str) -> None:
+    assert errors("telling", deixis.tell(EXAMPLES / told)) == []
+
+
 @pytest.mark.parametrize(
     ("name", "command"),
     [

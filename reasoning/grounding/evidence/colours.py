@@ -16,6 +16,9 @@ from deixis.ontology.colours import Colour, Colours
 
 Array = NDArray[np.float64]
 
+MIN_TERM_SHARE = 0.9
+"""Minimum share of a colour term among the densities of all terms, from which the term names a colour."""
+
 OUTLIERS = 0.05
 """Share of things whose seen colour is independent of the described one, because of the light or several colours."""
 
@@ -90,6 +93,26 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
         if iri is not None:
             evidence[row, known] = ratios[:, column[iri]]
     return evidence
+
+
+def colour_terms(seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
+    """Return the basic colour term of each of n things, None where the colour is unknown or two terms fit.
+
+    ``seen`` (n, 3) holds sRGB colours as for :func:`colour_evidence`.
+
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> terms = colour_terms(np.array([[200.0, 20, 30], [np.nan] * 3]), default_ontology().colours)
+    >>> [term and term.label for term in terms]
+    ['red', None]
+    """
+    found: list[Colour | None] = [None] * len(seen)
+    for place in np.flatnonzero(~np.isnan(seen).any(axis=1)):
+        lab = lab_of_srgb(seen[place])[None]
+        densities = np.array([_log_density(lab, term)[0] for term in colours.basic])
+        shares = np.exp(densities - np.logaddexp.reduce(densities))
+        if shares.max() >= MIN_TERM_SHARE:
+            found[place] = colours.basic[int(shares.argmax())]
+    return found
 
 
 def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:

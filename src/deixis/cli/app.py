@@ -29,6 +29,7 @@ COMMAND_GROUPS = {
         "parse": "parse",
         "fmt": "fmt",
         "lint": "lint",
+        "tell": "tell",
         "infer": "infer",
         "imagine": "imagine",
         "lsp": "lsp",

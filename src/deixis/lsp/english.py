@@ -1,7 +1,9 @@
-"""A text in English as an editor holds it: the phrases that are not understood, and the facts of each sentence."""
+"""A text in English as an editor holds it: warnings, completion, and the facts of each sentence."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -9,8 +11,10 @@ from pathlib import Path
 from deixis.deadline import Deadline
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, ScriptError, ScriptTimeError
 from deixis.grammar.script import Script
-from deixis.lsp.diagnostics import LINT_TIME_LIMIT, Problem
+from deixis.lsp.completion import MAX_COMPLETIONS, MAX_WORDS, Completion, Role
+from deixis.lsp.diagnostics import LINT_TIME_LIMIT, MAX_WARNINGS, Problem
 from deixis.lsp.document import READ_TIME_LIMIT
+from deixis.lsp.edits import Edit, Fix
 from deixis.ontology.facts import Source
 
 
@@ -47,7 +51,7 @@ class EnglishText:
 
 
 def english_problems(document: EnglishText) -> list[Problem]:
-    """Return the phrases of a text that are not understood, and the contradiction in what it states.
+    """Return the errors of a text of which nothing is understood, else the warnings of ``deixis lint``.
 
     >>> text = "The fork is to the left of the plate. The plate is left of the fork."
     >>> [problem.code for problem in english_problems(EnglishText(text))]
@@ -62,19 +66,73 @@ def english_problems(document: EnglishText) -> list[Problem]:
         top = Source(document.file, 1, 1, 1, 2)
         return [Problem(top, f"the text is too long to be checked while it is edited ({READ_TIME_LIMIT:g} s)")]
     if isinstance(script, ScriptError):
-        problems = script.problems
-    else:
-        assert script.reading is not None
-        problems = tuple(problem for sentence in script.reading.sentences for problem in sentence.problems)
-    code = None if isinstance(script, ScriptError) else "not understood"
-    found = [
-        Problem(one.source, f"{one.message}; {one.hint}" if one.hint else one.message, code)
-        for one in problems[:MAX_PROBLEMS_SHOWN]
+        return [
+            Problem(one.source, f"{one.message}; {one.hint}" if one.hint else one.message)
+            for one in script.problems[:MAX_PROBLEMS_SHOWN]
+        ]
+    found = lint(script, time_limit=LINT_TIME_LIMIT).findings
+    return [
+        Problem(one.source, f"{one.message}; {one.hint}" if one.hint else one.message, one.code, one.replacement)
+        for one in found[:MAX_WARNINGS]
     ]
-    if isinstance(script, Script):
-        conflicts = lint(script, select=["F003"], time_limit=LINT_TIME_LIMIT).findings
-        found += [Problem(one.source, one.message, one.code) for one in conflicts]
-    return found
+
+
+def english_fixes(problems: Iterable[Problem]) -> Iterator[Fix]:
+    """Yield the quick fixes of problems: put the suggested word."""
+    for problem in problems:
+        if problem.replacement is not None:
+            edit = Edit(problem.source, problem.replacement.replace("_", " "))
+            yield Fix(f"Replace by '{edit.text}'", problem, (edit,))
+
+
+def english_completions(document: EnglishText, line: int, column: int) -> list[Completion]:
+    """Return words that can go on at a position: names of the text, relations, and nouns that the ontology knows.
+
+    >>> text = "The fork is left of the plate. The knife is right of the pl"
+    >>> [found.text for found in english_completions(EnglishText(text), 1, len(text) + 1)][:2]
+    ['plate', 'place card']
+    """
+    if not 1 <= line <= len(document.lines):
+        return []
+    before = document.lines[line - 1][: column - 1]
+    found: dict[str, Completion] = {}
+    for start in _starts(before):
+        typed = before[start:].casefold()
+        if not typed.strip():
+            continue
+        for text, role, detail in _words(document, typed):
+            if text.casefold().startswith(typed) and text.casefold() != typed:
+                found.setdefault(text, Completion(text, role, start + 1, detail))
+                if len(found) >= MAX_COMPLETIONS:
+                    return list(found.values())
+    return list(found.values())
+
+
+def _starts(before: str) -> Iterator[int]:
+    """Yield the columns, from 0, at which the phrase that is being typed may begin: the longest phrase first."""
+    words = [match.start() for match in re.finditer(r"[^\s,;.()\"]+", before)]
+    yield from words[-MAX_WORDS:]
+
+
+def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]:
+    """Yield the names of the text, the phrases of relations, and the kinds, each with a short explanation."""
+    from deixis.grammar.english.words import prepositions
+    from deixis.ontology.tbox import default_ontology
+
+    script = document.script
+    if isinstance(script, Script) and script.reading is not None:
+        for name in script.reading.mentions:
+            shown = re.sub(r"_\d+$", "", name).replace("_", " ")
+            if shown != typed:
+                yield shown, Role.NAME, "name"
+    for phrase, preposition in prepositions().items():
+        if preposition.relation != "-":
+            yield phrase, Role.RELATION, preposition.relation.replace("_", " ")
+    ontology = default_ontology()
+    for kind in ontology.kinds:
+        yield kind.words[0] if kind.words else kind.label, Role.KIND, "kind"
+    for colour in ontology.colours:
+        yield colour.label, Role.COLOUR, "colour"
 
 
 def english_hover(document: EnglishText, line: int, column: int) -> str | None:

@@ -23,7 +23,7 @@ from deixis.lsp.completion import Role, completions
 from deixis.lsp.diagnostics import Problem, errors, warnings
 from deixis.lsp.document import Document
 from deixis.lsp.edits import Edit, RenameError, fixes, formatted, rename
-from deixis.lsp.english import EnglishText, english_hover, english_problems
+from deixis.lsp.english import EnglishText, english_completions, english_fixes, english_hover, english_problems
 from deixis.lsp.hover import hover
 from deixis.lsp.symbols import mentions_of, symbols
 from deixis.ontology.facts import Source
@@ -90,7 +90,7 @@ class LayoutServer(LanguageServer):
         )
         return self.workspace.position_codec.range_to_client_units(document.lines, found)
 
-    def text_edit(self, document: Document, edit: Edit) -> types.TextEdit:
+    def text_edit(self, document: Document | EnglishText, edit: Edit) -> types.TextEdit:
         """Return an edit as the protocol writes it."""
         return types.TextEdit(self.range(document, edit.source), edit.text)
 
@@ -149,9 +149,12 @@ def build_server() -> LayoutServer:
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[" ", "(", ","]))
     async def complete(params: types.CompletionParams) -> types.CompletionList:
-        document = server.layout(params.text_document.uri)
+        document = server.document(params.text_document.uri)
         line, column = server.position(document, params.position)
-        found = await asyncio.to_thread(completions, document, line, column)
+        if isinstance(document, EnglishText):
+            found = await asyncio.to_thread(english_completions, document, line, column)
+        else:
+            found = await asyncio.to_thread(completions, document, line, column)
         items = []
         for number, one in enumerate(found):
             place = server.range(document, Source(document.file, line, one.column, line, column))
@@ -183,7 +186,7 @@ def build_server() -> LayoutServer:
     def fix(params: types.CodeActionParams) -> list[types.CodeAction]:
         uri = params.text_document.uri
         document, problems = server.problems.get(uri, (None, []))
-        if not isinstance(document, Document) or server.document(uri) is not document:
+        if document is None or server.document(uri) is not document:
             return []
         asked = [problem for problem in problems if _meet(server.range(document, problem.source), params.range)]
         return [
@@ -193,7 +196,7 @@ def build_server() -> LayoutServer:
                 diagnostics=[server.diagnostic(document, one.problem)],
                 edit=types.WorkspaceEdit(changes={uri: [server.text_edit(document, edit) for edit in one.edits]}),
             )
-            for one in fixes(document, asked)
+            for one in (fixes(document, asked) if isinstance(document, Document) else english_fixes(asked))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)

@@ -13,6 +13,7 @@ from deixis.report.marks import doubt
 if TYPE_CHECKING:
     from deixis.grammar.reading import Reading, ReadSentence, StatedFact
     from deixis.grammar.script import Script
+    from deixis.ontology.facts import Fact
 
 
 def reading_lines(script: Script) -> list[str]:
@@ -60,12 +61,7 @@ def reading_to_dict(script: Script) -> dict[str, Any]:
 
 def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
     """Return a fact of a text with its sentence, its span and what qualifies it."""
-    content = stated.content
-    known = _claim_to_dict(content, reading) if isinstance(content, Claim) else fact_to_dict(content)
-    if not isinstance(content, Claim):
-        known |= {"relation": content.relations[0].name, "arguments": [], "value": None, "metres": None}
-    return known | {
-        "subjects": list(content.subjects) if isinstance(content, Claim) else [content.subject],
+    return content_to_dict(stated.content, reading.surface) | {
         "status": "stated",
         "asserted": stated.asserted,
         "sentence": stated.sentence,
@@ -78,19 +74,27 @@ def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
     }
 
 
-def _claim_to_dict(claim: Claim, reading: Reading) -> dict[str, Any]:
+def content_to_dict(content: Fact | Claim, surface: str | None = None) -> dict[str, Any]:
+    """Return a fact or a claim as plain data; ``surface`` is what places without an object are meant of."""
+    known = _claim_to_dict(content, surface) if isinstance(content, Claim) else fact_to_dict(content)
+    if not isinstance(content, Claim):
+        known |= {"relation": content.relations[0].name, "arguments": [], "value": None, "metres": None}
+    return known | {"subjects": list(content.subjects) if isinstance(content, Claim) else [content.subject]}
+
+
+def _claim_to_dict(claim: Claim, surface: str | None) -> dict[str, Any]:
     nothing = claim.relation.startswith("none_")
     relation = claim.relation.removeprefix("none_")
     subject, arguments = ("*", claim.subjects) if nothing else (claim.subjects[0], claim.arguments)
     if not nothing and len(claim.subjects) > 1:
         arguments = (*claim.subjects[1:], *claim.arguments)
     binary = len(arguments) == 1 and claim.value is None and (nothing or len(claim.subjects) == 1)
-    over_surface = not arguments and relation in _ON_SURFACE and reading.surface is not None
+    over_surface = not arguments and relation in _ON_SURFACE and surface is not None
     entry: dict[str, Any] = {
         "relation": relation,
         "subject": subject,
         "object": arguments[0] if binary else None,
-        "arguments": [reading.surface] if over_surface else list(arguments),
+        "arguments": [surface] if over_surface else list(arguments),
         "value": claim.value,
         "metres": claim.metres,
         "reading": "wide",

@@ -64,6 +64,7 @@ RENDERERS = {
     "Inference": Renderer(
         "report.json_answers:inference_to_dict", "report.script:inference_lines", "report.rows:inference_rows"
     ),
+    "Telling": Renderer("report.tell:telling_to_dict", "report.tell:telling_lines"),
     "Placements": Renderer("report.habits:habits_to_dict", "report.habits:habits_lines", "report.habits:habits_rows"),
     "Lint": Renderer("report.lint:lint_to_dict", "report.lint:lint_lines"),
     "Imagination": Renderer(

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from deixis.grammar.english.entities import plain_noun
 from deixis.grammar.english.tree import Adjective, NounPhrase, Predicate, Sentence, Viewpoint
 from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
 
@@ -276,7 +277,7 @@ def _noun(phrase: NounPhrase, depth: int = 0) -> str:
     """Return the noun of a phrase, or of its complement for *one of the chairs* and *the end of the table*."""
     if phrase.members and depth < MAX_DEPTH:
         return _noun(phrase.members[0], depth + 1)
-    head = phrase.head.casefold()
+    head = plain_noun(phrase.head).casefold()
     if phrase.of is not None and depth < MAX_DEPTH and (not head or head in GROUPS | PARTS | EMPTY):
         return _noun(phrase.of, depth + 1)
     return "" if head in EMPTY or (head in SIDE_NOUNS and phrase.of is None) else head
@@ -321,7 +322,7 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
             properties=(*first.properties, *(prop for properties, _ in denied for prop in properties)),
             relations=(*first.relations, *(relation for _, relations in denied for relation in relations)),
         )
-    head, inner = phrase.head.casefold(), None
+    head, inner = plain_noun(phrase.head).casefold(), None
     if phrase.of is not None:
         inner = _description(phrase.of, depth + 1)
     properties = [_property(one) for one in phrase.adjectives]

@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.names import key_of
+from deixis.grammar.reading import Reading
 from deixis.grammar.script import Mention, RelationStatement, Script, mentions
+from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact, Source
 from deixis.ontology.kinds import plain_name
 from deixis.workflows.read import as_script
@@ -31,9 +34,19 @@ CODES = {
     "F005": "An alternative of a choice is a special case of another alternative.",
     "H001": "A hedge has the weight 1, so it changes nothing.",
     "H002": "A denied fact has a hedge such as 'rarely', which denies it again.",
+    "E001": "A phrase of an English text is not understood.",
+    "E002": "A pronoun could stand for several objects.",
+    "E003": "The size of a group is unknown, so the group is one object.",
     "L001": "A script uses left, right, above or below without a viewpoint.",
 }
-"""Meanings of the codes of warnings: N for names, F for facts, H for hedges, L for the layout as a whole."""
+"""Meanings of the codes of warnings: N for names, F for facts, H for hedges, E for English, L for the layout."""
+
+PROPERTIES = frozenset(
+    {"colour", "size", "shape", "material", "state", "height", "length", "width", "thickness", "kind", "count"}
+    | {"contents", "empty", "open", "closed", "upside_down", "tallest", "largest", "smallest", "shortest", "longest"}
+    | {"widest", "thickest", "thinnest"}
+)
+"""Claims that do not say where a thing is."""
 
 MIN_COMPARED_LETTERS = 4  # minimum number of letters of a name that is compared with others
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
@@ -107,6 +120,8 @@ def lint(
     read = as_script(script)
     from_facts, complete = _inferred_findings(read, deadline)
     found = [*_name_findings(read), *_fact_findings(read), *from_facts]
+    if read.reading is not None:
+        found += _english_findings(read, read.reading)
     shown = [f for f in found if _chosen(f.code, select, ignore) and not _suppressed(read, f)]
     return Lint(read.file, tuple(sorted(shown, key=lambda f: (f.source, f.code))), complete)
 
@@ -126,14 +141,56 @@ def _suppressed(script: Script, finding: Finding) -> bool:
     return False
 
 
+def _english_findings(script: Script, reading: Reading) -> Iterator[Finding]:
+    """Yield the warnings that only a text in English can have."""
+    for sentence in reading.sentences:
+        for problem in sentence.problems:
+            yield Finding("E001", problem.source, problem.message, problem.hint, problem.replacement)
+    for pronoun in reading.doubtful_pronouns:
+        others = " or ".join(f"'{name}'" for name in pronoun.others)
+        message = f"'{pronoun.word}' is taken for '{pronoun.chosen}' and could be {others}"
+        source = source_of_span(reading.text, pronoun.span, script.file)
+        yield Finding("E002", source, message, "say the noun")
+    for name in reading.uncounted:
+        message = f"the number of '{name}' is unknown, so they are one object"
+        yield Finding("E003", _written(name, script) or Source(script.file, 1, 1, 1, 1), message, "say how many")
+
+
+def source_of_span(text: str, span: tuple[int, int], file: str) -> Source:
+    """Return the lines and columns of a span of characters."""
+    (line, column), (end_line, end_column) = (
+        (text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)) for at in span
+    )
+    return Source(file, line, column, end_line, end_column)
+
+
+def _written(name: str, script: Script) -> Source | None:
+    """Return the place where an English text first says the words of a name; None if it uses other words."""
+    reading = script.reading
+    if reading is None:
+        return None
+    words = [name, re.sub(r"_\d+$", "", name), *(m.split()[-1] for m in reading.mentions.get(name, ()) if m)]
+    for word in words:
+        found = re.search(rf"\b{'[ _-]'.join(map(re.escape, word.split('_')))}\b", reading.text, re.IGNORECASE)
+        if found is not None:
+            return source_of_span(reading.text, found.span(), script.file)
+    return None
+
+
 def _name_findings(script: Script) -> Iterator[Finding]:
     """Yield the warnings about names: each name once, at its first mention."""
     first: dict[str, Mention] = {}
     uses: Counter[str] = Counter()
+    counted = set(script.reading.uncounted) if script.reading is not None else set()
     for statement in script.all_statements():
         for mention in mentions(statement):
-            first.setdefault(plain_name(mention.name), mention)
-            uses[plain_name(mention.name)] += 1
+            if mention.name in counted:
+                continue
+            name = plain_name(mention.name)
+            if name not in first:
+                place = _written(mention.name, script)
+                first[name] = mention if place is None else replace(mention, source=place)
+            uses[name] += 1
     ontology = script.ontology
     known = {name for name in first if ontology.of_name(name)[0] is not None}
     declared = {plain_name(name) for name in script.kinds}
@@ -152,9 +209,13 @@ def _name_findings(script: Script) -> Iterator[Finding]:
                 hint = f"declare its kind, as in: {name} is a plate"
                 yield Finding("N003", mention.source, f"the kind of '{name}' is unknown", hint)
     related = {plain_name(name) for fact in script.facts for name in (fact.subject, fact.object)}
+    placed = (claim for claim in script.claims if claim.relation not in PROPERTIES)
+    related |= {plain_name(name) for claim in placed for name in (*claim.subjects, *claim.arguments)}
     for name, mention in first.items():
-        if name not in related:
+        if name not in related and script.reading is None:
             yield Finding("N002", mention.source, f"'{name}' is declared, but no fact mentions it")
+        elif name not in related:
+            yield Finding("N002", mention.source, f"nothing says where '{name}' is")
 
 
 def _misspelt(names: list[str], known: set[str], declared: set[str], uses: Counter[str]) -> dict[str, str]:
@@ -249,12 +310,16 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
         where = ", ".join(str(_place(fact, script)) for fact in facts[:-1])
         said = f"{conflict.reason} (with {where})" if where else conflict.reason
         return [Finding("F003", _place(facts[-1], script), said)], True
-    groups = list(_groups(script.objects, script.facts))
+    groups = list(_groups(script.objects, script.facts, script.claims))
     found = []
     for group in groups[1:]:
-        fact = next(fact for fact in script.facts if fact.subject in group)
-        others = f"'{script.facts[0].subject}' and {len(groups[0]) - 1} more"
-        message = f"no facts connect '{fact.subject}' and {len(group) - 1} more with {others}"
+        fact = next((fact for fact in script.facts if fact.subject in group), None)
+        if fact is None:
+            continue
+        start = next(name for name in script.objects if name in groups[0])
+        message = (
+            f"no facts connect '{fact.subject}' and {len(group) - 1} more with '{start}' and {len(groups[0]) - 1} more"
+        )
         found.append(Finding("F004", _place(fact, script), message))
     if verdict is None:
         return found, False
@@ -268,12 +333,25 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
     return found, complete
 
 
-def _groups(objects: Sequence[str], facts: Iterable[Fact]) -> Iterator[set[str]]:
-    """Yield the sets of objects that facts connect, in the order of the script; single objects are left out."""
+def _groups(objects: Sequence[str], facts: Iterable[Fact], claims: Iterable[Claim]) -> Iterator[set[str]]:
+    """Yield the sets of objects that facts and claims connect, in the order of the script, without single objects.
+
+    Objects that claims place on the table (*in the middle*) are connected with each other.
+    """
     near: dict[str, list[str]] = defaultdict(list)
-    for fact in facts:
-        near[fact.subject].append(fact.object)
-        near[fact.object].append(fact.subject)
+    pairs = [(fact.subject, fact.object) for fact in facts]
+    on_table: str | None = None
+    for claim in claims:
+        if claim.relation in PROPERTIES:
+            continue
+        named = (*claim.subjects, *claim.arguments)
+        pairs += pairwise(named)
+        if not claim.arguments and len(claim.subjects) == 1:
+            pairs += [(on_table, named[0])] if on_table is not None and on_table != named[0] else []
+            on_table = named[0]
+    for one, other in pairs:
+        near[one].append(other)
+        near[other].append(one)
     seen: set[str] = set()
     for name in objects:
         if name in seen or name not in near:

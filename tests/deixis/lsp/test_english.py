@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.lsp.english import EnglishText, english_hover, english_problems
+from deixis.lsp.english import EnglishText, english_completions, english_fixes, english_hover, english_problems
 
 TEXT = "The fork is left of the plate.\r\nIt zorbles the quux blargh wibble.\r\nThe knife is right of the plate."
 
@@ -19,6 +19,22 @@ def test_a_text_without_facts_is_one_error_or_nothing(text: str) -> None:
     found = english_problems(EnglishText(text))
     assert [problem.source.line for problem in found[:1]] == ([1] if text.strip() else [])
     assert english_hover(EnglishText(text), 1, 1) is None
+
+
+def test_warnings_have_codes_and_fixes_in_an_english_text() -> None:
+    text = "The fork is left of the plate. The cups are near the plaet. The spoon is next to the fork."
+    found = english_problems(EnglishText(text))
+    assert {"N001", "E003"} <= {problem.code for problem in found}
+    assert [edit.text for fix in english_fixes(found) for edit in fix.edits] == ["plate"]
+
+
+def test_completion_offers_names_and_relations_of_english() -> None:
+    text = "The sugar bowl is left of the plate. The fork is next"
+    assert "next to" in [one.text for one in english_completions(EnglishText(text), 1, len(text) + 1)]
+    text += " to the su"
+    found = english_completions(EnglishText(text), 1, len(text) + 1)
+    assert (found[0].text, found[0].column) == ("sugar bowl", len(text) - 1)
+    assert english_completions(EnglishText(text), 7, 1) == []
 
 
 def test_hover_shows_the_facts_of_the_sentence() -> None:

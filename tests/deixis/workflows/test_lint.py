@@ -127,3 +127,39 @@ def test_the_page_lists_every_code_with_its_meaning() -> None:
     page = (ROOT / "docs" / "reference" / "lint.md").read_text(encoding="utf-8")
     for code, meaning in CODES.items():
         assert f"| `{code}` | {meaning} |" in page
+
+
+def english_codes(text: str, *select: str) -> list[tuple[str, int]]:
+    found = deixis.lint(deixis.read_script(text=text, english=True), select=select)
+    return [(finding.code, finding.source.column) for finding in found.findings]
+
+
+def test_english_names_are_compared_at_their_words() -> None:
+    text = "The fork is left of the plate. The plaet is near the fork. The blorft is on the plate. The jug is red."
+    assert english_codes(text, "N") == [("N001", 36), ("N003", 64), ("N002", 92)]
+
+
+def test_phrases_that_are_not_understood_are_warnings() -> None:
+    assert english_codes("The cup is left of the jug for the guests.", "E") == [("E001", 28)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("The glass is behind the knife. The spoon is next to it.", [("E002", 53)]),
+        ("The glass is left of the knife. The spoon is right of it.", []),
+        ("The glass is behind the knife. It is next to the spoon.", []),
+    ],
+)
+def test_a_pronoun_with_two_candidates_is_a_warning(text: str, expected: list[tuple[str, int]]) -> None:
+    assert english_codes(text, "E") == expected
+
+
+def test_a_group_of_unknown_size_is_a_warning() -> None:
+    assert english_codes("The cups are left of the jug. The scissors are left of the jug.", "E") == [("E003", 5)]
+    assert english_codes("Two cups are left of the jug.", "E", "N") == []
+
+
+def test_places_on_the_table_connect_objects() -> None:
+    text = "The lamp is in the far left corner. The cup is in the middle. The jug is left of the cup."
+    assert english_codes(text, "F004") == []

@@ -93,3 +93,45 @@ def test_mentions_are_all_words_for_an_object() -> None:
 def test_a_text_without_any_place_is_refused() -> None:
     with pytest.raises(ScriptError, match="nothing in this text"):
         read_english("Hello, my friend.")
+
+
+@pytest.mark.parametrize(
+    ("text", "weight"),
+    [
+        ("The fork is usually right of the plate.", 0.8),
+        ("The fork is probably bigger than the plate.", 0.7),
+        ("The fork is perhaps right of the plate.", 0.5),
+    ],
+)
+def test_a_hedge_before_a_place_or_a_comparative_counts(text: str, weight: float) -> None:
+    (fact,) = reading(text).stated
+    assert fact.content.weight == weight
+    assert fact.asserted == (weight > 0.5)
+
+
+def test_a_noun_means_the_object_of_the_same_noun_first() -> None:
+    text = "A fork is right of the plate. A dinner fork is left of the plate. The fork is on the mat."
+    assert asserted(text) == {"right(fork, plate)", "left(dinner_fork, plate)", "on(fork, mat)"}
+
+
+def test_names_in_backticks_or_with_underscores_are_literal() -> None:
+    text = "The `left shoe` is on the `table`. The left_shoes are exactly left of the `of`."
+    assert asserted(text) == {"on(left_shoe, table)", "exactly_left(left_shoes, of)"}
+
+
+@pytest.mark.parametrize(
+    ("text", "fact"),
+    [
+        ("The cup is nearer to you than the plate.", "bottom(cup, plate)"),
+        ("The cup is farther than the plate.", "top(cup, plate)"),
+        ("The book is stacked upon the box.", "stacked(book, box)"),
+    ],
+)
+def test_words_of_the_layout_language_are_read(text: str, fact: str) -> None:
+    assert [str(one) for one in read_english(text).facts] == [fact]
+
+
+def test_a_choice_of_relations_of_one_pair_is_one_fact() -> None:
+    script = read_english("The fork is usually either left of the plate or on the plate.")
+    (fact,) = script.facts
+    assert (str(fact), fact.weight, fact.optional) == ("left or on(fork, plate)", 0.8, False)
