@@ -6,6 +6,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from deixis.grammar.claims import COMMON_PHRASES
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, StatementError, shortened
 from deixis.grammar.names import NameTable
 from deixis.grammar.script import Mention
@@ -29,6 +30,7 @@ class Draft:
     problems: list[Diagnostic] = field(default_factory=list)
     book: NameTable = field(default_factory=NameTable)
     viewpoint: str | None = None
+    surface: str | None = None
     size: int = 0  # facts and declared objects so far
     declared: dict[str, list[Kind]] = field(default_factory=dict)
     coloured: dict[str, Colour] = field(default_factory=dict)
@@ -49,8 +51,9 @@ class Draft:
 
     @cached_property
     def phrases(self) -> dict[str, str]:
-        """Relation phrases as they are written, by their plain form."""
-        return {plain_phrase(word): word for r in self.ontology.relations.values() for word in r.words}
+        """Phrases of relations and common ones of claims, as they are written, by their plain form."""
+        words = (word for relation in self.ontology.relations.values() for word in relation.words)
+        return {plain_phrase(word): word for word in (*COMMON_PHRASES, *words)}
 
     @cached_property
     def chains(self) -> dict[str, Relation]:

@@ -11,6 +11,7 @@ from lark import Lark, Token
 from lark.lark import PostLex
 from lark.lexer import Lexer
 
+from deixis.grammar.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN, PHRASE_STARTS
 from deixis.grammar.tokens import TERMINALS_WITHOUT_RULE, Scanner
 from deixis.grammar.tree import TreeBuilder
 from deixis.grammar.words import chains, phrase_pattern
@@ -51,10 +52,12 @@ class Language:
 
     def reads_as_name(self, text: str) -> bool:
         """Return True if the unquoted text is read as a name of exactly this spelling, also before a relation."""
-        if plain_phrase(text) in self.phrase_starts:
-            return False
+        return plain_phrase(text) not in self.phrase_starts and self.is_name_token(text)
+
+    def is_name_token(self, text: str) -> bool:
+        """Return True if the unquoted text, alone, is one NAME token of this spelling, with blanks as underscores."""
         found = list(self.scanner.tokens(text))
-        return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text
+        return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text.replace(" ", "_")
 
 
 def language_of(ontology: Ontology) -> Language:
@@ -72,6 +75,9 @@ def _build(
     relations: tuple[str, ...], hedges: tuple[str, ...], chain_heads: tuple[str, ...], compounds: tuple[str, ...]
 ) -> Language:
     patterns = {
+        "CLAIM": CLAIM_PATTERN,
+        "CLAIM_OF": CLAIM_OF_PATTERN,
+        "HAS": HAS_PATTERN,
         "RELATION": phrase_pattern(relations),
         "HEDGE": phrase_pattern(hedges) if hedges else NOTHING,
         "CHAIN": phrase_pattern(chain_heads) + r"[ \t]*:" if chain_heads else NOTHING,
@@ -81,7 +87,7 @@ def _build(
     scanner = Scanner(lark.terminals, {name: f"(?i:{pattern})" for name, pattern in patterns.items()})
     split = [phrase.split() for phrase in relations]
     starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
-    return Language(lark, scanner, starts)
+    return Language(lark, scanner, starts | PHRASE_STARTS)
 
 
 @cache

@@ -25,6 +25,12 @@ RESERVED_FOR = {
     "_SEEN": "belongs to a header",
     "_FROM": "belongs to a header",
     "_INCLUDE": "begins an include",
+    "_THAN": "belongs to a comparison",
+    "_NOTHING": "states that no object is there",
+    "_UNSEEN": "marks what is not among the objects",
+    "CLAIM": "says where something is, or what it is like",
+    "CLAIM_OF": "says where something is",
+    "HAS": "states a property",
 }
 """Uses of the reserved words, by terminal; messages put the word in front."""
 

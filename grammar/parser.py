@@ -126,6 +126,7 @@ def _script(reader: FileReader, deadline: Deadline) -> Script:
         name=header.name,
         title=header.title,
         viewpoint=header.viewpoint,
+        surface=header.surface,
         statements=tuple(statements),
         comments=tuple(reader.comments),
         ontology=reader.draft.ontology,
@@ -218,6 +219,8 @@ class FileReader:
         if isinstance(statement, Header):
             if not first:
                 raise StatementError(statement.source, "the header must be the first statement, and occur only once")
+            if self.includes is None or len(self.includes.open) == 1:
+                self.draft.surface = statement.surface
             seen_from = self.draft.viewpoint
             if statement.viewpoint is not None:
                 if self.includes is None or len(self.includes.open) == 1:

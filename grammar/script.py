@@ -55,12 +55,13 @@ class Comment:
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """A header, ``layout NAME "Title" seen from VIEWPOINT``."""
+    """A header, ``layout NAME "Title" on SURFACE seen from VIEWPOINT``."""
 
     name: str | None
     title: str | None
     viewpoint: str | None
     source: Source
+    surface: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,11 +117,15 @@ class Chain:
 
 @dataclass(frozen=True, slots=True)
 class ClaimStatement:
-    """A claim: a statement about described objects that is not a binary relation of the ontology."""
+    """A statement of claims, such as ``fork between plate and knife`` and ``lamp at far left corner``.
+
+    Several subjects have one claim each, except in a claim about all of them, such as ``a, b, c in a row``.
+    """
 
     subjects: tuple[Mention, ...]
     arguments: tuple[Mention, ...]
-    claim: Claim
+    claims: tuple[Claim, ...]
+    modifiers: Modifiers
     source: Source
 
 
@@ -156,6 +161,7 @@ class Script(Answer):
     comments: tuple[Comment, ...]
     ontology: Ontology = field(repr=False, compare=False)
     reading: Reading | None = field(default=None, repr=False, compare=False)  # of a text in English
+    surface: str | None = None  # what everything stands on; it is not an object
 
     def summary(self) -> str:
         """Return one line with the file, the title, and the numbers of objects and facts."""
@@ -184,7 +190,20 @@ class Script(Answer):
     @cached_property
     def claims(self) -> tuple[Claim, ...]:
         """Asserted claims in order, each with its source."""
-        return tuple(s.claim for s in self.all_statements() if isinstance(s, ClaimStatement))
+        stating = (s.claims for s in self.all_statements() if isinstance(s, ClaimStatement))
+        return tuple(chain.from_iterable(stating))
+
+    @cached_property
+    def stated(self) -> tuple[Fact | Claim, ...]:
+        """Facts and claims together, in the order of the statements."""
+        found: list[Fact | Claim] = []
+        for statement in self.all_statements():
+            match statement:
+                case RelationStatement() | Chain():
+                    found += statement.facts()
+                case ClaimStatement(claims=claims):
+                    found += claims
+        return tuple(found)
 
     @cached_property
     def kinds(self) -> dict[str, Kind]:
@@ -199,7 +218,7 @@ class Script(Answer):
 
     @cached_property
     def colours(self) -> dict[str, Colour]:
-        """Colours by object: the declared colour, or else the colour word at the start of the object's name.
+        """Colours by object: the declared or claimed colour, or else the colour word at the start of the name.
 
         >>> from deixis.grammar.parser import parse_script
         >>> script = parse_script("the red mug left of the plate; plate is white")
@@ -211,6 +230,11 @@ class Script(Answer):
         for statement in self.all_statements():
             if isinstance(statement, Declaration) and statement.colour is not None:
                 found.update(dict.fromkeys(_names(statement.subjects), statement.colour))
+            elif isinstance(statement, ClaimStatement):
+                for claim in statement.claims:
+                    colour = self.ontology.colours.of_word(claim.value or "") if claim.relation == "colour" else None
+                    if colour is not None and claim.positive:
+                        found.update(dict.fromkeys(claim.subjects, colour))
         return found
 
     def graph(self) -> RelationGraph:

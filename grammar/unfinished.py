@@ -86,6 +86,7 @@ def read_unfinished(
         name=header.name,
         title=header.title,
         viewpoint=header.viewpoint,
+        surface=header.surface,
         statements=tuple(statements),
         comments=tuple(reader.comments),
         ontology=ontology,

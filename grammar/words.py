@@ -34,7 +34,7 @@ been before being beside besides between both but by can close closer could diag
 down during each either else every exactly far farther for further had has have he her here hers him his how i
 if immediately in into it its itself just may me might mine must my near nearer nearly neither next no nobody
 none nor nothing now of off once one only onto opposite other our out outside over per please precisely rather
-relative roughly she should since slightly so some such than that their them then there these they this those
+relative roughly she should since slightly so some such that their them then there these they this those
 though through throughout till to together too toward towards until up us very via was we were what when where
 whereas whether which while who whom whose why will with without would yet you your
 """
@@ -61,6 +61,8 @@ KEYWORDS: dict[str, str] = {
     "include": "_INCLUDE",
     "and": "_AND",
     "or": "_OR",
+    "than": "_THAN",
+    "nothing": "_NOTHING",
     "not": "NOT",
     "never": "NOT",
     "optional": "OPTIONAL",
@@ -69,8 +71,11 @@ KEYWORDS: dict[str, str] = {
 """Terminals of the words that cannot be part of an unquoted name."""
 
 
-_BETWEEN = r"[ \t_]+(?:(?:the|an|a)[ \t_]+)*"  # separator between the words of a phrase: blanks and articles
-_BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"  # end of a word, as in the terminal NAME
+BETWEEN = r"[ \t_]+(?:(?:the|an|a)[ \t_]+)*"
+"""Pattern of what separates the words of a phrase: blanks and articles."""
+
+BOUNDARY = r"(?![\w-]|[^\x00-\x7f\s])"
+"""Pattern of the end of a word, as in the terminal NAME."""
 
 
 def phrase_pattern(phrases: Iterable[str]) -> str:
@@ -89,14 +94,14 @@ def phrase_pattern(phrases: Iterable[str]) -> str:
         for word in phrase.split():
             node = node.setdefault(word, {})
         node[""] = {}
-    return _alternatives(tree) + _BOUNDARY
+    return _alternatives(tree) + BOUNDARY
 
 
 def _alternatives(tree: dict[str, Any]) -> str:
     by_letter: dict[str, list[str]] = {}
     for word in sorted(word for word in tree if word):
         node = tree[word]
-        longer = f"(?:{_BETWEEN}{_alternatives(node)}){'?' if '' in node else ''}" if any(node) else ""
+        longer = f"(?:{BETWEEN}{_alternatives(node)}){'?' if '' in node else ''}" if any(node) else ""
         by_letter.setdefault(word[0], []).append(re.escape(word[1:]) + longer)
     options = [re.escape(letter) + f"(?:{'|'.join(rests)})" for letter, rests in by_letter.items()]
     return f"(?:{'|'.join(options)})"

@@ -10,6 +10,20 @@ from dataclasses import dataclass
 
 from deixis.ontology.facts import Source
 
+PLACES = frozenset({"corner", "edge", "end", "side", "part", "middle"})
+"""Claims about a place in a region: of the surface, or of the thing that is the argument."""
+
+COLLECTIVE = frozenset(
+    {"row", "circle", "nested", "stacked", "near_each_other", "parallel_each_other", "touching_each_other"}
+)
+"""Claims about all of their subjects together."""
+
+SUPERLATIVES = (
+    *("largest", "smallest", "tallest", "shortest", "longest", "widest", "narrowest", "thickest", "thinnest"),
+    *("leftmost", "rightmost"),
+)
+"""Claims that compare the subject with the arguments, or with everything."""
+
 
 @dataclass(frozen=True, slots=True)
 class Claim:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from deixis.ontology.claims import PLACES, Claim
 from deixis.ontology.facts import Fact
 from deixis.ontology.vocabulary import BASE, DX
 
@@ -32,6 +33,38 @@ def fact_to_dict(fact: Fact) -> dict[str, Any]:
     }
     if fact.source is not None:
         entry |= {"file": fact.source.file, "line": fact.source.line, "column": fact.source.column}
+    return entry
+
+
+ON_SURFACE = frozenset({*PLACES, "on"})
+"""Claims that are about the surface if they have no arguments."""
+
+
+def claim_to_dict(claim: Claim, surface: str | None = None) -> dict[str, Any]:
+    """Return a claim as it appears in the JSON output of the commands; ``surface`` is the name of the surface."""
+    nothing = claim.relation.startswith("none_")
+    relation = claim.relation.removeprefix("none_")
+    subject, arguments = ("*", claim.subjects) if nothing else (claim.subjects[0], claim.arguments)
+    if not nothing and len(claim.subjects) > 1:
+        arguments = (*claim.subjects[1:], *claim.arguments)
+    binary = len(arguments) == 1 and claim.value is None and (nothing or len(claim.subjects) == 1)
+    over_surface = not arguments and relation in ON_SURFACE and surface is not None
+    entry: dict[str, Any] = {
+        "relation": relation,
+        "subject": subject,
+        "object": arguments[0] if binary else None,
+        "arguments": [surface] if over_surface else list(arguments),
+        "value": claim.value,
+        "metres": claim.metres,
+        "reading": "wide",
+        "relations": [relation],
+        "positive": claim.positive and not nothing,
+        "optional": claim.optional,
+        "weight": claim.weight,
+        "subjects": list(claim.subjects),
+    }
+    if claim.source is not None:
+        entry |= {"file": claim.source.file, "line": claim.source.line, "column": claim.source.column}
     return entry
 
 

@@ -16,10 +16,10 @@ ONTOLOGY = default_ontology()
 
 def meaning(script: Script) -> tuple[Any, ...]:
     """Return the content of a script, without source positions."""
-    facts = [(str(f), f.positive, f.optional, f.weight) for f in script.facts]
+    facts = [(str(f), f.positive, f.optional, f.weight) for f in script.stated]
     kinds = {name: kind.iri for name, kind in script.kinds.items()}
     colours = {name: colour.iri for name, colour in script.colours.items()}
-    return facts, script.objects, kinds, colours, script.name, script.title, script.viewpoint
+    return facts, script.objects, kinds, colours, script.name, script.title, script.viewpoint, script.surface
 
 
 WORD = st.sampled_from(
@@ -27,7 +27,26 @@ WORD = st.sampled_from(
 )
 PLAIN = st.lists(WORD, min_size=1, max_size=3).map(" ".join)
 QUOTED = st.sampled_from(
-    ["left", "to the", "is", "the", "2nd", "a?b", "x, y", "Usually", "of", "spoon#", "a.b", "upper", "in front"]
+    [
+        "second",
+        "closest",
+        "largest",
+        "nothing",
+        "parallel",
+        "left",
+        "to the",
+        "is",
+        "the",
+        "2nd",
+        "a?b",
+        "x, y",
+        "Usually",
+        "of",
+        "spoon#",
+        "a.b",
+        "upper",
+        "in front",
+    ]
 )
 NAME = PLAIN | PLAIN.map(lambda n: "the " + n) | PLAIN.map(lambda n: n.replace(" ", "_")) | QUOTED.map('"{}"'.format)
 OBJECT = NAME | st.builds(lambda n, name: f"{n} c{name}", st.sampled_from(["2", "three"]), WORD)
@@ -51,17 +70,49 @@ STATEMENT = st.one_of(
     st.builds(lambda s, c: f"{s} is {c}", OBJECTS, COLOUR),
     st.builds(lambda s, c, k: f"{s} are {c} {k}", OBJECTS, COLOUR, KIND),
 )
+CLAIM = st.sampled_from(
+    [
+        *("at the far left corner", "in the middle", "along the near edge", "at an end", "at the far right"),
+        *("at the middle of the near edge", "on the surface", "pointing to the right", "parallel to the left side"),
+        *("in a row", "in a row from left to right", "in a circle", "near each other", "inside each other"),
+        *("second from the left", "the 12th from the right", "the tallest at the front", "upside down"),
+        *("has contents hot tea", 'has state "half_open"', "have material wood", "has count 3", 'has colour "x  y"'),
+        *("is big", "are empty", "is the tallest", "on tray", "left of unseen door", 'near unseen "the wall"'),
+        "closer to the left edge",
+    ]
+)
+CLAIM_OF = st.sampled_from(
+    [
+        *("at the far left corner of", "in the corner of", "at the middle of the back of", "at the left part of"),
+        *("between", "among", "on each side of", "nearest to", "farthest from", "closer to", "the largest of"),
+        *("about 2 cm from", "at most 0.125 m from", "more than 7 mm away from", "third from the left of"),
+        *("closer to the edge than", "parallel to the near edge of", "at the right end of tray, "),
+    ]
+)
+CLAIMS = st.one_of(
+    st.builds(lambda f, s, k, c: f"{f}{s}{k} {c}", FRONT, OBJECTS, LINK, CLAIM),
+    st.builds(lambda f, s, c: f"{f}{s} {c}", FRONT, OBJECTS, CLAIM),
+    st.builds(lambda f, s, k, c, o: f"{f}{s}{k} {c} {o}", FRONT, OBJECTS, LINK, CLAIM_OF, OBJECTS),
+    st.builds(lambda s, o, t: f"{s} closer to {o} than {t}", OBJECTS, OBJECT, OBJECT),
+    st.builds(lambda f, r, o: f"{f}nothing {r} {o}", FRONT, PHRASE | st.just("between"), OBJECTS),
+)
 END = st.sampled_from(["\n", "\n", "\n\n", ";", ". ", " # note\n", "\n  # alone\n", "\r\n"])
 HEADER = st.sampled_from(
-    ["", 'layout x "T"\n', "layout seen from chair\n", 'layout big x "A title" seen from "left" # h\n']
+    [
+        "",
+        'layout x "T"\n',
+        "layout seen from chair\n",
+        'layout big x "A title" on tray seen from "left" # h\n',
+        "layout on tray\n",
+    ]
 )
 
 
 @st.composite
-def scripts(draw: st.DrawFn) -> Script:
-    """Draw random statements and make a script of those that parse together."""
+def scripts(draw: st.DrawFn, claims: bool = False) -> Script:
+    """Draw random statements, with ``claims`` also these, and make a script of those that parse together."""
     text = draw(HEADER)
-    for statement, end in draw(st.lists(st.tuples(STATEMENT, END), max_size=6)):
+    for statement, end in draw(st.lists(st.tuples(STATEMENT | CLAIMS if claims else STATEMENT, END), max_size=6)):
         try:
             parse_script(text + statement + end)
         except ScriptError:

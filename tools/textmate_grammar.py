@@ -8,14 +8,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from deixis.grammar.words import IS, NUMBERS, VERBS, chains
+from deixis.grammar.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN
+from deixis.grammar.words import BETWEEN, IS, NUMBERS, VERBS, chains
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.tbox import Ontology, default_ontology
 
 GRAMMAR = Path(__file__).parents[1] / "editors" / "vscode" / "syntaxes" / "deixis-layout.tmLanguage.json"
 """File of the grammar, in the extension for VS Code."""
-
-BETWEEN = r"[ \t_]+(?:(?:the|an|a)[ \t_]+)*"  # separator between the words of a phrase: blanks and articles
 
 
 def words_pattern(phrases: Iterable[str]) -> str:
@@ -36,12 +35,18 @@ def textmate_grammar(ontology: Ontology) -> dict[str, Any]:
         ("string.quoted.double", '"[^"\n]*"'),
         ("keyword.control", words_pattern(["layout", "include", "seen from"])),
         ("keyword.operator.chain", heads),
+        (
+            "keyword.operator.claim",
+            rf"(?i:(?<![\w-])(?:{CLAIM_PATTERN}|{CLAIM_OF_PATTERN}|{HAS_PATTERN}))",
+        ),
         ("keyword.operator.relation", words_pattern(ontology.relations.by_word)),
         (
             "storage.modifier",
-            words_pattern(["not", "never", "optional", "optionally", *map(plain_phrase, ontology.hedges)]),
+            words_pattern(
+                ["not", "never", "nothing", "unseen", "optional", "optionally", *map(plain_phrase, ontology.hedges)]
+            ),
         ),
-        ("keyword.operator.logical", words_pattern(["and", "or"])),
+        ("keyword.operator.logical", words_pattern(["and", "or", "than"])),
         ("keyword.other.verb", words_pattern([*IS, *VERBS])),
         ("constant.numeric", words_pattern(["[1-9][0-9]?"]).replace(re.escape("[1-9][0-9]?"), "[1-9][0-9]?")),
         ("constant.numeric", words_pattern(NUMBERS)),

@@ -20,6 +20,7 @@ from deixis.grammar.english.nouns import (
 )
 from deixis.grammar.english.references import POLES, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
+from deixis.ontology.claims import COLLECTIVE, PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
 NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
@@ -46,10 +47,6 @@ UNARY = frozenset(
         "thickness",
     ]
 )
-COLLECTIVE = frozenset(
-    ["row", "circle", "nested", "stacked", "near_each_other", "parallel_each_other", "touching_each_other"]
-)
-PLACES = frozenset(["corner", "edge", "end", "side", "middle", "part"])
 SUPERLATIVES = {
     ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
     ("length", 1): "longest", ("length", -1): "shortest", ("width", 1): "widest", ("width", -1): "narrowest",

@@ -18,6 +18,7 @@ from deixis.grammar.script import (
     ClaimStatement,
     Comment,
     Declaration,
+    Header,
     Mention,
     Modifiers,
     RelationStatement,
@@ -84,8 +85,12 @@ def read_english(
     if not stated and not any(s.clauses and s.clauses[0].mood is Mood.QUESTION for s in sentences):
         raise ScriptError(_nothing_understood(text, file, reading, writer))
     asserted = joined_choices([fact for fact in stated if fact.asserted])
-    statements = tuple(statement for fact in asserted for statement in writer.statements(fact, reading))
-    return Script(file, None, None, None, statements, tuple(writer.comments(reading)), ontology, reading)
+    statements = [statement for fact in asserted for statement in writer.statements(fact, reading)]
+    surface = None if reading.surface in writer.names.values() else reading.surface
+    if surface is not None:
+        statements.insert(0, Header(None, None, None, Source(file, 1, 1, 1, 1), surface))
+    comments = tuple(writer.comments(reading))
+    return Script(file, None, None, None, tuple(statements), comments, ontology, reading, surface)
 
 
 def _nothing_understood(text: str, file: str, reading: Reading, writer: _Writer) -> tuple[Diagnostic, ...]:
@@ -110,6 +115,7 @@ class _Writer:
         told = {leaf for entity in used for leaf in entity.leaves()}
         shown = [e for e in order if e.role in (Role.THING, Role.SURROUNDING) and e in told]
         self.names = names_of(shown)
+        self.declared: set[tuple[str, str]] = set()  # names with a declared kind or colour, and which of the two
 
     def source(self, span: tuple[int, int]) -> Source:
         """Return the lines and columns of a span of characters."""
@@ -195,7 +201,7 @@ class _Writer:
         return Diagnostic(source, f"not understood: {reason}", line, f"write {suggestion!r}" if suggestion else None)
 
     def statements(self, stated: StatedFact, reading: Reading) -> Iterator[Statement]:
-        """Yield a fact as a statement of the layout language; a claim that it cannot say is kept as a claim."""
+        """Yield a fact or a claim as a statement of the layout language, unless it is about absent things."""
         content = stated.content
         source = content.source or Source(self.file, 1, 1, 1, 1)
         modifiers = Modifiers(content.positive, content.optional, self._hedge(content.weight), content.weight)
@@ -211,9 +217,11 @@ class _Writer:
         arguments = tuple(self._mention(name, source) for name in content.arguments)
         colour = self.ontology.colours.of_word(content.value or "") if content.relation == "colour" else None
         kind = self.ontology.kinds.words.get(content.value or "") if content.relation == "kind" else None
-        if (colour is not None or kind is not None) and content.positive:
+        new = not any((name, content.relation) in self.declared for name in content.subjects)
+        if (colour is not None or kind is not None) and content.positive and new:
+            self.declared |= {(name, content.relation) for name in content.subjects}
             yield Declaration(subjects, kind, colour, source)
-        yield ClaimStatement(subjects, arguments, content, source)
+        yield ClaimStatement(subjects, arguments, (content,), modifiers, source)
 
     def _hedge(self, weight: float) -> str | None:
         if weight >= 1:

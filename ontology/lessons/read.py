@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import pyoxigraph as ox
 
 from deixis.errors import UnknownTermError
+from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact, Source
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Match, Role
 from deixis.ontology.relation import Relation, Relations, nearest
@@ -37,6 +38,7 @@ def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConc
     parts = index.subjects(DX.IN_LAYOUT, layout)
     roles = _in_order([part for part in parts if DX.ROLE in index.values(part, W3C.RDF_TYPE)], index)
     facts = _in_order([part for part in parts if DX.RELATION_STATEMENT in index.values(part, W3C.RDF_TYPE)], index)
+    claims = _in_order([part for part in parts if DX.CLAIM in index.values(part, W3C.RDF_TYPE)], index)
     by_iri = {relation.iri: relation for relation in relations.values()}
     viewpoint = index.value(layout, DX.DESCRIBED_FROM)
     groups: dict[frozenset[str], None] = {}
@@ -60,6 +62,8 @@ def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConc
         ),
         facts=tuple(_fact(fact, index, by_iri) for fact in facts),
         interchangeable=tuple(tuple(sorted(last_part(role) for role in group)) for group in groups),
+        claims=tuple(_claim(claim, index) for claim in claims),
+        surface=index.value(layout, DX.SURFACE),
     )
 
 
@@ -69,13 +73,6 @@ def _in_order(parts: list[str], index: TripleIndex) -> list[str]:
 
 def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
     ends = [last_part(index.value(fact, end) or "") for end in (DX.SUBJECT, DX.OBJECT)]
-    # Only the start of the span was kept.
-    stated_at = index.value(fact, DX.STATED_AT)
-    if stated_at is None:
-        source = None
-    else:
-        file, line, column = stated_at.rsplit(":", 2)
-        source = Source(file, int(line), int(column), int(line), int(column))
     return Fact(
         subject=ends[0],
         relations=tuple(sorted((by_iri[iri] for iri in index.values(fact, DX.RELATION)), key=lambda r: r.index)),
@@ -83,8 +80,35 @@ def _fact(fact: str, index: TripleIndex, by_iri: dict[str, Relation]) -> Fact:
         positive=index.value(fact, DX.POSITIVE) == "true",
         optional=index.value(fact, DX.OPTIONAL) == "true",
         weight=float(index.value(fact, DX.WEIGHT) or 1),
-        source=source,
+        source=_source(fact, index),
     )
+
+
+def _claim(claim: str, index: TripleIndex) -> Claim:
+    written = (index.value(claim, DX.ROLES_IN_ORDER) or "").split(" ")
+    names = tuple(name.replace("%20", " ").replace("%25", "%") for name in written)
+    count = int(index.value(claim, DX.SUBJECT_COUNT) or 1)
+    metres = index.value(claim, DX.METRES)
+    return Claim(
+        relation=index.value(claim, DX.TERM) or "",
+        subjects=names[:count],
+        arguments=names[count:],
+        value=index.value(claim, DX.CLAIMED_VALUE),
+        metres=None if metres is None else float(metres),
+        positive=index.value(claim, DX.POSITIVE) == "true",
+        optional=index.value(claim, DX.OPTIONAL) == "true",
+        weight=float(index.value(claim, DX.WEIGHT) or 1),
+        source=_source(claim, index),
+    )
+
+
+def _source(statement: str, index: TripleIndex) -> Source | None:
+    """Return where a statement was written; only the start of the span was kept."""
+    stated_at = index.value(statement, DX.STATED_AT)
+    if stated_at is None:
+        return None
+    file, line, column = stated_at.rsplit(":", 2)
+    return Source(file, int(line), int(column), int(line), int(column))
 
 
 @dataclass(frozen=True)

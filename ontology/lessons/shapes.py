@@ -2,19 +2,22 @@
 
 A scene conforms to a layout if every role is filled, every object in it fills a role, and every fact holds of the
 objects in its roles. A fact about an unfilled role is skipped, since the role itself is reported. The focus node of a
-violated fact is its statement, which has its line in the script. A hedged fact gives a warning, an optional one an
+violated fact is its statement, which has its line in the script. Whether a claim holds is in the data (``dx:holds``),
+since SHACL cannot measure it. A hedged fact gives a warning, an optional one an
 info. The object in a role with a stated colour may have no other colour.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import pyoxigraph as ox
 
+from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact, dispensable
 from deixis.ontology.lessons.types import LayoutConcept
-from deixis.ontology.lessons.write import fact_iri, layout_iri, role_iri
+from deixis.ontology.lessons.write import claim_iri, fact_iri, layout_iri, role_iri
 from deixis.ontology.relation import Relation
 from deixis.ontology.triples import Description, content_key, iri, learned_iri, skolem, text, typed
 from deixis.ontology.vocabulary import DX, W3C
@@ -34,6 +37,8 @@ def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
             yield from writer.miscoloured(role.name, role.colour)
     for position, fact in enumerate(layout.facts, 1):
         yield from writer.fact(position, fact)
+    for position, claim in enumerate(layout.claims, 1):
+        yield from writer.claim(position, claim)
 
 
 class _Shapes:
@@ -64,10 +69,22 @@ class _Shapes:
         shape.say(SH + "in", head)
         yield from shape
 
+    def claim(self, position: int, claim: Claim) -> Iterator[ox.Triple]:
+        shape = self._statement_shape(f"claim-{position}", claim)
+        shape.say(SH + "targetNode", iri(claim_iri(self._lesson, position)))
+        shape.say(SH + "path", iri(DX.HOLDS))
+        triples, head = self._list([typed(True)])
+        yield from triples
+        shape.say(SH + "in", head)
+        yield from shape
+
+    def _statement_shape(self, name: str, said: Fact | Claim) -> Description:
+        severity = "Info" if said.optional else "Violation" if said.weight >= 1 else "Warning"
+        line = f"line {said.source.line}: " if said.source else ""
+        return self._shape(name, severity, f"{line}{said} does not hold")
+
     def fact(self, position: int, fact: Fact) -> Iterator[ox.Triple]:
-        severity = "Info" if fact.optional else "Violation" if fact.weight >= 1 else "Warning"
-        line = f"line {fact.source.line}: " if fact.source else ""
-        shape = self._shape(f"fact-{position}", severity, f"{line}{fact} does not hold")
+        shape = self._statement_shape(f"fact-{position}", fact)
         shape.say(W3C.RDF_TYPE, iri(SH + "NodeShape"))
         shape.say(SH + "targetNode", iri(fact_iri(self._lesson, position)))
         cases: list[ox.NamedNode] = []
@@ -126,7 +143,7 @@ class _Shapes:
         yield from triples
         shape.say(SH + "path", head)
 
-    def _list(self, items: Sequence[ox.NamedNode]) -> tuple[list[ox.Triple], ox.NamedNode]:
+    def _list(self, items: Sequence[ox.NamedNode | ox.Literal]) -> tuple[list[ox.Triple], ox.NamedNode]:
         """Return the triples of an RDF list, and its head."""
         triples: list[ox.Triple] = []
         rest = iri(_RDF + "nil")
@@ -145,6 +162,7 @@ def scene_data(
     fills: Mapping[str, str],
     related: Iterable[tuple[str, Relation, str]],
     coloured: Mapping[str, str],
+    held: Mapping[int, bool] = MappingProxyType({}),
 ) -> Iterator[ox.Triple]:
     """Yield the data graph of a check: the objects of a scene, their roles, and the relations that hold between them.
 
@@ -162,6 +180,8 @@ def scene_data(
         All relations that hold, in the readings in which the layout states them: subject, relation, object.
     coloured
         IRI of the colour of each object whose colour is not the described one.
+    held
+        Whether each claim holds, by its position from 1; those that cannot be decided are left out.
     """
     scene = learned_iri("checked", layout.lesson)
     yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))
@@ -180,6 +200,11 @@ def scene_data(
         node = fact_iri(layout.lesson, position)
         ends = [iri(role_iri(layout.lesson, role)) for role in (fact.subject, fact.object)]
         yield from _said(node, (DX.SUBJECT, ends[0]), (DX.OBJECT, ends[1]))
+    for position, claim in enumerate(layout.claims, 1):
+        node = claim_iri(layout.lesson, position)
+        yield from _said(node, (W3C.RDF_TYPE, iri(DX.CLAIM)), (DX.TERM, text(claim.relation)))
+        if position in held:
+            yield from _said(node, (DX.HOLDS, typed(held[position])))
 
 
 def _said(subject: str, *statements: tuple[str, ox.NamedNode | ox.Literal]) -> Iterator[ox.Triple]:

@@ -9,6 +9,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
 from deixis.answers import Answer
+from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Rgb
 from deixis.ontology.facts import Fact
 from deixis.ontology.relation import Relation, Relations
@@ -29,7 +30,7 @@ class Role:
 
 @dataclass(frozen=True)
 class LayoutConcept:
-    """A learned layout: its roles and the facts between them, as stated in one script."""
+    """A learned layout: its roles, the facts between them and the claims about them, as stated in one script."""
 
     lesson: str
     name: str
@@ -38,6 +39,8 @@ class LayoutConcept:
     roles: tuple[Role, ...]
     facts: tuple[Fact, ...]
     interchangeable: tuple[tuple[str, ...], ...] = ()
+    claims: tuple[Claim, ...] = ()
+    surface: str | None = None  # what everything stands on, which is not a role
 
     def graph(self, vocabulary: Relations) -> RelationGraph:
         """Return the layout as a relation graph over its roles."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import pyoxigraph as ox
 
+from deixis.ontology.claims import Claim
 from deixis.ontology.colours import hex_of_rgb
 from deixis.ontology.facts import Fact
 from deixis.ontology.kinds import Kinds
@@ -35,6 +36,8 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
         yield from _role(layout, role, position)
     for position, fact in enumerate(layout.facts, 1):
         yield from _statement(layout, fact, position)
+    for position, claim in enumerate(layout.claims, 1):
+        yield from _claim(layout, claim, position)
     kinds = {role.name: role.kind for role in layout.roles}
     for match in lesson.matches:
         yield from _match(lesson, match)
@@ -124,6 +127,11 @@ def fact_iri(lesson: str, position: int) -> str:
     return learned_iri("layout", lesson, "fact", position)
 
 
+def claim_iri(lesson: str, position: int) -> str:
+    """Return the IRI of the statement of a layout's claim; ``position`` counts from 1."""
+    return learned_iri("layout", lesson, "claim", position)
+
+
 def scene_iri(lesson: Lesson | WordLesson) -> str:
     """Return the IRI of a lesson's scene, made from its content, so that lessons from one scene share its objects."""
     return scene_text_iri(lesson.scene_text)
@@ -158,6 +166,8 @@ def _layout(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
     about.say(DX.LEARNED_IN, iri(lesson_iri(layout.lesson)))
     if layout.title:
         about.say(W3C.DCTERMS_TITLE, text(layout.title))
+    if layout.surface:
+        about.say(DX.SURFACE, text(layout.surface))
     if layout.viewpoint:
         about.say(DX.DESCRIBED_FROM, iri(_viewpoint(layout.viewpoint)))
         yield from _viewpoint_triples(layout.viewpoint)
@@ -199,16 +209,42 @@ def _statement(layout: LayoutConcept, fact: Fact, position: int) -> Iterator[ox.
     about.say(DX.SUBJECT, iri(role_iri(layout.lesson, fact.subject)))
     about.say(DX.OBJECT, iri(role_iri(layout.lesson, fact.object)))
     about.say(DX.RELATION, *(iri(relation.iri) for relation in fact.relations))
-    about.say(DX.POSITIVE, typed(fact.positive))
-    about.say(DX.OPTIONAL, typed(fact.optional))
-    about.say(DX.WEIGHT, decimal(fact.weight))
+    _qualify(about, layout, fact, position)
+    return iter(about)
+
+
+def _claim(layout: LayoutConcept, claim: Claim, position: int) -> Iterator[ox.Triple]:
+    about = Description(claim_iri(layout.lesson, position))
+    names = (*claim.subjects, *claim.arguments)
+    about.say(W3C.RDF_TYPE, iri(DX.CLAIM))
+    about.say(DX.IN_LAYOUT, iri(layout_iri(layout.lesson)))
+    about.say(DX.TERM, text(claim.relation))
+    about.say(DX.ABOUT, *(iri(role_iri(layout.lesson, name)) for name in dict.fromkeys(names)))
+    about.say(DX.ROLES_IN_ORDER, text(" ".join(map(_escaped, names))))
+    about.say(DX.SUBJECT_COUNT, typed(len(claim.subjects)))
+    if claim.value is not None:
+        about.say(DX.CLAIMED_VALUE, text(claim.value))
+    if claim.metres is not None:
+        about.say(DX.METRES, typed(claim.metres))
+    _qualify(about, layout, claim, position)
+    return iter(about)
+
+
+def _escaped(name: str) -> str:
+    return name.replace("%", "%25").replace(" ", "%20")
+
+
+def _qualify(about: Description, layout: LayoutConcept, said: Fact | Claim, position: int) -> None:
+    """Say how a statement is qualified, and where it comes from."""
+    about.say(DX.POSITIVE, typed(said.positive))
+    about.say(DX.OPTIONAL, typed(said.optional))
+    about.say(DX.WEIGHT, decimal(said.weight))
     about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
     about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
     about.say(DX.POSITION, typed(position))
-    if fact.source is not None:
-        about.say(DX.STATED_AT, text(str(fact.source)))
-        about.say(DX.LINE, typed(fact.source.line))
-    return iter(about)
+    if said.source is not None:
+        about.say(DX.STATED_AT, text(str(said.source)))
+        about.say(DX.LINE, typed(said.source.line))
 
 
 def _match(lesson: Lesson, match: Match) -> Iterator[ox.Triple]:

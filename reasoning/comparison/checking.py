@@ -5,6 +5,9 @@ suggests which object fills a role, the role is *undetermined*, never correct. T
 changed places if all facts about them would hold with the objects exchanged, and more facts would hold of each. Of
 another violated fact, the misplaced end is the one with the larger share of violated facts.
 
+A claim (a place, a distance, an arrangement) is violated if what is measured is nearer to its opposite; see
+:mod:`deixis.reasoning.comparison.claims`.
+
 An object in a role with a stated colour is *miscoloured* if its colour is clearly another one, misplaced or not.
 
 The most probable grounding may give a role the only object that is left, whatever it is, since sizes exclude nothing.
@@ -23,14 +26,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
+from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Colour, Colours
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds, with_article
+from deixis.reasoning.comparison.claims import ClaimOutcome, check_claims, violated
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.grounding.engine import Engine
 from deixis.reasoning.grounding.evidence.colours import other_colours
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
 from deixis.reasoning.grounding.evidence.labels import Label, naming
+from deixis.reasoning.grounding.evidence.meaning import shipped_models
 from deixis.reasoning.grounding.evidence.unary import OUTLIERS
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -98,6 +104,7 @@ class TableCheck:
     broken: tuple[FactOutcome, ...]  # unhedged facts that do not hold
     unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold, which are not faults
     grounding: Grounding
+    claims: tuple[ClaimOutcome, ...] = ()
 
     def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
         """Return the roles with a verdict."""
@@ -112,7 +119,7 @@ class TableCheck:
     def well(self) -> bool:
         """True if, as far as can be determined, nothing is missing, misplaced, miscoloured or extra."""
         wrong = (self.of(verdict) for verdict in (RoleVerdict.MISSING, RoleVerdict.MISPLACED, RoleVerdict.MISCOLOURED))
-        return not (any(wrong) or self.extra or self.broken)
+        return not (any(wrong) or self.extra or self.broken or any(violated(self.claims)))
 
 
 def check_table(
@@ -171,7 +178,24 @@ def check_table(
             )
         )
     unexpected = tuple(entry for entry in grounding.violated if entry.fact.weight < 1)
-    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding)
+    filled = {role: match.perceived for role, match in grounding.matches.items()}
+    claims = check_claims(
+        [claim for claim in evidence.claims if not _is_colour_of_role(claim, colours)],
+        filled,
+        evidence.scene.nodes,
+        evidence.scene.boxes,
+        layout.vocabulary,
+        evidence.meaning.models or shipped_models(),
+        evidence.metric,
+    )
+    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding, claims)
+
+
+def _is_colour_of_role(claim: Claim, colours: Colours | None) -> bool:
+    """Return True for a claim of a known colour, which is checked as the colour of its role."""
+    if claim.relation != "colour" or colours is None or not claim.positive:
+        return False
+    return colours.of_word(claim.value or "") is not None
 
 
 def _miscoloured(

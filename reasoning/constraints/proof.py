@@ -29,6 +29,7 @@ class Rule(StrEnum):
     INVERSE = "inverse"  # owl:inverseOf
     SUB_PROPERTY = "sub-property"  # rdfs:subPropertyOf
     TRANSITIVITY = "transitivity"  # owl:TransitiveProperty
+    CLAIM = "claim"  # a claim about several objects implies it of two of them
     MEANING = "meaning"  # the premise admits nothing that the conclusion does not
     # of times
     PROPER_INTERVAL = "proper interval"  # a fluent starts before it finishes

@@ -44,7 +44,7 @@ def test_canonical_form(text: str, expected: str) -> None:
 
 
 @settings(deadline=None, max_examples=150)
-@given(scripts())
+@given(scripts(claims=True))
 def test_reading_the_canonical_form_changes_nothing(script: Script) -> None:
     text = format_script(script)
     again = parse_script(text)

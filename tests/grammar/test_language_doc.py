@@ -43,7 +43,7 @@ def test_example(tag: str, text: str, following: tuple[str, str]) -> None:
     if tag == "layout":
         assert kind == "facts"
         script = parse_script(text, "example.layout")
-        assert "".join(f"{fact}\n" for fact in script.facts) == expected
+        assert "".join(f"{fact}\n" for fact in script.stated) == expected
         assert parse_script(format_script(script)).objects == script.objects
     else:
         assert kind == "error"

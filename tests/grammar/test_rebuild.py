@@ -10,20 +10,26 @@ from deixis.grammar.format import layout_script
 from deixis.grammar.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.learning.lesson import layout_concept
+from deixis.ontology.claims import Claim
+from deixis.ontology.facts import Fact
 from deixis.ontology.lessons.read import layouts
 from deixis.ontology.tbox import default_ontology
 
 
+def qualified(script: Script) -> list[tuple[str, bool, bool, float]]:
+    stated: list[Fact | Claim] = [*script.graph().facts(), *script.claims]
+    return [(str(f), f.positive, f.optional, f.weight) for f in stated]
+
+
 @settings(deadline=None, max_examples=100)
-@given(scripts())
+@given(scripts(claims=True))
 def test_a_learned_layout_is_read_back_unchanged(script: Script) -> None:
     concept = layout_concept(script, "x-1")
     again = parse_script(layout_script(concept, default_ontology()))
-    said = [(str(f), f.positive, f.optional, f.weight) for f in script.graph().facts()]
-    assert [(str(f), f.positive, f.optional, f.weight) for f in again.graph().facts()] == said
+    assert qualified(again) == qualified(script)
     assert again.kinds == script.kinds
     assert again.colours == script.colours
-    assert (again.title, again.viewpoint) == (script.title, script.viewpoint)
+    assert (again.title, again.viewpoint, again.surface) == (script.title, script.viewpoint, script.surface)
 
 
 @pytest.mark.parametrize("text", ["red_fork is red", "red_fork is red; knife left of spoon", "fork is a plate"])

@@ -20,14 +20,14 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.claims import Claim
+from deixis.ontology.claims import PLACES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relation import Relations
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.facts import hedged
 from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME, OUTLIERS
-from deixis.reasoning.grounding.evidence.places import PLACES, lean_in_things, lean_on_surface, place_degree
+from deixis.reasoning.grounding.evidence.places import lean_in_things, lean_on_surface, place_degree
 
 Array = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ def claim_tables(
     said = np.zeros(unary.shape)
     pairs: dict[tuple[int, int], Array] = {}
     if 1 < len(boxes) <= MAX_THINGS:
-        scene = _ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric)
+        scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric)
         for claim in claims:
             if any(name not in index for name in (*claim.subjects, *claim.arguments)):
                 continue
@@ -187,7 +187,7 @@ Degrees = Iterator[tuple[tuple[str, ...], Array, float]]
 """Objects (one to three), the degrees for the things that they may be, and the share of the evidence that counts."""
 
 
-class _ClaimDegrees:
+class ClaimDegrees:
     """Degrees of claims in one scene."""
 
     def __init__(self, boxes: Array, vocabulary: Relations, models: RelationModels, metric: bool) -> None:
@@ -196,6 +196,7 @@ class _ClaimDegrees:
 
     @cached_property
     def words(self) -> WordDegrees:
+        """Degrees of relation words for all pairs."""
         return WordDegrees(pair_geometry(self.boxes), self.models)
 
     @cached_property
@@ -225,18 +226,19 @@ class _ClaimDegrees:
             return
         for subject in subjects:
             if len(arguments) == 2 and term in ("between", "closer", "farther"):
-                yield (subject, *arguments), self._triple(term), 1.0
+                yield (subject, *arguments), self.triple_degrees(term), 1.0
             elif not arguments:
-                degree = self._alone(claim)
+                degree = self.degrees_alone(claim)
                 if degree is not None:
                     yield (subject,), degree, 1.0
             else:
-                pair = self._pair(claim)
+                pair = self.pair_degrees(claim)
                 for other in arguments if pair is not None and term != "between" else ():
                     assert pair is not None
                     yield (subject, other), pair, 1.0
 
-    def _alone(self, claim: Claim) -> Array | None:
+    def degrees_alone(self, claim: Claim) -> Array | None:
+        """Return the degree of a claim about one object for each thing, shape (n,); None if boxes do not decide it."""
         term, value = claim.relation, claim.value
         if term in PLACES:
             return place_degree(term, value, lean_on_surface(self.boxes))
@@ -280,7 +282,8 @@ class _ClaimDegrees:
         longer = (extents[:, axis] - extents[:, 1 - axis]) / np.maximum(extents[:, :2].sum(axis=1), 1e-9)
         return np.asarray(np.exp(np.interp(longer, (-1.0, 0.0, 0.3), (EXTREME, BORDER, 0.0))))
 
-    def _pair(self, claim: Claim) -> Array | None:
+    def pair_degrees(self, claim: Claim) -> Array | None:
+        """Return the degree of a claim about two objects for each pair, shape (n, n); None if undecidable."""
         term, value = claim.relation, claim.value
         if term in PLACES:
             lean = place_degree(term, value, lean_in_things(self.boxes))
@@ -299,7 +302,7 @@ class _ClaimDegrees:
             return _more(sign * measure(self.boxes))
         if term in ("distance", "distance_less", "distance_more") and claim.metres and self.metric:
             # people measure from edge to edge or from centre to centre
-            edges, centres = (_apart(term, known, claim.metres) for known in (self.gaps, self.distances))
+            edges, centres = (distance_degree(term, known, claim.metres) for known in (self.gaps, self.distances))
             return np.asarray((edges + centres) / 2)
         if term in ("closer", "farther") and value is not None:  # to the edge
             lean = lean_on_surface(self.boxes)
@@ -307,7 +310,7 @@ class _ClaimDegrees:
             return None if place is None else _more(place if term == "closer" else -place)
         return None
 
-    def _triple(self, term: str) -> Array:
+    def triple_degrees(self, term: str) -> Array:
         """Return the degrees of triples (subject, first, second), shape (n, n, n)."""
         if term != "between":  # closer to the first than the second is, or than to the second
             d = self.distances if term == "closer" else -self.distances
@@ -380,7 +383,7 @@ def _more_log(off: Array, distances: Array) -> Array:
     return np.asarray(np.interp(off / unit, (-1.0, 0.0, 0.25), (EXTREME, BORDER, 0.0)))
 
 
-def _apart(term: str, distances: Array, metres: float) -> Array:
+def distance_degree(term: str, distances: Array, metres: float) -> Array:
     """Return the degree of a stated distance: one half at a ratio of 1.6; beyond a bound, at a ratio of 1.3."""
     off = np.log(np.maximum(distances, 0.01) / metres)
     if term == "distance":

@@ -14,9 +14,6 @@ from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME
 
 Array = NDArray[np.float64]
 
-PLACES = frozenset({"corner", "edge", "end", "side", "part", "middle"})
-"""Claims about a place in a region."""
-
 X, Y = 0, 1
 TOWARDS = {
     **dict.fromkeys(("left",), (X, -1)),

@@ -78,7 +78,7 @@ def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
     from deixis.workflows.infer import require_names
 
     require_names(inference, fact, "--explain")
-    derivation = inference.implications.derive(fact.relations[0], fact.subject, fact.object)
+    derivation = inference.derive(fact.relations[0], fact.subject, fact.object)
     if as_json:
         print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
     elif derivation is None:

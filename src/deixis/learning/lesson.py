@@ -49,6 +49,8 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
         roles=tuple(roles),
         facts=tuple(graph.facts()),
         interchangeable=tuple(interchangeable),
+        claims=script.claims,
+        surface=script.surface,
     )
 
 

@@ -9,6 +9,8 @@ from deixis.ontology.export import fact_to_dict
 from deixis.ontology.facts import Fact
 from deixis.ontology.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
+from deixis.reasoning.comparison.claims import ClaimVerdict
+from deixis.report.json_answers import claim_outcome_to_dict
 from deixis.report.marks import doubt, violation
 from deixis.workflows.imagine import Imagination, ImaginedTable, NoTable, Sized
 
@@ -46,7 +48,12 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
     for fact in table.named_otherwise:
         yield f"Note: {fact}{_at(fact)} holds, but the exact word for two things that overlap in part is another one."
     for fact in table.not_shown:
-        yield f"Note: {fact}{_at(fact)} does not hold on this table; objects are not placed by graded words."
+        yield f"Note: {fact}{_at(fact)} does not hold on this table; no place was found where it does."
+    for entry in table.claims:
+        if entry.verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.WAIVED):
+            yield f"Note: {entry} does not hold on this table; no place was found where it does."
+        elif entry.verdict is ClaimVerdict.UNDECIDABLE:
+            yield f"Note: {entry.claim} is not shown: {entry.measured}."
     if not table.finished:
         yield "Note: time limit reached before everything was in its best place; all firm facts hold."
 
@@ -101,6 +108,7 @@ def _table_to_dict(table: ImaginedTable) -> dict[str, Any]:
         "overlapping": [list(pair) for pair in table.overlapping],
         "named_otherwise": _facts(table.named_otherwise),
         "not_shown": _facts(table.not_shown),
+        "claims": [claim_outcome_to_dict(entry) for entry in table.claims],
         "finished": table.finished,
     }
 

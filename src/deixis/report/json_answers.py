@@ -7,11 +7,14 @@ from collections import defaultdict
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.export import fact_to_dict, graph_to_dict
+from deixis.ontology.claims import Claim
+from deixis.ontology.export import claim_to_dict, fact_to_dict, graph_to_dict
+from deixis.ontology.facts import Fact
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
+    from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding
@@ -28,9 +31,15 @@ def script_to_dict(script: Script) -> dict[str, Any]:
         "name": script.name,
         "title": script.title,
         "viewpoint": script.viewpoint,
+        "surface": script.surface,
         "objects": graph["nodes"],
-        "facts": [fact_to_dict(fact) | {"status": "stated"} for fact in script.facts],
+        "facts": [stated_to_dict(content, script.surface) | {"status": "stated"} for content in script.stated],
     }
+
+
+def stated_to_dict(content: Fact | Claim, surface: str | None = None) -> dict[str, Any]:
+    """Return a fact or a claim as plain data."""
+    return fact_to_dict(content) if isinstance(content, Fact) else claim_to_dict(content, surface)
 
 
 def inference_to_dict(inference: Inference) -> dict[str, Any]:
@@ -51,8 +60,6 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
 
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
     """Return a derivation as a tree, down to the stated facts."""
-    from deixis.ontology.facts import Fact
-
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
     claim = fact_to_dict(derivation.claim) if isinstance(derivation.claim, Fact) else {"claim": str(derivation.claim)}
     return {"fact": claim, "rule": derivation.rule.value, "premises": premises}
@@ -202,6 +209,17 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
     }
 
 
+def claim_outcome_to_dict(entry: ClaimOutcome, surface: str | None = None) -> dict[str, Any]:
+    """Return a claim with the verdict on it, and what was measured."""
+    return {
+        "claim": claim_to_dict(entry.claim, surface),
+        "verdict": entry.verdict.value,
+        "degree": _rounded(entry.degree),
+        "perceived": list(entry.perceived),
+        "measured": entry.measured,
+    }
+
+
 def check_to_dict(checked: Check) -> dict[str, Any]:
     """Return the verdicts on a table; broken facts with their lines and what was seen instead."""
     from deixis.reasoning.comparison.checking import RoleVerdict
@@ -242,6 +260,7 @@ def check_to_dict(checked: Check) -> dict[str, Any]:
         "absent": [{"object": c.role} for c in table.of(RoleVerdict.ABSENT)],
         "violated": [outcome_to_dict(entry) for entry in table.broken],
         "unexpected": [outcome_to_dict(entry) for entry in table.unexpected],
+        "claims": [claim_outcome_to_dict(entry, checked.layout.surface) for entry in table.claims],
         "proved_best": table.grounding.proved_best,
         "notes": list(table.grounding.notes),
         "report": checked.report,

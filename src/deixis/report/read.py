@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.claims import Claim
-from deixis.ontology.export import fact_to_dict
+from deixis.ontology.export import claim_to_dict, fact_to_dict
 from deixis.report.json_answers import script_to_dict
 from deixis.report.marks import doubt
 
@@ -76,39 +76,10 @@ def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
 
 def content_to_dict(content: Fact | Claim, surface: str | None = None) -> dict[str, Any]:
     """Return a fact or a claim as plain data; ``surface`` is what places without an object are meant of."""
-    known = _claim_to_dict(content, surface) if isinstance(content, Claim) else fact_to_dict(content)
+    known = claim_to_dict(content, surface) if isinstance(content, Claim) else fact_to_dict(content)
     if not isinstance(content, Claim):
         known |= {"relation": content.relations[0].name, "arguments": [], "value": None, "metres": None}
     return known | {"subjects": list(content.subjects) if isinstance(content, Claim) else [content.subject]}
-
-
-def _claim_to_dict(claim: Claim, surface: str | None) -> dict[str, Any]:
-    nothing = claim.relation.startswith("none_")
-    relation = claim.relation.removeprefix("none_")
-    subject, arguments = ("*", claim.subjects) if nothing else (claim.subjects[0], claim.arguments)
-    if not nothing and len(claim.subjects) > 1:
-        arguments = (*claim.subjects[1:], *claim.arguments)
-    binary = len(arguments) == 1 and claim.value is None and (nothing or len(claim.subjects) == 1)
-    over_surface = not arguments and relation in _ON_SURFACE and surface is not None
-    entry: dict[str, Any] = {
-        "relation": relation,
-        "subject": subject,
-        "object": arguments[0] if binary else None,
-        "arguments": [surface] if over_surface else list(arguments),
-        "value": claim.value,
-        "metres": claim.metres,
-        "reading": "wide",
-        "relations": [relation],
-        "positive": claim.positive and not nothing,
-        "optional": claim.optional,
-        "weight": claim.weight,
-    }
-    if claim.source is not None:
-        entry |= {"file": claim.source.file, "line": claim.source.line, "column": claim.source.column}
-    return entry
-
-
-_ON_SURFACE = frozenset(["corner", "edge", "end", "middle", "side", "part", "on"])
 
 
 def _sentence_to_dict(sentence: ReadSentence) -> dict[str, Any]:

@@ -18,8 +18,10 @@ MAX_INFERRED_LISTED = 20_000
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
+    from deixis.ontology.claims import Claim
     from deixis.ontology.facts import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
+    from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.workflows.check import Check
     from deixis.workflows.infer import Inference
@@ -31,22 +33,23 @@ def script_lines(script: Script) -> list[str]:
     title = f' "{script.title}"' if script.title else ""
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
+    head += f", {_count(script.claims, 'claim')}" if script.claims else ""
     kinds = [f"        {name} is {with_article(kind.label)}" for name, kind in script.kinds.items()]
     kinds += [f"        {name} is {colour.label}" for name, colour in script.colours.items()]
     return [
         f"{head}{viewpoint}",
-        *(f"{_line(fact, script.file):>6}  {qualified(fact)}" for fact in script.facts),
+        *(f"{_line(stated, script.file):>6}  {qualified(stated)}" for stated in script.stated),
         *kinds,
     ]
 
 
-def qualified(fact: Fact) -> str:
-    """Return a fact with its mark 'optional' and its weight."""
+def qualified(fact: Fact | Claim) -> str:
+    """Return a fact or a claim with its mark 'optional' and its weight."""
     marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
     return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
 
 
-def _line(fact: Fact, file: str) -> str:
+def _line(fact: Fact | Claim, file: str) -> str:
     if fact.source is None:
         return ""
     return str(fact.source.line) if fact.source.file == file else f"{fact.source.file}:{fact.source.line}"
@@ -74,7 +77,7 @@ def inference_lines(inference: Inference) -> Iterator[str]:
     yield f"Stated ({len(inference.stated)}):"
     for fact in inference.stated:
         yield f"    {qualified(fact)}   line {fact.source.line if fact.source else '?'}"
-    count = inference.implications.unstated()
+    count = inference.implications.unstated() + len(inference.of_claims)
     yield f"Inferred ({count}):"
     for entry in islice(inference.each_inferred(), MAX_INFERRED_LISTED):
         lines = entry.lines
@@ -119,9 +122,10 @@ def why_not_lines(found: WhyNot) -> list[str]:
 def learned_lines(learned: Learned, memory: str) -> list[str]:
     """Return what a lesson taught, and what it left open."""
     layout = learned.lesson.layout
+    claims = f", {_count(layout.claims, 'claim')}" if layout.claims else ""
     lines = [
         f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
-        f"{_count(layout.facts, 'fact')}; in {memory}"
+        f"{_count(layout.facts, 'fact')}{claims}; in {memory}"
     ]
     if learned.categories:
         lines.append("Settled, each an example of its category: " + ", ".join(learned.categories))
@@ -140,6 +144,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
 def check_lines(checked: Check) -> list[str]:
     """Return the verdict on a table, its errors line by line, and what is undetermined."""
     from deixis.reasoning.comparison.checking import RoleVerdict
+    from deixis.reasoning.comparison.claims import ClaimVerdict, violated
 
     table = checked.table
     right = "Nothing is known to be wrong" if table.of(RoleVerdict.UNDETERMINED) else "Nothing is wrong"
@@ -163,7 +168,12 @@ def check_lines(checked: Check) -> list[str]:
         seen = f"{other.seen.label}, not {other.described.label}"
         lines.append(violation(f"miscoloured {entry.role} ({entry.perceived}): {seen}"))
     lines += [violation(f"extra       {extra.perceived}: {extra.reason}") for extra in table.extra]
+    lines += [violation(f"broken      {_claim_text(entry)}") for entry in violated(table.claims)]
     lines += [violation(f"unexpected  {violation_text(entry)}") for entry in table.unexpected]
+    hedged = (entry for entry in table.claims if entry.claim.weight < 1 and entry.verdict is ClaimVerdict.VIOLATED)
+    lines += [violation(f"unexpected  {_claim_text(entry)}") for entry in hedged]
+    unsure = (entry for entry in table.claims if entry.verdict is ClaimVerdict.UNDECIDABLE)
+    lines += [doubt(f"unchecked   {_claim_text(entry)}") for entry in unsure]
     lines += [
         doubt(f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}")
         for entry in table.of(RoleVerdict.UNDETERMINED)
@@ -171,6 +181,11 @@ def check_lines(checked: Check) -> list[str]:
     lines += [f"absent      {entry.role}, which is optional" for entry in table.of(RoleVerdict.ABSENT)]
     lines.append(f"correct     {len(table.of(RoleVerdict.CORRECT))} of {len(table.roles)}")
     return lines + [f"Note: {note}." for note in table.grounding.notes]
+
+
+def _claim_text(entry: ClaimOutcome) -> str:
+    place = f" ({entry.claim.source})" if entry.claim.source else ""
+    return f"{entry}{place}"
 
 
 def _known_by(entry: RoleCheck) -> str:

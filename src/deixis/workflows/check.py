@@ -1,4 +1,4 @@
-"""A table is compared with a layout: what is missing, misplaced, miscoloured and extra."""
+"""A table is compared with a layout: what is missing, misplaced, miscoloured and extra, and which claims fail."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels, viewpoint_notes
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.claims import violated
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
@@ -44,6 +45,7 @@ class Check(Answer):
         verdicts = Counter(role.verdict.value for role in self.table.roles)
         verdicts["extra"] = len(self.table.extra)
         verdicts["violated facts"] = len(self.table.broken)
+        verdicts["violated claims"] = len(list(violated(self.table.claims)))
         counts = ", ".join(f"{number} {verdict}" for verdict, number in verdicts.items() if number)
         return f"of {self.layout.name!r}: {'nothing wrong' if self.table.well else 'not as described'}, {counts}"
 
@@ -91,7 +93,8 @@ def check(
     scene, graph = as_scene(scene), concept.graph(known.relations)
     meaning = SHIPPED if knowledge is None else knowledge.meaning()
     implied = Implications(graph)
-    evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0)  # a check takes labels as identities
+    # a check takes labels as identities
+    evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0, claims=concept.claims)
     evidence = replace(evidence, consistent=implied.consistent)
     notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
     labels, engine = scene_labels(scene), engine_named("exact", sides=AS_IT_STANDS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,15 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kind, Kinds, with_article
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
+from deixis.reasoning.comparison.claims import ClaimOutcome
+from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.entailment.realisation.demands import is_firm
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.workflows.arrange import Arrangement, arrange
 
 TIME_LIMIT = 30.0
 MAX_ATTEMPTS = 5
@@ -53,7 +56,8 @@ class Waived:
 class ImaginedTable:
     """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names.
 
-    ``not_shown`` are facts of graded words such as *near*, which the table was not laid to satisfy and does not.
+    ``not_shown`` are facts of graded words such as *near* that no place was found for; ``claims`` are outcomes of the
+    script's claims.
     """
 
     scene: Scene
@@ -64,6 +68,7 @@ class ImaginedTable:
     named_otherwise: tuple[Fact, ...]
     not_shown: tuple[Fact, ...]
     finished: bool
+    claims: tuple[ClaimOutcome, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -119,14 +124,14 @@ def imagine(
         raise SettingError(
             f"count is 1 or more, seed and time limit are 0 or more, not {count}, {seed} and {time_limit:g}"
         )
-    graph = script.graph().affirming()
+    graph = _with_claims(script).affirming()
     objects = sized_objects(script, graph)
     tables: list[ImaginedTable] = []
     for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):
         if isinstance(found, Impossible):
             return Imagination(script, none=_no_table(graph, objects, found))
         if isinstance(found, Picture):
-            tables.append(_table(script, graph, objects, found))
+            tables.append(_table(script, graph, objects, found, np.random.default_rng([seed, len(tables)]), time_limit))
     return Imagination(script, tuple(tables))
 
 
@@ -174,17 +179,42 @@ def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) 
     ]
 
 
-def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], picture: Picture) -> ImaginedTable:
+def _with_claims(script: Script) -> RelationGraph:
+    """Return the graph of a script, with the facts that its claims imply after the stated ones."""
+    graph = script.graph()
+    found = facts_of_claims(script.claims, graph.nodes, graph.vocabulary)
+    found = tuple(entry for entry in found if not entry.fact.relations[0].by_model)
+    return with_facts_of_claims(graph, found) if found else graph
+
+
+def _table(
+    script: Script,
+    graph: RelationGraph,
+    objects: tuple[Sized, ...],
+    picture: Picture,
+    rng: np.random.Generator,
+    time_limit: float,
+) -> ImaginedTable:
+    stated = range(len(script.facts))
+    given_up = {entry.edge for entry in picture.given_up}
+    graded = {edge for edge in range(len(graph)) if any(r.by_model for r in graph.fact(edge).relations)} - given_up
+    claims: tuple[ClaimOutcome, ...] = ()
+    if graded or script.claims:
+        kept = tuple(edge for edge in range(len(graph)) if edge not in given_up | graded)
+        task = Arrangement(graph, script.claims, kept, tuple(sorted(graded)))
+        if task.firm(picture.boxes):
+            arranged = arrange(task, picture.boxes, rng, Deadline.after(time_limit))
+            picture = replace(picture, boxes=arranged)
+        claims = task.outcomes(picture.boxes)
     things = tuple(
         PerceivedObject(f"o{number}", tuple(box[0]), tuple(box[1]), label=name)
         for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
     )
-    given_up = {entry.edge for entry in picture.given_up}
     not_shown = _not_shown(graph, picture.boxes) - given_up
     return ImaginedTable(
         scene=Scene(things, viewpoint=script.viewpoint or "chair"),
         objects=objects,
-        holds=tuple(graph.fact(edge) for edge in range(len(graph)) if edge not in given_up | not_shown),
+        holds=tuple(graph.fact(edge) for edge in stated if edge not in given_up | not_shown),
         waived=tuple(
             Waived(
                 fact=graph.fact(entry.edge),
@@ -192,11 +222,13 @@ def _table(script: Script, graph: RelationGraph, objects: tuple[Sized, ...], pic
                 sizes=tuple(objects[i] for i in entry.sizes),
             )
             for entry in picture.given_up
+            if entry.edge in stated
         ),
         overlapping=tuple((graph.nodes[a], graph.nodes[b]) for a, b in picture.overlapping),
-        named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise),
-        not_shown=tuple(graph.fact(edge) for edge in sorted(not_shown)),
+        named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise if edge in stated),
+        not_shown=tuple(graph.fact(edge) for edge in sorted(not_shown) if edge in stated),
         finished=picture.finished,
+        claims=claims,
     )
 
 

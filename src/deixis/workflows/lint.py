@@ -6,7 +6,6 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from pathlib import Path
 
 from deixis.answers import Answer, count
@@ -16,6 +15,7 @@ from deixis.grammar.names import key_of
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Mention, RelationStatement, Script, mentions
 from deixis.ontology.claims import Claim
+from deixis.ontology.export import ON_SURFACE
 from deixis.ontology.facts import Fact, Source
 from deixis.ontology.kinds import plain_name
 from deixis.workflows.read import as_script
@@ -208,9 +208,8 @@ def _name_findings(script: Script) -> Iterator[Finding]:
             else:
                 hint = f"declare its kind, as in: {name} is a plate"
                 yield Finding("N003", mention.source, f"the kind of '{name}' is unknown", hint)
-    related = {plain_name(name) for fact in script.facts for name in (fact.subject, fact.object)}
-    placed = (claim for claim in script.claims if claim.relation not in PROPERTIES)
-    related |= {plain_name(name) for claim in placed for name in (*claim.subjects, *claim.arguments)}
+    stated = script.stated if script.reading is None else _connecting(script)
+    related = {plain_name(name) for content in stated for name in _ends(content)}
     for name, mention in first.items():
         if name not in related and script.reading is None:
             yield Finding("N002", mention.source, f"'{name}' is declared, but no fact mentions it")
@@ -259,7 +258,7 @@ def one_letter_away(word: str) -> Iterator[str]:
             yield head + tail[1] + tail[0] + tail[2:]
 
 
-def _place(fact: Fact, script: Script) -> Source:
+def _place(fact: Fact | Claim, script: Script) -> Source:
     return fact.source or Source(script.file, 1, 1, 1, 1)
 
 
@@ -296,7 +295,7 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
     from deixis.reasoning.errors import OutOfTimeError
     from deixis.workflows.infer import inference_of, verdict_of
 
-    if not script.facts:
+    if not script.stated:
         return [], True
     try:
         verdict = verdict_of(script, deadline.left)
@@ -310,17 +309,15 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
         where = ", ".join(str(_place(fact, script)) for fact in facts[:-1])
         said = f"{conflict.reason} (with {where})" if where else conflict.reason
         return [Finding("F003", _place(facts[-1], script), said)], True
-    groups = list(_groups(script.objects, script.facts, script.claims))
+    connecting = _connecting(script)
+    groups = list(_groups(script.objects, connecting))
     found = []
     for group in groups[1:]:
-        fact = next((fact for fact in script.facts if fact.subject in group), None)
-        if fact is None:
-            continue
-        start = next(name for name in script.objects if name in groups[0])
-        message = (
-            f"no facts connect '{fact.subject}' and {len(group) - 1} more with '{start}' and {len(groups[0]) - 1} more"
-        )
-        found.append(Finding("F004", _place(fact, script), message))
+        stated = next(stated for stated in connecting if not group.isdisjoint(_ends(stated)))
+        name, other = (next(name for name in script.objects if name in members) for members in (group, groups[0]))
+        more, others = (len(members - {_SURFACE}) - 1 for members in (group, groups[0]))
+        message = f"no facts connect '{name}' and {more} more with '{other}' and {others} more"
+        found.append(Finding("F004", _place(stated, script), message))
     if verdict is None:
         return found, False
     graph = script.graph()
@@ -333,25 +330,30 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
     return found, complete
 
 
-def _groups(objects: Sequence[str], facts: Iterable[Fact], claims: Iterable[Claim]) -> Iterator[set[str]]:
-    """Yield the sets of objects that facts and claims connect, in the order of the script, without single objects.
+_SURFACE = ""
+"""Node of the surface, which connects everything that has a place on it."""
 
-    Objects that claims place on the table (*in the middle*) are connected with each other.
-    """
+
+def _connecting(script: Script) -> list[Fact | Claim]:
+    """Return the facts and claims that relate objects or place them, not those about properties of one."""
+    return [stated for stated in script.stated if isinstance(stated, Fact) or stated.relation not in PROPERTIES]
+
+
+def _ends(stated: Fact | Claim) -> tuple[str, ...]:
+    """Return the objects that a fact or a claim connects."""
+    if isinstance(stated, Fact):
+        return stated.subject, stated.object
+    places_on_surface = stated.relation in ON_SURFACE and not stated.arguments
+    return (*stated.subjects, *stated.arguments, *((_SURFACE,) if places_on_surface else ()))
+
+
+def _groups(objects: Sequence[str], stated: Iterable[Fact | Claim]) -> Iterator[set[str]]:
+    """Yield the sets of objects that facts and claims connect, in the order of the script, without single objects."""
     near: dict[str, list[str]] = defaultdict(list)
-    pairs = [(fact.subject, fact.object) for fact in facts]
-    on_table: str | None = None
-    for claim in claims:
-        if claim.relation in PROPERTIES:
-            continue
-        named = (*claim.subjects, *claim.arguments)
-        pairs += pairwise(named)
-        if not claim.arguments and len(claim.subjects) == 1:
-            pairs += [(on_table, named[0])] if on_table is not None and on_table != named[0] else []
-            on_table = named[0]
-    for one, other in pairs:
-        near[one].append(other)
-        near[other].append(one)
+    for first, *others in map(_ends, stated):
+        for other in others:
+            near[first].append(other)
+            near[other].append(first)
     seen: set[str] = set()
     for name in objects:
         if name in seen or name not in near:

@@ -12,6 +12,7 @@ from deixis.ontology.relation import Relation, Relations
 from deixis.ontology.triples import with_blank_nodes
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
+from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.evidence import HELD_FROM
@@ -26,7 +27,13 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
     fills = {entry.perceived: entry.role for entry in check.roles if entry.perceived is not None}
     related = satisfied_relations(layout, scene, fills, relations)
     coloured = {entry.perceived: other.seen.iri for entry, other in check.miscoloured if entry.perceived is not None}
-    data = scene_data(layout, scene.ids, fills, related, coloured)
+    decided = {
+        entry.claim: entry.verdict is ClaimVerdict.SATISFIED
+        for entry in check.claims
+        if entry.verdict not in (ClaimVerdict.UNDECIDABLE, ClaimVerdict.OPEN)
+    }
+    held = {position: decided[claim] for position, claim in enumerate(layout.claims, 1) if claim in decided}
+    data = scene_data(layout, scene.ids, fills, related, coloured, held)
     graphs = []
     for triples in (data, layout_shapes(layout)):
         graph = rdflib.Graph()

@@ -291,3 +291,47 @@ def test_why_a_place_is_undetermined_is_said() -> None:
     shown = check_lines(check(replace(scene, objects=(doubtful, replace(second, label=None), *scene.objects[2:]))))
     assert any(line.endswith(f"labelled '{first.label}' with confidence 0.83, below 0.9") for line in shown)
     assert any(line.endswith("by its place alone") for line in shown)
+
+
+CLAIMED = """layout desk "My desk" on desk
+dinner_plate is a DinnerPlate
+dinner_fork left of dinner_plate; dinner_knife right of dinner_plate
+dinner_plate between dinner_fork and dinner_knife
+dinner_fork, dinner_plate, dinner_knife in a row from left to right
+dinner_knife {distance} cm from dinner_fork
+usually dinner_knife nearest to dinner_fork
+dinner_plate has contents soup"""
+
+
+@pytest.mark.parametrize(("distance", "well"), [("at most 50", True), ("at least 80", False)])
+def test_claims_are_checked_and_conform_to_shapes(distance: str, well: bool) -> None:
+    text = CLAIMED.format(distance=distance)
+    scene = formal_setting()
+    kept = {"dinner_fork", "dinner_plate", "dinner_knife"}
+    checked = check(without(scene, *(o.id for o in scene.objects if o.label not in kept)), text)
+    assert (checked.table.well, checked.conforms) == (well, well)
+    answer = check_to_dict(checked)["claims"]
+    assert [entry["verdict"] for entry in answer[:2]] == ["satisfied", "satisfied"]
+    assert [entry["verdict"] for entry in answer[2:]] == [
+        "satisfied" if well else "violated",
+        "violated",
+        "undecidable",
+    ]
+    told = "\n".join(check_lines(checked))
+    assert ("cm from dinner_fork" in told.split("unexpected")[0]) is not well
+    assert "unexpected  nearest(dinner_knife, dinner_fork)" in told
+    assert "unchecked   contents(dinner_plate, 'soup'): boxes do not show the contents" in told
+
+
+def test_a_learned_layout_keeps_its_claims(tmp_path: Path) -> None:
+    text = CLAIMED.format(distance="at most 50")
+    with Session(tmp_path / "memory") as session:
+        session.learn(read_script(text=text), formal_setting())
+        layout = session.layout("desk")
+        assert [str(claim) for claim in layout.claims] == [str(claim) for claim in read_script(text=text).claims]
+        assert layout.surface == "desk"
+        count = "SELECT ?c { ?c a dx:Claim ; dx:term 'distance_less' ; dx:metres ?m FILTER(?m = 0.5) }"
+        assert len(session.query(count).rows) == 1
+        assert session.show("desk").splitlines()[-1] == "dinner_plate has contents soup"
+        session.forget("desk-1")
+        assert session.query("SELECT ?c { ?c a dx:Claim }").rows == ()

@@ -11,6 +11,7 @@ import pyoxigraph as ox
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deixis.ontology.claims import Claim
 from deixis.ontology.graph import Fact, Source
 from deixis.ontology.lessons.read import layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Lesson, Match, Role, next_lesson_id
@@ -35,9 +36,16 @@ def lesson(names: list[str], id: str = "dinner-1", decided: bool = True) -> Less
         Fact(names[1], (RELATIONS["right"], RELATIONS["top_right"]), names[0], weight=0.8),
         Fact(names[0], (RELATIONS["exactly_on"],), names[1], positive=False, optional=True),
     ]
+    claims = (
+        Claim("row", tuple(names), value="left to right", weight=0.8, source=Source('a"b:c.layout', 4, 1, 4, 1)),
+        Claim("distance_less", (names[0],), (names[1],), metres=0.025, positive=False),
+        Claim("tallest", (names[1],), optional=True),
+    )
     seen = tuple(PerceivedObject(f"o{i}", (0.0, float(i)), (1.0, i + 0.5), name, 0.5) for i, name in enumerate(names))
     return Lesson(
-        layout=LayoutConcept(id, "dinner", 'Say "dinner"', "chair", roles, tuple(facts), (tuple(sorted(names[:2])),)),
+        layout=LayoutConcept(
+            id, "dinner", 'Say "dinner"', "chair", roles, tuple(facts), (tuple(sorted(names[:2])),), claims, "desk"
+        ),
         scene=Scene(seen),
         relations=(("o0", RELATIONS["exactly_bottom"], "o1"),),
         matches=tuple(

@@ -1,0 +1,130 @@
+"""Facts that claims imply: the pairs of a row, of a superlative, of an arrangement, and of what is between two others.
+
+A claim has no place in the closure of relations between pairs. The facts that it implies have: they are added to the
+stated ones, with the claim's place in the script, so that derivations and conflicts name it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from deixis.ontology.claims import Claim
+from deixis.ontology.facts import Fact
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.relation import Relation, Relations
+
+COMPARATIVES = {
+    "largest": "bigger",
+    "smallest": "smaller",
+    "tallest": "taller",
+    "shortest": "shorter",
+    "longest": "longer",
+    "widest": "wider",
+    "narrowest": "narrower",
+    "leftmost": "left",
+    "rightmost": "right",
+}
+"""Relation of what has a superlative to each of the others."""
+
+MEMBERS = {"near_each_other": "near", "touching_each_other": "touching", "parallel_each_other": "parallel"}
+"""Relation of each two members of an arrangement."""
+
+ROWS = {
+    "left to right": "left",
+    "right to left": "right",
+    "front to back": "bottom",
+    "near to far": "bottom",
+    "bottom to top": "bottom",
+    "back to front": "top",
+    "far to near": "top",
+    "top to bottom": "top",
+}
+"""Relation of each member of a row to the next one, by the order of the row."""
+
+RANKS = {"1 from left": "left", "-1 from right": "left", "1 from right": "right", "-1 from left": "right"}
+"""Relation of what has an extreme rank to each of the others."""
+
+AXES = ("left", "right", "top", "bottom")
+"""Relations of which one between two things holds of what is between them as well."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimFact:
+    """A fact that a claim implies; of *between*, together with the fact ``given`` about the two others."""
+
+    fact: Fact
+    claim: Claim
+    given: Fact | None = None
+
+
+def facts_of_claims(
+    claims: Sequence[Claim],
+    nodes: Sequence[str],
+    vocabulary: Relations,
+    holds: Callable[[Relation, str, str], bool] | None = None,
+) -> tuple[ClaimFact, ...]:
+    """Return the facts that firm claims imply, each once, with the place of its claim.
+
+    Parameters
+    ----------
+    claims
+        The claims of a script; those that are denied, optional or hedged imply nothing.
+    nodes
+        Names of all objects, which a superlative without objects compares with.
+    vocabulary
+        The relations.
+    holds
+        Whether a relation between two objects follows from the facts; *between* implies nothing without it.
+
+    Examples
+    --------
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> row = Claim("row", ("plate", "bowl", "mug"), value="left to right")
+    >>> [str(entry.fact) for entry in facts_of_claims([row], [], default_ontology().relations)]
+    ['left(plate, bowl)', 'left(bowl, mug)']
+    """
+    found: dict[tuple[str, str, str], ClaimFact] = {}
+    for claim in claims:
+        if not claim.positive or claim.optional or claim.weight < 1:
+            continue
+        for subject, word, thing, given in _pairs(claim, nodes, vocabulary, holds):
+            if subject == thing or word not in vocabulary:
+                continue
+            fact = Fact(subject, (vocabulary[word],), thing, source=claim.source)
+            found.setdefault((subject, word, thing), ClaimFact(fact, claim, given))
+    return tuple(found.values())
+
+
+def _pairs(
+    claim: Claim,
+    nodes: Sequence[str],
+    vocabulary: Relations,
+    holds: Callable[[Relation, str, str], bool] | None,
+) -> Iterator[tuple[str, str, str, Fact | None]]:
+    term, subjects, others = claim.relation, claim.subjects, claim.arguments
+    if term == "row" and claim.value in ROWS:
+        yield from ((first, ROWS[claim.value], second, None) for first, second in pairwise(subjects))
+    elif term in MEMBERS:
+        yield from ((first, MEMBERS[term], second, None) for first, second in combinations(subjects, 2))
+    elif term in COMPARATIVES and claim.value is None:
+        rest = others or [name for name in nodes if name not in subjects]
+        yield from ((subject, COMPARATIVES[term], other, None) for subject in subjects for other in rest)
+    elif term == "ordinal" and claim.value in RANKS:
+        rest = others or [name for name in nodes if name not in subjects]
+        yield from ((subject, RANKS[claim.value], other, None) for subject in subjects for other in rest)
+    elif term == "between" and len(others) == 2 and holds is not None:
+        first, second = others
+        for word in AXES:
+            if holds(vocabulary[word], first, second):
+                given = Fact(first, (vocabulary[word],), second)
+                for subject in subjects:
+                    yield first, word, subject, given
+                    yield subject, word, second, given
+
+
+def with_facts_of_claims(graph: RelationGraph, found: Sequence[ClaimFact]) -> RelationGraph:
+    """Return the graph with further edges for the facts of claims, after its own."""
+    facts = [*graph.facts(), *(entry.fact for entry in found)]
+    return RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, kinds=graph.kinds, colours=graph.colours)
