@@ -10,6 +10,12 @@ found if a fact of ours has its relation, its sign, and one of its objects in ea
 fact of the truth agrees in the same way; the surface, adjectives and counts that the truth leaves out are not counted.
 
 Prints recall, precision, traps, and with ``--ground`` the share of mentioned objects that are grounded right.
+
+``--texts FOLDER`` measures texts with their facts in short notation instead (``tests/grammar/english/texts``): after
+``=== name`` the lines of the text, then lines ``> relation(subject, object); …`` with what it states, and
+``> ? relation(…)`` with what may come out too. ``not`` denies a fact, ``~`` marks one that may come out but not as
+asserted, ``corner:far left(lamp)`` has the part that is meant. A line of ``traps.txt`` is a sentence, a bar, and the
+facts that must not be asserted.
 """
 
 from __future__ import annotations
@@ -17,6 +23,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +38,7 @@ SAME = {
     "next_to": "near", "larger": "bigger", "nearer": "closer", "farthest_from": "farthest", "centre": "middle",
     "part": "place", "edge": "place", "end": "place", "side": "place", "left of": "left",
 }  # fmt: skip
+SIDES = {"back": "far", "front": "near", "rear": "far"}
 OPPOSITE = {"smaller": "bigger", "shorter": "taller"}
 DETERMINERS = frozenset(
     ["the", "a", "an", "my", "your", "his", "her", "our", "their", "its", "this", "that", "these", "those"]
@@ -53,6 +61,8 @@ class Names:
         self.said = {
             thing["id"]: {words(phrase) for phrase in (thing["id"], *thing["mentions"])} for thing in read["objects"]
         }
+        if read.get("surface"):
+            self.said.setdefault(read["surface"], {words(read["surface"])})
 
     def of(self, name: str) -> set[str]:
         """Return our objects for a name of the truth."""
@@ -61,6 +71,46 @@ class Names:
         if exact or not meant:
             return exact
         return {ours for ours, said in self.said.items() if any(one and one[-1] == meant[-1] for one in said)}
+
+
+FACT = re.compile(r"(?P<mark>~?)(?P<no>not )?(?P<relation>\w+)(?::(?P<part>[^(]+))?\((?P<names>[^)]*)\)")
+
+
+def written_facts(line: str) -> Iterator[Fact]:
+    """Yield the facts of a line in short notation.
+
+    >>> next(written_facts("not corner:far left(lamp, desk)"))["part"]
+    'far left'
+    """
+    for match in FACT.finditer(line):
+        subject, *ends = [name.strip() for name in match["names"].split(",")]
+        yield {
+            "relation": match["relation"], "subject": subject, "object": ends, "negated": bool(match["no"]),
+            "part": match["part"], "asserted": not match["mark"],
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A text with the facts that it states, and the facts that may come out too."""
+
+    name: str
+    text: str
+    stated: list[Fact]
+    allowed: list[Fact]
+
+
+def written_texts(file: Path) -> Iterator[Text]:
+    """Yield the texts of a file with their facts."""
+    for entry in file.read_text(encoding="utf-8").split("=== ")[1:]:
+        name, _, body = entry.partition("\n")
+        facts = [line[2:] for line in body.splitlines() if line.startswith("> ")]
+        yield Text(
+            name.strip(),
+            "\n".join(line for line in body.splitlines() if not line.startswith(">")).strip() + "\n",
+            [fact for line in facts if not line.startswith("?") for fact in written_facts(line)],
+            [fact for line in facts if line.startswith("?") for fact in written_facts(line)],
+        )
 
 
 def named(entry: Any) -> list[str]:
@@ -74,7 +124,7 @@ def relation_of(fact: Fact) -> tuple[str, bool]:
     return OPPOSITE.get(relation, relation), relation in OPPOSITE
 
 
-def agree(ours: Fact, truth: Fact, names: Names) -> bool:
+def agree(ours: Fact, truth: Fact, names: Names, strict: bool = False) -> bool:
     """Return True if a fact of ours says what a fact of the truth says."""
     (mine, swapped), (theirs, swapped_too) = relation_of(ours), relation_of(truth)
     surface_place = mine == "place" and theirs in ("left", "right", "middle")
@@ -86,9 +136,17 @@ def agree(ours: Fact, truth: Fact, names: Names) -> bool:
         second = {*ours["arguments"], *([ours["object"]] if ours["object"] else [])}
     wanted = {one for name in named(truth["subject"]) for one in ({"*"} if name == "*" else names.of(name))}
     ends = {one for name in named(truth["object"]) for one in names.of(name)}
+    if strict and not ends and named(truth["object"]):
+        return False
     if swapped != swapped_too:
         first, second = second, first
-    return bool(first & wanted) and (not ends or not second or bool(second & ends))
+    if truth.get("part") and "asserted" in truth and not _sides(truth["part"]) <= _sides(ours["value"]):
+        return False
+    return bool(first & wanted) and (not ends or (not second and not strict) or bool(second & ends))
+
+
+def _sides(part: str | None) -> set[str]:
+    return {SIDES.get(word, word) for word in (part or "").split()}
 
 
 def counted(fact: Fact) -> bool:
@@ -114,6 +172,72 @@ def traps(folder: Path) -> Iterator[tuple[str, str]]:
                 yield trap["text"], f"{fact['relation']}({fact['subject']}, {fact['object']})"
 
 
+def measure_texts(folder: Path, verbose: bool) -> tuple[Score, list[tuple[str, str]]]:
+    """Return the score of the texts of a folder, and the traps that become facts."""
+    score, wrong = Score(), []
+    for file in sorted(folder.glob("*.txt")):
+        if file.name == "traps.txt":
+            wrong = list(written_traps(file))
+            continue
+        for text in written_texts(file):
+            score.add(text, verbose)
+    return score, wrong
+
+
+def written_traps(file: Path) -> Iterator[tuple[str, str]]:
+    """Yield each sentence of a file of traps that gives a fact which it must not give."""
+    for line in file.read_text(encoding="utf-8").splitlines():
+        sentence, _, facts = line.partition(" | ")
+        try:
+            read = reading_to_dict(read_english(sentence))
+        except DeixisError:
+            continue
+        names, refused = Names(read), list(written_facts(facts))
+        for fact in read["facts"]:
+            if fact["asserted"] and any(agree(fact, other, names, strict=True) for other in refused):
+                yield sentence, f"{fact['relation']}({fact['subject']}, {fact['object']})"
+
+
+@dataclass(slots=True)
+class Score:
+    """Counts of stated facts and of the facts that were read, over texts."""
+
+    found: int = 0
+    stated: int = 0
+    right: int = 0
+    told: int = 0
+
+    def add(self, text: Text, verbose: bool = False) -> None:
+        """Read a text and compare its facts; print what is missing or wrong if ``verbose``."""
+        try:
+            read = reading_to_dict(read_english(text.text, text.name))
+        except DeixisError as error:
+            read = {"objects": [], "facts": [], "absent": []}
+            if verbose:
+                print(f"{text.name}: {error}")
+        names = Names(read)
+        for fact in text.stated:
+            hit = any(ours["asserted"] and agree(ours, fact, names) for ours in read["facts"])
+            hit = hit or (fact["negated"] and _absent(fact, read))
+            self.found, self.stated = self.found + hit, self.stated + 1
+            if verbose and not hit:
+                print(f"{text.name}: missing {_shown(fact)}")
+        possible = [fact for fact in (*text.stated, *text.allowed) if fact["asserted"]]
+        for ours in filter(counted, read["facts"]):
+            if ours["relation"] in ("contents", "kind"):
+                continue
+            hit = any(agree(ours, {**fact, "part": None}, names) for fact in possible)
+            self.right, self.told = self.right + hit, self.told + 1
+            if verbose and not hit:
+                ends = [ours["object"]] if ours["object"] else ours["arguments"]
+                print(f"{text.name}: not in the truth {ours['relation']}({ours['subjects']}, {ends})")
+
+
+def _shown(fact: Fact) -> str:
+    part = f":{fact['part']}" if fact["part"] else ""
+    return f"{'not ' * fact['negated']}{fact['relation']}{part}({', '.join([fact['subject'], *fact['object']])})"
+
+
 def grounded(case: Path, names: Names) -> tuple[int, int]:
     """Return how many of the mentioned objects are right, and how many there are."""
     from deixis.workflows.ground import ground
@@ -137,7 +261,16 @@ def main() -> None:
     parser.add_argument("--ground", action="store_true", help="ground the texts in their scenes as well")
     parser.add_argument("--verbose", action="store_true", help="print the facts that are missing or wrong")
     parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--texts", type=Path, metavar="FOLDER", help="measure texts in short notation instead")
     with recorded(parser) as options:
+        if options.texts is not None:
+            score, wrong = measure_texts(options.texts, options.verbose)
+            share("stated facts of texts found", score.found, score.stated)
+            share("facts of texts read that they state", score.right, score.told)
+            found, right = score.found / score.stated, score.right / score.told
+            print(f"facts found {found:.3f} of {score.stated}; of our {score.told} facts {right:.3f} are stated")
+            print(f"traps that become false facts: {len(wrong)}", *(f"\n    {text}: {fact}" for text, fact in wrong))
+            return
         folder = data_folder("english")
         if folder is None:
             return

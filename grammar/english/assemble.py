@@ -10,11 +10,12 @@ from deixis.grammar.english.joints import Segment
 from deixis.grammar.english.places import HOURS
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
-from deixis.grammar.english.words import ENTER_VERBS, FACE_VERBS, HEDGES
+from deixis.grammar.english.words import APPROXIMATE, ENTER_VERBS, FACE_VERBS, HEDGES
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _FRAMES = frozenset({"facing", "from"})
 _PLACING = frozenset({"put", "place", "keep", "leave", "set", "lay", "store", "spread", "position"})
+_UNDONE = frozenset({"almost", "nearly"})
 _OWNING = frozenset(
     {"have", "see", "find", "keep", "notice", "place", "put", "leave", "set", "lay", "stand", "hang", "store"}
 )
@@ -42,6 +43,9 @@ class Assembly:
     viewpoint: Viewpoint | None = None
     condition: str | None = None
     front: tuple[Predicate, ...] = ()  # places before a command: 'on the desk, choose the monitor'
+    hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
+    supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
+    opens_list: bool = False  # True if a colon follows the clause
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -74,18 +78,29 @@ class Assembly:
                 self.viewpoint, said, link = _joined(self.viewpoint, frame), (), ""
         if link in ("before", "after") and built.shape == "statement":
             return
+        if link == "instead":
+            misunderstood(span, "this says where something is not", "deny it: 'The cup is not on the tray.'")
+            return
         if link == "if" and self._is_clock(built):
             return
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
             built.verbs or (built.shape == "fragment" and not built.said and link != "as")
         ):
             self._conditional(span, link)
+            subject = built.subject
+            if subject is not None and subject.phrase.head and subject.phrase.determiner not in ("no", "any"):
+                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                self.supposed.append(Clause(replace(subject.phrase, predicates=()), (), span, condition=text))
             return
+        if link == ":" and self.condition is not None and (self.clauses or self.fragments):
+            self.condition = None  # 'when the guests arrive, the table looks like this: …'
         mood = self._mood(built)
         subject = built.subject
         if built.shape == "other" and subject is not None and not subject.phrase.predicates:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
+            if subject.phrase.head and built.shape == "other":
+                self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):
             self._fragment(built, subject, said, link, span, mood)
@@ -102,6 +117,9 @@ class Assembly:
         person = subject.phrase.pronoun in _PEOPLE
         for i, verb in enumerate(verbs):
             front = said if i == 0 else ()
+            if verb.thing is not None and verb.group.lemma in _PLACING and not _UNDONE.isdisjoint(verb.group.adverbs):
+                misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
+                continue
             if verb.thing is not None and (verb.group.lemma in _PLACING or (person and verb.group.lemma in _OWNING)):
                 moved, thing = self._of_the_thing(verb, subject)
                 if subject.phrase.pronoun == "nothing":
@@ -141,7 +159,7 @@ class Assembly:
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
         if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
             misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
-        return Found(tuple(self.clauses), fragment, self.viewpoint)
+        return Found((*self.supposed, *self.clauses), fragment, self.viewpoint)
 
     # viewpoints and conditions
 
@@ -159,6 +177,8 @@ class Assembly:
                     turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
                     found = found or Viewpoint(span)
                     found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
+                if found is None and entering and not said and not self.clauses:
+                    found = Viewpoint(span)  # 'as you come in'
                 if found is not None:
                     return replace(found, span=span, entering=entering)
             return None
@@ -311,6 +331,7 @@ class Assembly:
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
         last = self.clauses[-1] if self.clauses else None
         waits = last is None and self.sought is None and not self.fragments and not built.verbs
+        waits = waits or (self.opens_list and not built.verbs)
         if waits and not any(part.choice for part in said):
             self.front += tuple(p for part in said for p in part.predicates)
             return
@@ -357,6 +378,14 @@ class Assembly:
             and not verb.said
         ):
             predicates, phrase = [*phrase.predicates], replace(phrase, predicates=())
+        if shape == "existential" and not group.positive and phrase is not None and not phrase.negated:
+            phrase = replace(phrase, determiner="no") if phrase.head else phrase
+            if phrase.pronoun in ("anything", "anyone", "one", "everything"):
+                phrase = replace(phrase, pronoun="nothing")
+            group = replace(group, positive=True)
+        if phrase is not None and phrase.determiner == "neither" and phrase.members:
+            phrase, group = replace(phrase, determiner=None), replace(group, positive=not group.positive)
+            verb = replace(verb, group=group)
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
         main = _flat(replace(verb, thing=None))
@@ -372,6 +401,10 @@ class Assembly:
         if verb.thing is not None:
             made = _flat(replace(verb, said=(), nominal=None)) + made
         hedges = tuple(a for a in group.adverbs if a in HEDGES)
+        hedges += tuple(a for p in made for a in p.adverbs if a in HEDGES - APPROXIMATE and a not in hedges)
+        before = [word for at, word in self.hedges if at < span[1]]
+        self.hedges = [(at, word) for at, word in self.hedges if at >= span[1]]
+        hedges += tuple(word for word in before if word not in hedges)
         modal = group.modal
         past = group.past
         if hedge is not None:
@@ -396,7 +429,13 @@ class Assembly:
                 misunderstood(predicate.span, "this does not say where something is")
             elif predicate.relation not in ("diagonal", "apart"):
                 kept.append(predicate)
-        if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION:
+        if link == "or" and kept and self.clauses and clause.modal is None:  # 'leave it there or put it here'
+            clause = replace(clause, modal="may")
+            if self.clauses[-1].modal in (None, "can"):
+                self.clauses[-1] = replace(self.clauses[-1], modal="may")
+        handled = clause.mood is Mood.COMMAND and clause.subject is not None and bool(clause.subject.head)
+        placed = clause.subject is not None and bool(clause.subject.predicates)
+        if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept)))
 
 

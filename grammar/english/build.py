@@ -102,8 +102,10 @@ class Builder(Transformer[Any, Built]):
         """Return a subject with its verbs."""
         return Built("statement", top, verbs)
 
-    def inverted(self, said: tuple[Said, ...], verb: Chunk, top: Noun) -> Built:
+    def inverted(self, said: tuple[Said, ...], verb: Chunk, more: tuple[Predicate, ...] | None, top: Noun) -> Built:
         """Return *to the left of the plate lies the fork*."""
+        if more:
+            said = (*said, Said(more))
         return Built("inverted", top, (Verb(verb.value, said, verb.span),))
 
     def verbless(self, said: tuple[Said, ...], top: Noun) -> Built:
@@ -273,13 +275,15 @@ class Builder(Transformer[Any, Built]):
             and not members[1].negated
         ):
             first, second = members
-            if second.determiner is not None and not is_place(first) and first.pronoun is None:  # apposition
+            named = second.determiner is not None or second.owner is not None
+            if named and not is_place(first) and first.pronoun is None:  # apposition
                 kind = Predicate("kind", (second,), second.span)
                 return Noun(replace(first, predicates=(*first.predicates, kind), span=span), extra)
         joined_by = "or" if "or" in joints else "and"
         if first.determiner == "neither":
-            members = [replace(member, determiner="no") for member in members]
-            joined_by = "and"
+            members = [replace(member, determiner="the") for member in members]
+            whole = NounPhrase(span, determiner="neither", plural=True, members=tuple(members), joined_by="and")
+            return Noun(whole, extra)
         return Noun(NounPhrase(span, plural=True, members=tuple(members), joined_by=joined_by), extra)
 
     raws = nps
@@ -316,6 +320,8 @@ class Builder(Transformer[Any, Built]):
         if on_it:  # 'the desk with a piece of paper on it'
             inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in on_it))
             its = (*on_it, *its)
+        if not phrase.head and phrase.pronoun is None and phrase.determiner in _QUANTIFIERS and inner.head:
+            return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'most of the knives'
         if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
             return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
         return replace(
@@ -396,6 +402,9 @@ class Builder(Transformer[Any, Built]):
         if relation == "material":
             word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
             return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
+        if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return extra
         if noun.phrase.head in NOT_PLACES and noun.phrase.determiner in (None, "a") and not noun.phrase.adjectives:
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
@@ -457,7 +466,7 @@ class Builder(Transformer[Any, Built]):
         relator: Relator = chunk.value
         found: list[Predicate] = []
         for noun in nouns[::2]:
-            for member in noun.phrase.members or (noun.phrase,):
+            for member in _with_shared_place(noun.phrase):
                 found += _accompanied(relator, member, union(chunk.span, noun.phrase.span))
             found += noun.extra
         return tuple(found)
@@ -534,6 +543,15 @@ def flat(verb: Verb) -> list[Predicate]:
     return found
 
 
+def _with_shared_place(phrase: NounPhrase) -> tuple[NounPhrase, ...]:
+    """Return the members of *three pens and a ruler in it*, all of them in it."""
+    members = phrase.members or (phrase,)
+    last = members[-1].predicates
+    if len(members) < 2 or not last or not any(a.pronoun in ("it", "they") for p in last for a in p.arguments):
+        return members
+    return tuple(member if member.predicates else replace(member, predicates=last) for member in members)
+
+
 def _restricted(phrase: NounPhrase, mods: tuple[Predicate, ...]) -> NounPhrase:
     related = _related(phrase, mods)
     if related != mods:
@@ -608,8 +626,12 @@ def _arguments(relation: str, phrase: NounPhrase) -> tuple[NounPhrase, ...]:
 def _places(relator: Relator, places: tuple[NounPhrase, ...], span: Span) -> list[Predicate]:
     """Return the predicates of several places, which share their object: *on the left side and top of X*."""
     of = next((member.of for member in places if member.of is not None), None)
-    found = (place(relator, replace(member, of=member.of or of), span) for member in places)
-    return [predicate for predicate in found if predicate is not None]
+    found = []
+    for member in places:
+        predicate = place(relator, replace(member, of=member.of or of, negated=False), span)
+        if predicate is not None:
+            found.append(replace(predicate, positive=not predicate.positive) if member.negated else predicate)
+    return found
 
 
 def _positioned(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
@@ -722,6 +744,8 @@ def _accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
     for predicate in member.predicates:
         if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
             found.append((predicate, True))
+        elif not predicate.arguments and predicate.part is None and predicate.relation in _AT_THE_SUBJECT:
+            found.append((replace(predicate, arguments=(member,)), True))
         elif predicate.relation in ("pointing", "facing", "open", "state", "parallel") and member.determiner != "a":
             found.append((predicate, False))
         else:
@@ -739,7 +763,7 @@ def _accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
 def _moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, ...]:
     """Give the phrases after a verb the meaning of the verb: *leans against X*, *points to the right*, *faces away*."""
     if not said:
-        if group.kind in ("posture", "lean", "be"):
+        if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
             return ()
         misunderstood(span, f"'{group.lemma}' does not say where something is")
         return ()
@@ -766,6 +790,22 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
         following = flat_parts[i + 1] if i + 1 < len(flat_parts) else None
         if predicate.relation.startswith("~"):
             lemma, kind = predicate.relation[1:].split("~")
+            if lemma in ("stack", "pile") and following is not None and following.relation not in ("on", "stacked"):
+                found.append(Predicate("stacked", (), predicate.span, positive=predicate.positive))
+            agent = flat_parts[i + 2] if i + 2 < len(flat_parts) else None
+            if (
+                lemma in _PASSIVES
+                and following is not None
+                and following.relation in ("left", "right")
+                and not following.arguments
+                and agent is not None
+                and agent.relation in ("near", "by")
+            ):  # 'bordered on the right by a pen'
+                flat_parts[i + 1 : i + 3] = [
+                    replace(agent, relation=following.relation, reversed=True, span=union(following.span, agent.span))
+                ]
+                i += 1
+                continue
             if following is not None and not following.relation.startswith("~"):
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
                 if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
@@ -822,6 +862,7 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
             continue
         found.append(predicate)
         i += 1
+    found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
     return tuple(_checked(found)) if check else tuple(found)
 
 
@@ -831,6 +872,10 @@ _STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
 _MOVING = frozenset({"move", "bring", "slide", "push", "add", "carry", "take"})
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
+_AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
+"""Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
+_ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
+_QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
 _GAPS = frozenset({"gap", "space", "distance", "room"})
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
@@ -912,8 +957,16 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "on"
     elif lemma in ("align", "line") and relation in ("with",):
         relation = "aligned"
-    elif lemma in ("surround", "enclose") and relation == "near":
-        return replace(following, relation="around", reversed=True, span=span)
+    elif lemma in _COVERING and relation == "above":
+        relation = "on"
+    elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
+        relation = "inside"
+    elif lemma in ("divide", "split", "separate", "cut", "break") and relation in ("inside", "near", "by"):
+        relation = "through"
+    elif relation == "by" and lemma not in _PASSIVES and kind not in ("posture", "lean", "be", "face", "point"):
+        relation = "through"  # 'sorted by price' names no place
+    elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
+        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
     positive = following.positive if marker.positive else not following.positive
     return replace(
         following,
@@ -930,10 +983,18 @@ def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tupl
     span = union(measure.span, following.span)
     if following.relation in ("measured_from", "from", "far", "to") and following.arguments:
         return replace(measure, arguments=following.arguments, span=span), ()
-    if following.arguments and following.relation in _DIRECTION_RELATIONS:
+    if following.relation in _DIRECTION_RELATIONS and (following.arguments or following.relation in ("left", "right")):
         return replace(following, measure=measure.measure, span=span), ()
     return None
 
+
+_COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
+"""Verbs after which *over* means *on*."""
+_PASSIVES = {
+    "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
+    "cover": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
+}  # fmt: skip
+"""Relation of the agent of a participle to its subject: *surrounded by cups*."""
 
 _HEIGHTS = {
     ("height", Degree.COMPARATIVE): {"low": "below", "high": "above"},

@@ -27,10 +27,12 @@ from deixis.grammar.english.words import (
     MODALS,
     NEGATIONS,
     OTHER_UNITS,
+    PLACE_NOUNS,
     PRONOUNS,
     PUT_VERBS,
     UNITS,
     Preposition,
+    is_adjective,
     places_alone,
     prepositions,
     verb_forms,
@@ -83,6 +85,86 @@ class Relator:
     positive: bool = True
 
 
+def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with *on which* resolved.
+
+    *The chair on which the coat hangs* is read as *the chair that the coat hangs on*, and *a board on which there are
+    two onions* as two clauses, of which the second says *on the board there are two onions*.
+    """
+    found: list[Chunk] = []
+    waiting: Chunk | None = None
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        which = following is not None and following.type == "NP" and following.value.pronoun == "which"
+        if chunk.type == "PREP" and which and found and i + 2 < len(chunks):
+            if chunks[i + 2].type == "NP" and chunks[i + 2].value.pronoun not in ("me", "you", "we", "someone"):
+                found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
+                waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
+                continue
+            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
+        elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
+            if waiting is not None and chunks[i - 1].span == waiting.span:
+                continue
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
+                chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
+        found.append(chunk)
+        if waiting is not None and chunk.type in ("VERB", "BE"):
+            found.append(waiting)
+            waiting = None
+    return found
+
+
+def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with the relative pronoun of *the book I am reading* put in."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        contact = (
+            chunk.type == "NP"
+            and chunk.value.pronoun in ("me", "you", "we", "he", "she")
+            and found
+            and found[-1].type == "NP"
+            and bool(found[-1].value.head)
+            and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
+            and i + 1 < len(chunks)
+            and chunks[i + 1].type in FINITE
+        )
+        if contact:
+            found.append(Chunk("REL", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
+        found.append(chunk)
+    return found
+
+
+def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        ends = i + 1 == len(chunks) or chunks[i + 1].type in _JOINT_TYPES | {"OF"}
+        aside = (
+            len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
+            and i + 1 < len(chunks) and chunks[i + 1].type == "COMMA"
+        )  # fmt: skip
+        if (
+            chunk.type == "NP"
+            and ends
+            and found
+            and (found[-1].type in ("NP", "COLON") or (aside and chunk.value.adjectives))
+            and chunk.value.head in PLACE_NOUNS
+            and chunk.value.determiner is None
+            and chunk.value.owner is None
+            and not chunk.value.plural
+            and any(other.type == "NP" for other in found)
+            and not any(other.type in FINITE for other in found)
+        ):
+            at = Relator(Preposition("at", "at"))
+            found.append(Chunk("PREP", chunk.start, chunk.start, at, (chunk.span[0], chunk.span[0])))
+        found.append(chunk)
+    return found
+
+
 @dataclass(slots=True)
 class _Phrases:
     """Phrases of several words by their first word, longest first."""
@@ -133,6 +215,7 @@ class Chunker:
         self.norms = [word.norm for word in words] + [""] * 12
         self.nouns = NounChunker(words, self.norms, nouns)
         self.chunks: list[Chunk] = []
+        self._denied: str | None = None  # modal of a denial that stands before its subject
         self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
 
     def run(self) -> list[Chunk]:
@@ -143,7 +226,7 @@ class Chunker:
             chunk.span = self.words[at].start, self.words[chunk.end - 1].end
             self.chunks.append(chunk)
             at = chunk.end
-        return self.chunks
+        return _with_telegraphic_places(_with_contact_clauses(_with_relative_places(self.chunks)))
 
     def _previous(self) -> str:
         return self.chunks[-1].type if self.chunks else ""
@@ -153,6 +236,8 @@ class Chunker:
         fixed = _PUNCTUATION.get(norm)
         if fixed is not None:
             return Chunk(fixed, at, at + 1)
+        if self.norms[at : at + 1] and (end := self._denial(at)) is not None:
+            return Chunk("ADVERB", at, end, "never")
         for find in (self._measure, self._idiom, self._joint, self._relator, self._verb_group, self._noun_phrase):
             chunk = find(at)
             if chunk is not None:
@@ -162,6 +247,21 @@ class Chunker:
         if norm in ADVERBS or norm in HEDGES or norm.endswith("ly"):
             return Chunk("ADVERB", at, at + 1, norm)
         return Chunk("UNKNOWN", at, at + 1)
+
+    def _denial(self, at: int) -> int | None:
+        """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
+        if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB"):
+            return None
+        for phrase in _DENIALS:
+            end = at + len(phrase)
+            if tuple(self.norms[at:end]) == phrase:
+                if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
+                    self._denied = MODALS.get(self.norms[end], "must")
+                    return end + 1
+                if self._verbs.get(self.norms[end]) is not None:
+                    self._denied = "must"
+                    return end
+        return None
 
     # joints and function words
 
@@ -195,6 +295,21 @@ class Chunker:
             ):
                 end += 1
             return Chunk("ADVERB", at, end, "from where")
+        if norm == "out" and self.norms[at + 1] == "of":
+            end = at + 2 + (self.norms[at + 2] in ("my", "your", "his", "her", "our", "their", "the"))
+            if self.norms[end] in ("reach", "sight", "way", "place", "order"):
+                return Chunk("ADVERB", at, end + 1, "out of reach")
+        if norm == "say" and self._previous() == "COMMA" and self.norms[at + 1] in prepositions():
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "one" and self.norms[at + 1] in MODALS:
+            person = NounPhrase((self.words[at].start, self.words[at].end), pronoun="someone")
+            return Chunk("NP", at, at + 1, person)
+        if (
+            norm == "there" and self.norms[at + 1] in ("is", "'s") and self.norms[at + 2] == "no"
+            and self.norms[at + 3] in ("way", "chance")
+        ):  # fmt: skip
+            end = at + 4 + (self.norms[at + 4] == "that")
+            return Chunk("COMPLEMENT", at, end, VerbGroup("think", "other", "base", positive=False))
         if norm == "had" and at == 0 and "been" in self.norms:
             return Chunk("SUB", at, at + 1, "if")
         if norm in ("i", "we", "it") and previous_joint:
@@ -301,6 +416,13 @@ class Chunker:
 
     def _order(self, at: int) -> Chunk | None:
         """Return the order *from left to right*, *from the front to the back*."""
+        if (
+            self.norms[at : at + 2] == ["from", "the"]
+            and self.norms[at + 2] in _OTHER_END
+            and (self.norms[at + 3] in (":", ",") and self._previous() in ("", "COMMA", "ADVERB", "CUT"))
+        ):
+            side = self.norms[at + 2]
+            return Chunk("ADV", at, at + 3, Relator(Preposition(f"{side} to {_OTHER_END[side]}", "row")))
         i, sides = at + (self.norms[at] == "from"), []
         for stop in ("to", ""):
             i += self.norms[i] == "the"
@@ -324,6 +446,12 @@ class Chunker:
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
         if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
             return Chunk("REL", at, at + 1)
+        if (norm == "unlike" and not previous) or (
+            not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
+        ):
+            return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
+        if norm == "that" and previous == "PREP" and (self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";")):
+            return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
         if norm == "whose":
             return Chunk("WHOSE", at, at + 1)
         if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
@@ -381,6 +509,8 @@ class Chunker:
             and self.nouns.starts(at + 1)
             and self.nouns.number(at + 1) is None
         )
+        if norm == "about" and previous == "PART" and self.nouns.starts(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition("about", "around")))  # 'scattered about it'
         if (norm == "but" and excepting) or about:
             return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))
         if norm in _CONJUNCTIONS:
@@ -414,12 +544,22 @@ class Chunker:
         number = self.nouns.number(at)
         i, hedge, bound = at, None, None
         while number is None and self.norms[i] in _MEASURE_WORDS:
+            if (spoken := self._spoken_length(i)) is not None:
+                break
             if self.norms[i] in _BOUNDS:
                 bound = _BOUNDS[self.norms[i]]
+                if i > at and self.norms[i - 1] in ("no", "not"):
+                    bound = "<" if bound == ">" else ">"
             elif self.norms[i] in HEDGES:
                 hedge = self.norms[i]
             i += 1
             number = self.nouns.number(i)
+        spoken = self._spoken_length(i)
+        if spoken is not None:
+            end, metres = spoken
+            if self.norms[end] in ("away", "apart") and self.norms[end + 1] != "from":
+                end += 1
+            return Chunk("MEASURE", at, end, (metres, hedge or "about", bound))
         if number is None:
             attached = _ATTACHED_UNIT(self.norms[i])
             if attached is None:
@@ -447,6 +587,32 @@ class Chunker:
             end += 1
         return Chunk("MEASURE", at, end, (number * scale, hedge, bound))
 
+    def _spoken_length(self, at: int) -> tuple[int, float] | None:
+        """Return the end and the metres of *a hand's width*, *half a metre*, *an inch*, *a few centimetres*."""
+        i, times = at, 1.0
+        if self.norms[i] == "half" and self.norms[i + 1] in ("a", "an"):
+            times, i = 0.5, i + 2
+        elif self.norms[i] in ("a", "an") and self.norms[i + 1] in ("few", "couple"):
+            times, i = 3.0 if self.norms[i + 1] == "few" else 2.0, i + 2
+            i += self.norms[i] == "of"
+        elif self.norms[i] in ("a", "an", "one"):
+            i += 1
+        else:
+            return None
+        unit = self.norms[i]
+        scale = UNITS.get(unit) or (UNITS.get(unit[:-1]) if unit.endswith("s") else None)
+        if scale is None or unit == "m":
+            return None
+        end = i + 1
+        if self.norms[end] in ("'s", "s") and self.norms[end + 1] in _BREADTHS:
+            end += 2
+        elif self.norms[end] in _BREADTHS:
+            end += 1
+        elif unit in _BODY:
+            return None
+        follows = self._match(end) is not None or self.norms[end] in ("away", "apart", "from", "", ",", ".", "or")
+        return (end, times * scale) if follows and self.norms[end] != "of" else None
+
     def _relator(self, at: int) -> Chunk | None:
         i, adverbs, positive, rank = at, [], True, None
         if self.norms[i] == "nowhere" or tuple(self.norms[i : i + 2]) == ("anything", "but"):
@@ -467,6 +633,8 @@ class Chunker:
             if self.norms[i] != "the":
                 adverbs.append(self.norms[i])
             i += 1
+        if adverbs[:1] == ["as"] and "as" in self.norms[i + 1 :] and "possible" not in self.norms[i + 1 :]:
+            return None  # 'as far from the bowl as from the jar'
         ranked = self.nouns.ordinal(i)
         if ranked is not None and self.nouns.is_degree_word(i + 1):
             rank, i = ranked, i + 1
@@ -492,6 +660,10 @@ class Chunker:
         ):
             return None
         alone = self._alone.longest(self.norms, at)
+        if alone is not None and alone[1].phrase.startswith("far ") and PLACE_NOUNS.get(self.norms[alone[0]]) in _SPOTS:
+            alone = None  # 'far left corner'
+        if alone is not None and self.norms[alone[0] - 1] == "own" and self.nouns.is_noun(alone[0]):
+            alone = None  # 'on its own saucer'
         found = self._relations.longest(self.norms, at)
         if self.norms[at] == "round" and not (self.nouns.is_determiner(at + 1) or self.norms[at + 1] in ("it", "them")):
             return None
@@ -511,12 +683,16 @@ class Chunker:
             if preposition.degree is not Degree.PLAIN and ends_open and not self._object_of_degree(at, end):
                 return None
             takes_object = self.nouns.starts(end) or self.norms[end] == "which"
+            takes_object = takes_object or (self.norms[end] == "that" and self.nouns.is_determiner(end + 1))
             if self.norms[at] == "to" and end == at + 1 and self._infinitive(end):
                 return None
             shorter_alone = (
                 alone is None
                 or alone[0] < end
-                or (alone[0] == end and (self._previous() == "NP" or not self._begins_clause(end)))
+                or (
+                    alone[0] == end
+                    and (self._previous() == "NP" or alone[1].relation != "there" or not self._begins_clause(end))
+                )
             )
             if takes_object and shorter_alone:
                 return end, "PREP", preposition
@@ -599,6 +775,8 @@ class Chunker:
     # verbs
 
     def _verb_group(self, at: int) -> Chunk | None:
+        if self._denied is not None and self._previous() in ("NP", "ADVERB"):
+            return self._denied_verb(at)
         i, adverbs, modal, positive, past = at, [], None, True, False
         while self.norms[i] in ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "never":
             if self.norms[i] == "never":
@@ -646,7 +824,7 @@ class Chunker:
             ):
                 adverbs.append(norm)
             elif norm in ("has", "have", "had", "having", "'ve") and self._perfect(i):
-                past = past or norm == "had"
+                past = past or norm == "had" or modal in _UNREAL
             elif norm in ("seems", "seem", "appears", "appear", "seemed", "appeared") and self.norms[i + 1 : i + 3] == [
                 "to",
                 "be",
@@ -658,8 +836,10 @@ class Chunker:
             elif norm == "used" and self.norms[i + 1] == "to":
                 past = True
                 i += 1
-            elif norm in ("supposed", "meant") and self.norms[i + 1] == "to":
-                modal = "should"
+            elif norm in ("has", "have", "had") and self.norms[i + 1] == "to" and self._is_base(i + 2):
+                modal, i = "have to", i + 1
+            elif norm in _TENDING and self.norms[i + 1] == "to" and self._is_base(i + 2):
+                modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
                 verb, past = "be", past or norm in ("was", "were")
             else:
@@ -673,6 +853,28 @@ class Chunker:
             return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, positive, past, tuple(adverbs)))
         return self._lexical(at, first, i, VerbGroup("", "", "", modal, positive, past, tuple(adverbs)))
 
+    def _is_base(self, at: int) -> bool:
+        form = self._verbs.get(self.norms[at])
+        return self.norms[at] == "be" or (form is not None and form.form == "base")
+
+    def _denied_verb(self, at: int) -> Chunk | None:
+        """Return the verb of a clause whose denial and modal verb stand before its subject."""
+        i = at + (self.norms[at] == "be")
+        form = self._verbs.get(self.norms[i])
+        command = self._previous() == "ADVERB"
+        if form is None or (i == at and form.form not in ("base", "ing") and self._previous() != "NP"):
+            return None
+        if not command and form.form == "base" and self.nouns.is_noun(i) and not self._predicate_after(i):
+            return None
+        modal, self._denied = self._denied, None
+        if self.norms[at] == "be":
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, False))
+        group = VerbGroup(form.lemma, form.kind, form.form, None if command else modal, False)
+        return Chunk("PUT", at, i + 1, group) if command else self._finite(at, i + 1, group)
+
+    def _predicate_after(self, at: int) -> bool:
+        return self.norms[at + 1] in prepositions() or self.norms[at + 1] in places_alone()
+
     def _lexical(self, at: int, first: int, i: int, group: VerbGroup) -> Chunk | None:
         norm = self.norms[i]
         form = self._verbs.get(norm)
@@ -680,11 +882,21 @@ class Chunker:
         if helped and (form is None or form.form not in ("base",)) and group.modal is None and not group.past:
             form = form if form is not None and form.form in ("base", "past", "participle") else None
             if form is None:
+                if self.norms[first] == "do" and not self._previous() and self.nouns.is_determiner(i + 1):
+                    return Chunk("DO", at, i + 1, _with(group, norm, "unknown", "base"))  # 'do not tighten the screws'
                 return (
                     Chunk("VERB", at, i, _with(group, "do", "other", "s"))
                     if self.norms[first] in ("do", "does")
                     else None
                 )
+        if (
+            form is None
+            and not helped
+            and norm.endswith("s")
+            and self.nouns.is_determiner(i + 1)
+            and self._only_places()
+        ):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "posture", "s"))  # 'behind it rises a goblet'
         if form is None:
             if helped and group.modal is not None:  # 'the cup can', 'you should blarp'
                 return Chunk("BE", at, i, _with(group, "be", "be", "finite"))
@@ -702,10 +914,19 @@ class Chunker:
             return self._unknown_participle(at, i, group)
         found = _with(group, form.lemma, form.kind, form.form)
         end = i + 1
+        phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
+        if phrasal is not None:
+            found, end = _with(group, *phrasal, form.form), end + 1
+            return Chunk("TVERB" if self.nouns.starts(end) else "VERB", at, end, found)
+        if not helped and self._inverts(form.form, i):
+            return Chunk("ADVERB", at, end, norm)
         if helped:
-            if self.norms[first] == "do" and self._previous() in ("", "AND", "COMMA", "THEN", "CUT", "BUT", "SUB"):
-                return Chunk("PUT" if norm not in FIND_VERBS else "FIND", at, end, found)
+            if self.norms[first] == "do" and self._previous() in _JOINT_TYPES | {"", "ADVERB"}:
+                kind = "FIND" if norm in FIND_VERBS else "PUT" if norm in PUT_VERBS or form.kind == "posture" else "DO"
+                return Chunk(kind, at, end, found)
             return self._finite(at, end, found)
+        if norm == "left" and helped and self.nouns.is_determiner(end):
+            return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past"))
         if norm == "left" and self._is_left_behind(i):
             return Chunk("PART", at, end, found)
         if norm == "left" and not self._leaves(i):
@@ -719,13 +940,25 @@ class Chunker:
         ):
             end += self.norms[end] in ("out", "down", "up")
             return Chunk("PUT", at, end, _with(group, norm, "posture", "base"))
+        if (
+            norm in _BEGINNING
+            and self.norms[end] in ("with", "by")
+            and self._previous() in _JOINT_TYPES | {"", "ADVERB"}
+        ):
+            return Chunk("DO", at, end + 1, found)
         if norm in PAST_ONLY:
             return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
         if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
             return Chunk("FIND", at, end, found)
+        if form.form == "past" and form.kind in ("posture", "lean") and self._previous() == "NP" and not helped:
+            subject = self.chunks[-1].value
+            if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
+                return self._finite(at, end, found)  # 'I hung the mirror on the pole'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
+            if not self._previous() and form.form == "past" and is_adjective(norm) and self.nouns.is_noun(end):
+                return None  # 'used tea bags'
             if norm in ("lay", "put", "set") and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT"):
                 return Chunk("PUT", at, end, found)
             if self.nouns.is_noun(i) and self._previous() != "NP":
@@ -744,6 +977,8 @@ class Chunker:
             imperative = subject in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT", "COLON", "SUB", "BUT") or (
                 subject_is_you
             )
+            imperative = imperative or (norm in PUT_VERBS and self.nouns.is_determiner(end) and self._only_places())
+            imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
             if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
@@ -781,7 +1016,38 @@ class Chunker:
             return None
         return self._finite(at, end, found)
 
+    def _only_places(self) -> bool:
+        """Return True if only places stand before in the clause: *to the left of it put …*."""
+        first = len(self.chunks)
+        while first > 0 and self.chunks[first - 1].type not in _JOINT_TYPES:
+            first -= 1
+        types = [chunk.type for chunk in self.chunks[first:]]
+        places = types.count("PREP") + types.count("OF")
+        return bool(types) and types[0] in ("PREP", "ADV") and types.count("NP") == places and not (FINITE & set(types))
+
+    def _inverts(self, form: str, at: int) -> bool:
+        """Return True for the participle of *at its left end is bolted the vice*, before its subject."""
+        if form not in ("past", "participle", "ing") or self._previous() != "BE" or len(self.chunks) < 2:
+            return False
+        if not (self.nouns.is_determiner(at + 1) or self.nouns.number(at + 1) is not None):
+            return False
+        first = len(self.chunks) - 1
+        while first > 0 and self.chunks[first - 1].type not in _JOINT_TYPES:
+            first -= 1
+        before = [chunk.type for chunk in self.chunks[first:-1]]
+        return (
+            bool(before)
+            and before[0] in ("PREP", "ADV")
+            and before.count("NP") <= before.count("PREP") + (before.count("OF"))
+        )
+
     def _finite(self, at: int, end: int, group: VerbGroup) -> Chunk:
+        if (
+            group.lemma in FACE_VERBS | {"come", "walk", "go", "step", "get"}
+            and self.norms[end] == "in"
+            and (not self.nouns.starts(end + 1) or self.norms[end + 1] == "there")
+        ):
+            return Chunk("VERB", at, end + 1, _with(group, "enter", "other", group.form))
         if group.lemma == "look" and self.norms[end] in ("at", "toward", "towards"):
             return Chunk("TVERB", at, end + 1, group)
         stands = (
@@ -794,6 +1060,8 @@ class Chunker:
 
     def _takes_object(self, kind: str, at: int) -> bool:
         if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:
+            return False
+        if self._relator(at) is not None or self._measure(at) is not None:
             return False
         if self.norms[at] in ("left", "right", "up", "down", "back", "forward", "forwards") and not self.nouns.starts(
             at + 1
@@ -810,8 +1078,11 @@ class Chunker:
             len(norm) < 5
             or not norm.endswith(("ed", "ing"))
             or previous not in ("NP", "BE", "COMMA", "AND", "REL", "NOT")
+            or norm in PRONOUNS
         ):
             return None
+        if previous == "NP" and len(self.chunks) > 1 and self.chunks[-2].type == "REL" and norm.endswith("ed"):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past"))
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
@@ -854,7 +1125,11 @@ class Chunker:
         form = self._verbs.get(self.norms[i])
         if form is None:
             return self.norms[i].endswith("ed") and not self.nouns.is_noun(i)
-        return form.form in ("past", "participle") and self.norms[i] not in ("set", "left")
+        if self.norms[i] in ("put", "set", "cut", "hit", "let") and self.norms[at] != "having":
+            return self.nouns.starts(i + 1) or self.norms[i + 1] in prepositions()
+        if self.norms[i] == "left":
+            return self.nouns.is_determiner(i + 1)
+        return form.form in ("past", "participle") and self.norms[i] != "set"
 
     def _goes_on(self, at: int) -> bool:
         norm = self.norms[at]
@@ -883,10 +1158,26 @@ class Chunker:
         """Return a noun phrase, or an adjective phrase."""
         if self._unknown_imperative(at):
             return Chunk("DO", at, at + 1, VerbGroup(self.norms[at], "unknown", "base"))
+        if (
+            not self._previous() and self.norms[at + 1] in _PARTICLES and self.nouns.is_determiner(at + 2)
+            and self.norms[at].isalpha() and self.norms[at] not in DIRECTION_WORDS and not self._relator(at)
+        ):  # fmt: skip
+            return Chunk("DO", at, at + 2, VerbGroup(self.norms[at], "unknown", "base"))  # 'wipe off the oil'
+        if (
+            self.norms[at] == "back"
+            and self._previous() in FINITE | {"PART", "NP"}
+            and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
+        ):
+            return Chunk("ADVERB", at, at + 1, "back")
         found = self.nouns.phrase(at, self._previous())
         if found is None:
             return None
         end, phrase, adjectives = found
+        if self._denied is not None and end - at > 1 and self._is_base(end - 1) and self._predicate_after(end - 1):
+            verb, self.norms[end - 1] = self.norms[end - 1], ","  # 'must the container stand on it'
+            shorter = self.nouns.phrase(at, self._previous())
+            self.norms[end - 1] = verb
+            end, phrase, adjectives = shorter or found
         if (
             phrase is not None
             and not phrase.head
@@ -910,6 +1201,15 @@ class Chunker:
         return Chunk("NP", at, end, phrase)
 
 
+_JOINT_TYPES = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
+_DENIALS = tuple(
+    tuple(phrase.split())
+    for phrase in (
+        "under no circumstances", "at no time", "on no account", "in no case", "by no means", "in no way", "never",
+        "at no point",
+    )
+)  # fmt: skip
+"""Denials that can stand before their clause and turn its words round."""
 PUT_ONLY = word_set("put place keep leave set lay use see find position have cover stack fold roll store")
 _JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
 _SUBORDINATING = {
@@ -918,6 +1218,7 @@ _SUBORDINATING = {
 }  # fmt: skip
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 _ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
+_SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
 _LATERAL = frozenset({"left", "right"})
 _CHOOSE = word_set("choose select pick click locate")
 _AIMS = word_set("left right up down forward forwards backward backwards away upward downward sideways")
@@ -925,6 +1226,20 @@ _NOUNS_TOO = word_set("stand rest set place position face point back front top b
 _HEDGES_OF_PLACES = word_set("about around roughly approximately approx almost nearly")
 """Hedges that belong to the place or the measure after them, and not to the verb."""
 
+_UNREAL = frozenset({"ought", "should", "could", "would", "might"})
+"""Modal verbs that, before *have*, say what was not."""
+_TENDING = {
+    "supposed": "should", "meant": "should", "intended": "should", "allowed": "can", "permitted": "can",
+    "about": "would", "going": "will", "likely": "might", "required": "must",
+}  # fmt: skip
+"""Modal verb that a word between *is* and *to* amounts to: *is allowed to stand*."""
+_BEGINNING = word_set("start begin finish continue proceed end")
+_OTHER_END = {"left": "right", "right": "left", "top": "bottom", "bottom": "top", "front": "back", "back": "front"}
+_PHRASAL = {("make", "out"): ("see", "posture"), ("take", "up"): ("occupy", "transitive")}
+"""Verbs with a particle: the verb and the kind that they amount to."""
+_PARTICLES = word_set("off up down out away over")
+_BREADTHS = word_set("width breadth length")
+_BODY = word_set("hand hands finger fingers thumb thumbs palm fist arm foot feet stride pace")
 _MEASURE_WORDS = HEDGES | frozenset(
     {
         "within",
@@ -944,6 +1259,7 @@ _MEASURE_WORDS = HEDGES | frozenset(
         "just",
         "a",
         "no",
+        "not",
     }
 )
 _MEASURE_WORDS |= {"closer", "nearer", "farther", "further"}

@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 from deixis.grammar.english.entities import Entity, Role, plain_noun
 from deixis.grammar.english.nouns import (
     GENERAL,
+    HOLDERS,
     PARTS,
+    REMOVABLE,
     SUBSTANCES,
     SURFACES,
     SURROUNDINGS,
@@ -18,7 +20,7 @@ from deixis.grammar.english.nouns import (
     VIEWER_WORDS,
     last_word,
 )
-from deixis.grammar.english.references import POLES, Focus, References, Region
+from deixis.grammar.english.references import OPPOSITES, POLES, REGIONS, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
 from deixis.ontology.claims import COLLECTIVE, PLACES
 
@@ -29,6 +31,38 @@ MIN_PAST_OF_STORY = 3
 
 PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
 """Beginning of a relative clause in the past."""
+
+OBLIGED = frozenset({"should", "ought", "shall"})
+REVOKED = re.compile(
+    r"^,?\s*(?:but|though|although|yet)\s+(?:we|i|you|they|he|she|it)\s+"
+    r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$",
+    re.IGNORECASE,
+)
+"""End of a sentence that takes back what it said: *…, but we don't*."""
+UNREAL = re.compile(
+    r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
+    r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather)\b"
+    r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|planned|tried|tries|intends?|intended|"
+    r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
+    r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b",
+    re.IGNORECASE,
+)
+"""Words of a sentence that tells what a person says, wants or tries."""
+LIMITED = re.compile(
+    r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
+    r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b",
+    re.IGNORECASE,
+)
+"""Time outside which a statement need not hold."""
+ELSEWHERE = re.compile(
+    r"\s*at\s+(?:my|our|your|his|her|their|the)\s+(?!own\b)[\w-]+(?:['\u2019]s|s['\u2019])\b[^,.;]*,", re.IGNORECASE
+)
+"""Place of other people at the beginning of a sentence: *at my neighbour's table*."""
+GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
+CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
+"""Words between what should be and what is."""
+MAX_BETWEEN_CLAUSES = 40
+"""Number of characters between two clauses that are contrasted."""
 
 UNARY = frozenset(
     [
@@ -52,7 +86,15 @@ SUPERLATIVES = {
     ("length", 1): "longest", ("length", -1): "shortest", ("width", 1): "widest", ("width", -1): "narrowest",
     ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
 }  # fmt: skip
-RARE = frozenset({"hardly", "rarely", "seldom"})
+SUPPOSED = {
+    "apparently": 0.7,
+    "seemingly": 0.7,
+    "presumably": 0.7,
+    "ideally": 0.7,
+    "preferably": 0.7,
+}
+"""Weights of adverbs that the layout language does not have."""
+RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
 ABSENT = frozenset(["missing", "absent", "gone"])
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 DIRECTIONS = frozenset(
@@ -74,6 +116,10 @@ DIRECTIONS = frozenset(
 EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"}
 """Relations that have an exact reading: *exactly left of*."""
 
+OF_SURFACES = PLACES | {"on", "inside", "at", "along", "across", "near", "around", "row", "circle", "part"} | DIRECTIONS
+"""Relations of things to the surface that they stand on."""
+CONTAINING = frozenset({"contains", "contain", "containing"})
+HOLDING = frozenset({"holds", "hold", "holding"})
 SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
 SUPPORTS = frozenset(
     [
@@ -135,8 +181,9 @@ class Discourse:
     def __init__(self, text: str, sentences: tuple[Sentence, ...], hedges: dict[str, float]) -> None:
         self.text = text
         self.sentences = sentences
-        self.hedges = hedges
+        self.hedges = SUPPOSED | hedges
         self.drafts: list[Draft] = []
+        self.drafted: set[Draft] = set()
         self.told: set[tuple[int, str, str]] = set()
         surface = surface_noun(sentences)
         self.references = References(surface, self._compare, text=text)
@@ -144,8 +191,12 @@ class Discourse:
         self.alternatives = 0
         self.shared: tuple[str, list[Entity]] | None = None  # relation and things of 'share'
         self.how = Qualification((0, 0), 0)
+        self.asked: tuple[int, Entity] | None = None  # sentence and thing of the last question
+        self.introduced: dict[tuple[Span, str, int | None], Entity] = {}  # by their first mention
         self.edge: str | None = None
+        self.end = 0  # of the sentence in the text
         self.condition: str | None = None
+        self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
         tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
         past = sum(tenses)
         self.story = past >= MIN_PAST_OF_STORY and past >= len(tenses) / 2
@@ -154,10 +205,12 @@ class Discourse:
         """Read all sentences; return the drafts of what they state."""
         for number, sentence in enumerate(self.sentences):
             self.references.sentence = number
-            self.references.start = sentence.span[0]
+            self.references.start, self.end = sentence.span
             self.condition = condition_of(sentence)
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
-            if sentence.fragment is not None and not sentence.heading:
+            if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
+                self._ask_about(sentence.fragment)
+            elif sentence.fragment is not None and not sentence.heading:
                 parts.append(sentence.fragment)
             for part in sorted(parts, key=lambda part: part.span[0]):
                 if isinstance(part, NounPhrase):
@@ -170,7 +223,10 @@ class Discourse:
 
     def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
         """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
-        self.how = Qualification(phrase.span, sentence)
+        wished = UNREAL.search(self.text[self.references.start : self.end]) is not None
+        self.how = Qualification(
+            phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished
+        )  # fmt: skip
         for predicate in phrase.predicates:
             if predicate.relation == "row":
                 self.order = predicate.part or self.order
@@ -178,6 +234,9 @@ class Discourse:
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
         if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
+            return
+        if phrase.determiner == "no" and phrase.head:
+            self._nothing(phrase, Clause(phrase, phrase.predicates, phrase.span))
             return
         subject: Entity | None = None
         for part in listed:
@@ -192,6 +251,17 @@ class Discourse:
             if whole is not None:
                 self._say(whole, phrase.predicates, phrase)
 
+    def _ask_about(self, phrase: NounPhrase | None) -> None:
+        """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
+        if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
+            return
+        if phrase.determiner is None and not phrase.plural:
+            return
+        asked = self.references.find(replace(phrase, predicates=()))
+        if asked is not None and asked.role is Role.THING:
+            self.references.recent.insert(0, Focus(asked, [], None, self.references.sentence))
+            self.asked = (self.references.sentence, asked)
+
     def _one_each(self, group: Entity, phrase: NounPhrase) -> None:
         """Read *one at either end*: a member of the group at each."""
         for predicate in phrase.predicates:
@@ -202,6 +272,7 @@ class Discourse:
 
     def _clause(self, clause: Clause, sentence: int) -> None:
         if clause.mood is Mood.QUESTION:
+            self._ask_about(clause.subject)
             return
         modal = clause.modal
         weight = min([self.hedges.get(word, 1.0) for word in clause.hedges] or [1.0])
@@ -217,11 +288,30 @@ class Discourse:
             past=clause.past and not self.story, uncertain=uncertain,
         )  # fmt: skip
         subject = clause.subject
+        if subject is not None and any(member.negated for member in subject.members):
+            self._contrast(clause, subject, sentence)  # 'the glass, not the cup, is on the mat'
+            return
+        if subject is None and self.asked is not None and self.asked[0] == sentence - 1 and clause.predicates:
+            self._say(self.asked[1], clause.predicates, None)  # 'the cups? on the crate'
+            return
         first = len(self.drafts)
-        missing = [p for p in clause.predicates if p.value is not None and p.value.word in ABSENT and p.positive]
+        missing = [
+            p for p in clause.predicates
+            if p.value is not None and p.value.word in ABSENT and p.positive and p.subject_part is None
+        ]  # fmt: skip
         if missing and subject is not None and subject.head and not self.how.past and clause.positive:
             self._absent(subject)
             return
+        if (
+            subject is not None and subject.pronoun in ("anything", "something")
+            and (not clause.positive or any(not p.positive for p in clause.predicates))
+        ):  # fmt: skip
+            predicates = (*clause.predicates, *subject.predicates)
+            subject = replace(subject, pronoun="nothing", predicates=())
+            clause = replace(clause, predicates=tuple(replace(p, positive=True) for p in predicates))
+        if subject is not None and subject.pronoun == "neither" and subject.of is not None:
+            subject = replace(subject, pronoun="both")
+            self.how = replace(self.how, positive=not self.how.positive)
         if subject is None or subject.pronoun == "nothing" or subject.determiner == "no" or (
             subject.members and all(m.determiner == "no" for m in subject.members)
         ):  # fmt: skip
@@ -234,9 +324,22 @@ class Discourse:
             self._count(subject)
             return
         subject = _with_restrictions_of_contents(subject)
+        if not clause.predicates and not clause.choices and not clause.existential:
+            handled = self._introduce(subject)  # 'fold the napkin'
+            if handled is not None:
+                self.references.recent.insert(0, Focus(handled, [], None, sentence))
+            return
         if clause.existential and not clause.predicates and subject.predicates:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
+        whole = self.text[self.references.start : self.end]
+        if (REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)) and positive:
+            self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
+            self.text[self.references.start : self.end]
+        )
+        if limit is not None and self.how.condition is None:
+            self.how = replace(self.how, condition=limit[0].strip(" ,."))
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
         if not predicates and clause.predicates and not clause.existential:
             return
@@ -244,6 +347,9 @@ class Discourse:
             subject.head in PARTS
             and subject.owner is None
             and subject.of is None
+            and not (
+                last_word(subject.head) in REMOVABLE and any(p.arguments or p.relation in PLACES for p in predicates)
+            )
             and self._of_last(predicates, subject)
         ):
             return
@@ -253,6 +359,8 @@ class Discourse:
         entity = self._subject(subject, predicates)
         if entity is None:
             return
+        if modal is None and not self.how.past and clause.mood is Mood.STATEMENT:
+            self._replaces_what_should_be(entity, clause)
         choices = clause.choices
         if choices:
             self.alternatives += 1
@@ -267,6 +375,32 @@ class Discourse:
             self._say(entity, predicates, subject, existential=clause.existential)
         if modal in UNCERTAIN:
             self._alternative_to_the_last(first, entity)
+        if modal in OBLIGED:
+            self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
+        for negated in (False, True):
+            members = tuple(replace(m, negated=False) for m in subject.members if m.negated is negated)
+            if members:
+                phrase = members[0] if len(members) == 1 else replace(subject, members=members)
+                said = tuple(replace(p, positive=not p.positive) if negated else p for p in clause.predicates)
+                self._clause(replace(clause, subject=phrase, predicates=said), sentence)
+
+    def _replaces_what_should_be(self, entity: Entity, clause: Clause) -> None:
+        """Take back *it should be in the drawer* before *but it is on the shelf*."""
+        if self.obliged is None or self.obliged[0].itself is not entity.itself:
+            return
+        _, first, last, end = self.obliged
+        between = self.text[end : clause.span[0]].casefold()
+        if len(between) > MAX_BETWEEN_CLAUSES or not CONTRARY.search(
+            between + self.text[slice(*clause.span)].casefold()
+        ):
+            return
+        for place in range(first, last):
+            if self.drafts[place].subjects == (entity,):
+                how = replace(self.drafts[place].how, uncertain=True, optional=True, weight=0.5)
+                self.drafts[place] = replace(self.drafts[place], how=how)
+        self.obliged = None
 
     def _remains(self, predicate: Predicate, existential: bool) -> bool:
         """Return True for *left* that is the participle of *leave*: *there are two forks left*, *it is left over*."""
@@ -318,14 +452,25 @@ class Discourse:
             found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
             return found[0] if len(found) == 1 else Entity("", members=found) if found else None
         phrase = _with_restrictions_of_contents(phrase)
+        key = (phrase.span, phrase.head, phrase.count)
+        if phrase.head and key in self.introduced:
+            return self.introduced[key]
         known = len(self.references.entities)
         entity = self.references.find(phrase, relation, besides)
         if entity is None:
             return None
+        if phrase.head and phrase.determiner in ("a", "an", None):
+            self.introduced[key] = entity
         new = len(self.references.entities) > known and self.references.entities[-1] is entity
         if entity.role is Role.THING or entity.role is Role.SURROUNDING:
             self._describe(entity, phrase, new)
-        if phrase.predicates and entity.role is not Role.PERSON:
+        rows = tuple(p for p in phrase.predicates if p.relation in ("row", "circle") and not p.arguments)
+        if rows and besides is not None and not entity.plural and not entity.itself.members:
+            self._say(besides, rows, phrase, focus=False)
+            phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in rows))
+        if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
+            self._say(besides, phrase.predicates, phrase, focus=False)
+        elif phrase.predicates and entity.role is not Role.PERSON:
             outer = self.how
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
             if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
@@ -374,12 +519,24 @@ class Discourse:
                 if phrase.head and last_word(phrase.head) not in GENERAL:
                     self._absent(phrase)
             return
-        if clause.modal is not None and subject.pronoun is None:
+        if clause.modal is not None and subject.pronoun is None and last_word(subject.head) not in GENERAL:
+            return
+        known = self.references.earlier(replace(subject, determiner="the")) if subject.head else None
+        inside = all(p.relation in ("on", "inside") for p in predicates)
+        if known is None and subject.head and inside and last_word(subject.head) not in GENERAL:
+            self._absent(subject)
+            return
+        if known is not None and last_word(subject.head) not in GENERAL:
+            self.how = replace(self.how, positive=False)  # 'no glass stands to the left of it' after 'the glasses'
+            self._say(known, tuple(replace(p, positive=True) for p in predicates), None)
             return
         for predicate in predicates:
             arguments = [
                 a for p in predicate.arguments if isinstance(a := self._argument(p, predicate.relation, None), Entity)
             ]
+            if arguments and arguments[0].role is Role.PART and arguments[0].whole is not None:
+                self._add(f"none_{predicate.relation}", (arguments[0].whole,), (), value=arguments[0].noun)
+                continue
             if not arguments or arguments[0].role is Role.SURFACE:
                 if subject.head and last_word(subject.head) not in GENERAL:
                     self._absent(subject)
@@ -462,6 +619,8 @@ class Discourse:
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         relation = predicate.relation
         handler = getattr(self, f"_say_{relation}", None)
+        if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
+            self._found_elsewhere(subject.itself)
         if subject.role is Role.PART and subject.whole is not None:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
                 self._add("pointing", (subject.whole,), (), value=relation)
@@ -469,6 +628,11 @@ class Discourse:
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON):
             return
+        if predicate.subject_part is not None and " " in predicate.subject_part.head:
+            owner, _, part = predicate.subject_part.head.rpartition(" ")
+            if part in PARTS:  # 'with the knife blade facing the plate'
+                named = self.references.earlier(NounPhrase(predicate.subject_part.span, owner, "the"))
+                subject = named or subject
         if predicate.subject_part is not None and relation not in ("pointing", "facing", "open", "closed", "parallel"):
             return  # said of a part: 'whose stick is in the pot'
         if handler is not None:
@@ -516,6 +680,11 @@ class Discourse:
                 self._relate(subject, replace(predicate, arguments=(member,)), others)
             self.how = outer
             return
+        if subject.size == 2 and any(a.pronoun == "other" and a.determiner == "each" for a in predicate.arguments):
+            first, second = subject.leaves()
+            self._pair(first, relation, second, False)
+            self._pair(second, relation, first, False)
+            return
         for phrase in predicate.arguments:
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
@@ -531,13 +700,13 @@ class Discourse:
                 thing = self._argument(member, relation, subject)
                 if thing is not None:
                     found.append(thing)
-        entities = [thing for thing in found if isinstance(thing, Entity)]
+        entities = [_whole(thing) for thing in found if isinstance(thing, Entity)]
         regions = [thing for thing in found if isinstance(thing, Region)]
         others += [e for e in entities if e.role is Role.THING]
         if predicate.arguments and not found:
             return
         if relation.startswith("distance") or predicate.measure is not None:
-            self._distance(subject, predicate, entities, others)
+            self._distance(subject, predicate, entities, others, regions)
             if relation.startswith("distance"):
                 return
         if predicate.degree is Degree.COMPARATIVE and relation in ("near", "far"):
@@ -584,6 +753,8 @@ class Discourse:
                 self._add("on", (subject,), ())
             elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
                 self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
+            elif subject.role is not Role.SURFACE and not swapped:
+                self._add(relation, (subject,), (), value=other.noun)
         elif other.role is Role.SURROUNDING and relation in (
             "pointing",
             "facing",
@@ -638,9 +809,24 @@ class Discourse:
         if ends and (len(ends) > 1 or ends[0].size > 1):
             self._add("between", (subject,), tuple(ends))
 
-    def _distance(self, subject: Entity, predicate: Predicate, entities: list[Entity], others: list[Entity]) -> None:
+    def _distance(
+        self, subject: Entity, predicate: Predicate, entities: list[Entity], others: list[Entity], regions: list[Region]
+    ) -> None:
         measure = predicate.measure
         ends = entities or others[-1:]
+        name_of_bound = {"<": "distance_less", ">": "distance_more"}
+        if measure is not None and regions and not entities and predicate.relation.startswith("distance"):
+            region = regions[0]
+            self._add(
+                name_of_bound.get(measure.bound or "", "distance"), (subject,),
+                () if region.of is None else (region.of,), metres=measure.metres,
+                value=" ".join(filter(None, (region.value, region.term))),
+            )  # fmt: skip
+            return
+        if measure is not None and entities and entities[-1].role is Role.SURROUNDING:
+            name = name_of_bound.get(measure.bound or "", "distance")
+            self._add(name, (subject,), (), value=entities[-1].noun, metres=measure.metres)
+            return
         if measure is None or not ends or ends[-1].role is not Role.THING:
             return
         name = {"<": "distance_less", ">": "distance_more"}.get(measure.bound or "", "distance")
@@ -650,8 +836,10 @@ class Discourse:
         arguments = () if region.of is None else (region.of,)
         if relation == "parallel":
             self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
-        elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching"):
+        elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
             self._add(region.term, (subject,), arguments, value=region.value)
+        elif region.of is not None and region.of.role is Role.THING:
+            self._pair(subject, relation, region.of, False)
         elif region.of is None:
             self._add(relation, (subject,), (), value=" ".join(filter(None, (region.value, region.term))))
 
@@ -706,8 +894,14 @@ class Discourse:
             and last.role is Role.THING
             and self.how.positive
             and (predicate.relation not in ("near", "far"))
+            and not GROUNDS.search(self.text[slice(*predicate.span)])
         ):
+            before = next(f for f in self.references.recent if f.subject is not subject)
+            if before.others and OPPOSITES.get(before.relation or "") == predicate.relation:
+                last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
             self._pair(subject, predicate.relation, last, False)
+            if predicate.measure is not None and last.role is Role.THING:
+                self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
             return
         value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
         if predicate.relation in ("in_front", "behind") and not self.how.positive:
@@ -720,6 +914,8 @@ class Discourse:
         value = predicate.value.word if predicate.value is not None else None
         relation = predicate.relation
         if predicate.degree is Degree.SUPERLATIVE and predicate.value is not None:
+            if subject.itself.members:
+                return  # 'the smallest' of them is one of them
             name = SUPERLATIVES.get((predicate.value.dimension, POLES.get(predicate.value.word, 0)))
             if name is not None:
                 self._add(name, (subject,), ())
@@ -727,7 +923,9 @@ class Discourse:
         if relation in ("colour", "material", "shape", "size") and value is not None and self.how.positive:
             for leaf in subject.leaves():
                 leaf.adjectives.add((relation, value))
-        if relation in ("upside_down", "empty", "open", "closed"):
+        if value in ("nested", "nest", "stacked", "stack") and (subject.itself.members or subject.plural):
+            relation, value = ("nested" if value.startswith("nest") else "stacked"), None
+        elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
         elif value is None or relation == "other" or value in NOT_STATES:
             return
@@ -739,9 +937,32 @@ class Discourse:
         pass
 
     def _say_there(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
-        if not self.how.positive and not self.how.past:
-            subject.itself.absent = True
-            self._add("count", (subject,), (), value="0", how=replace(self.how, positive=True))
+        if self.how.positive or self.how.past:
+            return
+        for leaf in subject.leaves():
+            leaf.absent = True
+            self._add("count", (leaf,), (), value="0", how=replace(self.how, positive=True))
+
+    def _found_elsewhere(self, entity: Entity) -> None:
+        """Take back that a thing is absent: *it isn't here, it is in the trunk*."""
+        entity.absent = False
+        self.drafts = [
+            d for d in self.drafts if not (d.relation == "count" and d.value == "0" and entity in d.subjects)
+        ]
+
+    def _say_follows(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read *followed by the probe*: it is farther on in the direction in which the first was placed."""
+        last = next((d for d in reversed(self.drafts) if subject in d.subjects and d.relation != "count"), None)
+        sides = {"left", "right"} & {last.relation, *(last.value or "").split()} if last is not None else set()
+        ordered = self.order is not None or (last is not None and last.relation == "part")
+        relation = "right" if ordered and "left" in sides else "left" if ordered and "right" in sides else None
+        relation = relation or (last.relation if last is not None and last.relation in ("left", "right") else "next_to")
+        for phrase in predicate.arguments:
+            for member in phrase.members or (phrase,):
+                following = self._introduce(member, "right", subject)
+                if following is not None:
+                    self._pair(following, relation, subject, False)
+                    others.append(following)
 
     def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""
@@ -754,10 +975,16 @@ class Discourse:
                         leaf for leaf in (group.leaves() if group is not None else ()) if leaf is not subject.itself
                     ]
                     self._add(name, (subject,), tuple(rest))
+                elif adjective.degree is Degree.SUPERLATIVE and adjective.word in ("left", "right"):
+                    self._add(f"{adjective.word}most", (subject,), ())
                 elif adjective.dimension == "rank" and adjective.rank is not None:
                     self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
                 elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
                     self._add(adjective.dimension, (subject,), (), value=adjective.word)
+            if phrase.head and phrase.head not in GENERAL and phrase.determiner in ("a", "an"):
+                subject.itself.aliases.add(phrase.head)
+                self.references.renamed.append(subject.itself)
+                subject.mention(self.references.words(phrase))
             if (
                 phrase.head
                 and phrase.head not in GENERAL
@@ -793,19 +1020,49 @@ class Discourse:
                 if states:
                     self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
             elif phrase.head:
+                phrase = self._placed_on(phrase, subject)
                 held = self._introduce(phrase, "with", subject)
                 if held is not None and held.role is Role.THING and not phrase.predicates:
-                    self._hold(subject, held, self.text[slice(*self.how.span)].casefold().split())
+                    self._hold(subject, held, self._words_of_clause())
+
+    def _words_of_clause(self) -> list[str]:
+        """Return the words of the clause; those of the sentence if the clause leaves out the verb of the one before."""
+        words = self.text[slice(*self.how.span)].casefold().split()
+        if {"with", "has", "have", "having", *CONTAINING, *HOLDING}.isdisjoint(words):
+            return self.text[self.references.start : self.end].casefold().split()
+        return words
+
+    def _placed_on(self, phrase: NounPhrase, subject: Entity) -> NounPhrase:
+        """Return *a lamp at each end*, which a thing has, with the thing as what the ends are of."""
+        if subject.role is not Role.THING or not phrase.predicates:
+            return phrase
+        whole = NounPhrase(phrase.span, subject.noun, "the")
+        made = []
+        for predicate in phrase.predicates:
+            own = [a for a in predicate.arguments if a.pronoun == "it"]
+            if (
+                predicate.relation in PLACES | {"each_side", "left", "right"}
+                and (own or not predicate.arguments)
+                and (predicate.relation in PLACES | {"each_side"} or own)
+            ):
+                if self._at_each(predicate) and phrase.count is None and not phrase.plural:
+                    phrase = replace(phrase, count=2, determiner=None, plural=True)
+                predicate = replace(predicate, arguments=(whole,))
+            made.append(predicate)
+        return replace(phrase, predicates=tuple(made))
 
     def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
         """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""
         noun = last_word(subject.noun)
-        if subject.role is Role.SURFACE or noun in SUPPORTS | SURFACES:
+        if subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
             self._pair(held, "on", subject, False)
-        elif noun in VESSELS and not {"holds", "hold", "contains", "contain"}.isdisjoint(words):
+        elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)
         else:
             self._add("near", (held,), (subject,))
+
+    def _say_leftmost(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        self._add("leftmost", (subject,), ())
 
     def _say_share(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         for phrase in predicate.arguments:
@@ -868,21 +1125,37 @@ class Discourse:
         metres: float | None = None,
         how: Qualification | None = None,
     ) -> None:
-        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside", "from"):
+        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside", "from", "as"):
             return
+        if relation == "at":
+            relation = "near"
         if relation == "row" and value is None:
             value = None
         draft = Draft(relation, subjects, arguments, how or self.how, value, metres)
-        if draft not in self.drafts:
+        if draft not in self.drafted:
+            self.drafted.add(draft)
             self.drafts.append(draft)
 
 
 def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
     """Attach to the vessel what follows its contents: *a box of screws on the left*."""
     of = phrase.of
-    if of is None or not of.predicates or last_word(phrase.head) not in VESSELS | GENERAL:
+    if of is None or not of.predicates or last_word(phrase.head) in PARTS | REGIONS:
         return phrase
-    return replace(phrase, of=replace(of, predicates=()), predicates=(*phrase.predicates, *of.predicates))
+    bare = replace(of, predicates=(), span=(of.span[0], max(of.span[0], of.predicates[0].span[0])))
+    return replace(phrase, of=bare, predicates=(*phrase.predicates, *of.predicates))
+
+
+def _whole(entity: Entity) -> Entity:
+    """Return the thing that a part belongs to: *across the rim of the bowl* is across the bowl."""
+    return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
+
+
+def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
+    """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
+    around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
+    bare = all((not p.arguments and p.relation in DIRECTIONS) or p.reversed for p in phrase.predicates)
+    return around and bare
 
 
 def condition_of(sentence: Sentence) -> str | None:
@@ -933,9 +1206,12 @@ def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
 def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
     for argument in predicate.arguments:
         of_place = predicate.relation in PLACES or argument.of is not None
+        if predicate.relation not in OF_SURFACES and not of_place:
+            continue
         for phrase in (*_own_and_members(argument), *_own_and_members(argument.of)):
             noun = last_word(phrase.head)
-            if noun in SURFACES and phrase.determiner not in ("a", "an"):
+            told_apart = any(a.dimension in ("position", "colour", "rank") for a in phrase.adjectives)
+            if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart:
                 counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)
         _count_restrictions(argument, counts)
 

@@ -41,6 +41,7 @@ class Entity:
     absent: bool = False
     born: int = 0  # sentence that introduced it
     indefinite: bool = False
+    aliases: set[str] = field(default_factory=set)  # other nouns for it: 'clock' for 'item 15, a clock'
     written: str = ""  # the noun as first written: 'glasses'
 
     @property
@@ -121,7 +122,9 @@ def _described(leaf: Entity, sharing: list[Entity]) -> str:
     if leaf.group is not None:
         return ""
     others = {pair for other in sharing if other is not leaf for pair in other.adjectives}
-    own = sorted(pair for pair in leaf.adjectives if pair not in others and pair[0] in ("colour", "size", "material"))
+    own = sorted(
+        pair for pair in leaf.adjectives if pair not in others and pair[0] in ("colour", "size", "material", "position")
+    )
     return own[0][1].replace(" ", "_") if own else ""
 
 

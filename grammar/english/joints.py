@@ -10,7 +10,11 @@ from deixis.grammar.english.places import is_place
 from deixis.grammar.english.tree import Adjective, Degree
 
 JOINTS = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
-_SUBORDINATE = frozenset({"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever"})
+_WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
+"""Relations whose object is often a list."""
+_SUBORDINATE = frozenset(
+    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead"}
+)
 PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART", "ADJP", "WITH", "MEASURE"})
 IMPERATIVES = frozenset({"PUT", "FIND", "DO"})
 
@@ -32,6 +36,11 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
     while i < len(chunks):
         if types[i] in JOINTS:
             end, kinds = _run(types, i)
+            verb = _repeated_verb(types, start, i, end)
+            if verb is not None:  # 'the left one holds pens, the right one pencils'
+                again = replace(chunks[verb], span=(chunks[end + 1].span[0], chunks[end + 1].span[0]))
+                chunks = [*chunks[: end + 1], again, *chunks[end + 1 :]]
+                types.insert(end + 1, "TVERB")
             cut = _cuts(chunks, types, start, i, end, kinds, link)
             if cut:
                 if i > start:
@@ -53,6 +62,16 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
     if len(chunks) > start:
         found.append(Segment(tuple(chunks[start:]), link))
     return found
+
+
+def _repeated_verb(types: list[str], start: int, at: int, end: int) -> int | None:
+    """Return the place of the transitive verb that is left out between two noun phrases after a joint."""
+    if types[end : end + 2] != ["NP", "NP"] or types[start] != "NP":
+        return None
+    if end + 2 < len(types) and types[end + 2] not in JOINTS | {"OF"}:
+        return None
+    verbs = [i for i in range(start, at) if types[i] in FINITE]
+    return verbs[0] if len(verbs) == 1 and types[verbs[0]] == "TVERB" else None
 
 
 def _run(types: list[str], at: int) -> tuple[int, set[str]]:
@@ -145,7 +164,28 @@ def _subject_follows(
         return True
     if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
         return not _in_list(chunks, types, start, at, i)
-    return False
+    return kinds == {"AND"} and complete and _verb_left_out(chunks, types, start, at, end)
+
+
+def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
+    """Return True if the verb is left out: *nappies are kept in the drawer and wipes on the shelf*."""
+    if types[start] != "NP" or not chunks[start].value.head or types[at - 1] != "NP" or not chunks[end].value.head:
+        return False
+    while types[end + 1 : end + 3] == ["AND", "NP"]:
+        end += 2
+    if types[end + 1 : end + 2] not in (["PREP"], ["ADV"]) or is_place(chunks[end].value):
+        return False
+    verbs = [i for i in range(start, at) if types[i] in FINITE]
+    places = [i for i in range(start, at) if types[i] == "PREP" and i > verbs[0]] if len(verbs) == 1 else []
+    if len(places) != 1:
+        return False
+    preposition = chunks[places[0]].value.preposition
+    if preposition.relation in _WITH_LISTS and preposition.degree is Degree.PLAIN:
+        return False
+    after = end + 2 if types[end + 1] == "ADV" else end + 3
+    while after < len(types) and types[after] in ("OF", "NP", "PREP", "ADV"):
+        after += 1
+    return after >= len(types) or types[after] in JOINTS
 
 
 def _same_place_again(chunks: list[Chunk], types: list[str], start: int, at: int, preposition: int) -> bool:
@@ -350,12 +390,43 @@ def classify(segment: Segment) -> list[Chunk]:
                 source[end] = bare
                 types[end] = after = "ADJP"
             kind = _kind(source, types, found, kinds, end, after, fronted)
+            if kind == "NJ" and _lists_places(source, found, kinds, end, segment.link):
+                kind = "OJ"
+            if (
+                kind == "NJ"
+                and segment.link == ":"
+                and "COMMA" in kinds
+                and "PREP" in types
+                and (not any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found))
+            ):
+                kind = "OJ"  # a list after a colon
+            if kind == "PJ" and found[-1].type in FINITE:
+                kind = None
             if kind is not None:
                 fronted = fronted or kind == "FJ"
                 value = "or" if "OR" in kinds else "but" if "BUT" in kinds else "and" if "AND" in kinds else ","
                 found.append(Chunk(kind, chunk.start, source[end - 1].end, value, chunk.span))
         i = end
     return found
+
+
+def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: int, link: str) -> bool:
+    """Return True for things with a place each: *garlic in the first bowl, onion in the second, and celery …*."""
+    types = [chunk.type for chunk in found]
+    if (
+        {"PREP", "ADV"}.isdisjoint(types)
+        or types[0] != "NP"
+        or any(kind in FINITE or kind in ("REL", "WITH") for kind in types)
+    ):
+        return False
+    if [chunk.type for chunk in source[at : at + 2]] not in (["NP", "PREP"], ["NP", "ADV"]):
+        return False
+    first, second = found[0].value, source[at].value
+    last = max(i for i, kind in enumerate(types) if kind in ("PREP", "ADV"))
+    if not first.head or not second.head or found[last].value.preposition.relation in _WITH_LISTS:
+        return False
+    listing = "COMMA" in kinds or "OJ" in types or link in (",", ":", ";")
+    return listing or (first.determiner is None and second.determiner is None)
 
 
 def _lists_without_joint(source: list[Chunk], found: list[Chunk], at: int) -> bool:

@@ -326,6 +326,17 @@ VESSELS = frozenset(
 )
 """Nouns of things that hold a substance."""
 
+HOLDERS = frozenset(
+    [
+        "drawer", "pocket", "compartment", "holder", "rack", "basket", "bin", "slot", "pouch", "sleeve", "holster",
+        "crate", "chest", "cupboard", "folder", "envelope", "block", "kit", "hole", "satchel", "purse", "suitcase",
+    ]
+)  # fmt: skip
+"""Nouns of things, other than vessels, that things are inside of."""
+
+REMOVABLE = frozenset({"lid", "cap", "label", "stick", "drawer", "cable", "cord", "strap", "base", "screen"})
+"""Parts that can lie apart from their thing."""
+
 PARTS = frozenset(
     [
         "handle",

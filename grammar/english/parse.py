@@ -12,9 +12,11 @@ from deixis.grammar.english.build import Builder, Built, notes
 from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
 from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
 from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
+from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.phrases import is_known
 from deixis.grammar.english.tokens import LITERAL, MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
-from deixis.grammar.english.tree import Misunderstood, Sentence
+from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
+from deixis.grammar.english.words import APPROXIMATE, HEDGES
 from deixis.grammar.errors import ScriptTimeError
 from deixis.ontology.tbox import Ontology, default_ontology
 
@@ -65,7 +67,10 @@ def parse_english(
     """
     nouns = known_nouns((ontology or default_ontology()).kinds)
     found: list[Sentence] = []
+    lead: tuple[Predicate, ...] = ()
     for raw in sentences(text):
+        if raw.step is None:
+            lead = ()
         if deadline.passed:
             raise ScriptTimeError(f"time limit reached after {len(found)} sentences were read")
         words = words_of(text, (raw.start, raw.end))
@@ -79,16 +84,38 @@ def parse_english(
             part, first = words[first:last], last
             whole = len(words) <= MAX_SENTENCE_WORDS
             place = raw if whole else replace(raw, start=part[0].start, end=part[-1].end)
-            found.append(_sentence(text, place, part, nouns))
+            found.append(_sentence(text, place, part, nouns, () if raw.step is None else lead))
+            if raw.step is None:
+                lead = _place_of_list(text, place, part, nouns, found[-1])
     return tuple(found)
 
 
-def _sentence(text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns) -> Sentence:
+def _place_of_list(
+    text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, sentence: Sentence
+) -> tuple[Predicate, ...]:
+    """Return the place that a line before a list gives to its items: *On the left:*, *Top drawer:*."""
+    ends = words[-1].norm == ":" or sentence.heading
+    if sentence.heading and words[-1].norm == ":":
+        sentence = _sentence(text, replace(raw, heading=False), words, nouns, ())
+    if sentence.fragment is None and len(sentence.clauses) == 1 and sentence.clauses[0].subject is None:
+        return sentence.clauses[0].predicates
+    phrase = sentence.fragment
+    if not ends or phrase is None or sentence.clauses or phrase.predicates or phrase.members:
+        return ()
+    noun = last_word(phrase.head)
+    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES - {"top"} else None
+    return () if relation is None else (Predicate(relation, (phrase,), phrase.span),)
+
+
+def _sentence(
+    text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns, lead: tuple[Predicate, ...]
+) -> Sentence:
     unknown: list[Misunderstood] = []
     foreign = False
     before = notes.set(unknown)
     try:
         assembly = Assembly(text, raw, asks=text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?"))
+        assembly.front = lead
         if not raw.heading and _is_foreign(words):
             foreign = True
             unknown.append(
@@ -96,7 +123,14 @@ def _sentence(text: str, raw: RawSentence, words: list[Word], nouns: KnownNouns)
             )
         elif not raw.heading:
             chunks = Chunker(words, nouns).run()
-            for segment in segments([chunk for chunk in chunks if chunk.type != "ADVERB"]):
+            assembly.hedges = [
+                (chunk.span[0], chunk.value)
+                for chunk in chunks
+                if chunk.type == "ADVERB" and chunk.value in HEDGES - APPROXIMATE
+            ]
+            parts = segments([chunk for chunk in chunks if chunk.type != "ADVERB"])
+            for i, segment in enumerate(parts):
+                assembly.opens_list = i + 1 < len(parts) and parts[i + 1].link == ":"
                 _parse_segment(segment, assembly)
         found = Found((), None, None) if raw.heading or foreign else assembly.finish()
     finally:

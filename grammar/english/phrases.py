@@ -10,6 +10,7 @@ from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.words import (
     ADVERBS,
+    APPROXIMATE,
     ARTICLES,
     COLLECTIVES,
     COLOUR_SHADES,
@@ -27,6 +28,7 @@ from deixis.grammar.english.words import (
     POSSESSIVES,
     PRONOUNS,
     PUT_VERBS,
+    UNITS,
     adjectives,
     degree_of,
     is_adjective,
@@ -139,9 +141,13 @@ class NounChunker:
         after = self.norms[at + 1]
         if after in self._closed or after in ("", ",", "."):
             return False
+        if after in ("right", "left") and self.norms[at + 2] in ("next", "in", "on", "behind", "beside", "by", "at"):
+            return False
         form = self._verbs.get(after)
         if form is not None and form.form in ("ing", "past", "participle") and not self.is_noun(at + 1):
             return False
+        if form is not None and form.form == "ing" and form.kind in ("posture", "lean", "face", "point"):
+            return self._nounish(at + 2) and not self._predicate_follows(at + 1)
         if after in PLACE_NOUNS or self.number(at + 1) is not None or after == "o'clock":
             return True
         if is_adjective(after):
@@ -206,7 +212,7 @@ class NounChunker:
             return True
         if norm in self._verbs:
             return self.is_noun(at)
-        return not norm.endswith("ly") or norm in ("family", "assembly", "jelly", "trolley", "belly", "butterfly")
+        return not norm.endswith("ly") or self._nouns.knows(norm)
 
     def is_noun(self, at: int) -> bool:
         """Return True if the word, which may also be a verb, is a noun here, judged by the words beside it."""
@@ -215,11 +221,7 @@ class NounChunker:
             return False
         if at == 0 and self.norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS and norm not in HEDGES:
             return True  # a name: Holly is …
-        if (
-            norm.endswith("ly")
-            and "-" not in norm
-            and norm not in ("family", "assembly", "jelly", "butterfly", "belly", "lily")
-        ):
+        if norm.endswith("ly") and "-" not in norm and norm not in _LY_NOUNS and not self._nouns.knows(norm):
             return False
         if norm in ("next", "near", "close", "opposite"):
             return False
@@ -240,6 +242,10 @@ class NounChunker:
             or (is_adjective(before) and (form is None or form.form != "s" or before not in _PREDICATIVE))
         )
         if norm == "can" or norm in ("will", "may", "need", "might"):
+            if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
+                follows = self._verbs.get(after)
+                if follows is not None and follows.form == "base" and self._nouns.singular(before)[1]:
+                    return False  # 'the candles can stay'
             return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
         if form is None:
             if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
@@ -253,6 +259,8 @@ class NounChunker:
             return True
         if form.form == "ing":
             if form.kind in ("transitive", "face", "point") and not after_determiner:
+                return False
+            if before == "'s" and form.kind in ("posture", "lean") and not self._nounish(at + 1):
                 return False
             if before in ("with", "of") and not self.starts(at + 1):
                 return True
@@ -270,6 +278,15 @@ class NounChunker:
             norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
         ):
             return False
+        if (
+            at > 1
+            and self.number(at - 1) is not None
+            and self.norms[at - 2] in ("other", "these", "those", "last")
+            and form.form == "base"
+            and form.kind in ("posture", "lean")
+            and self._predicate_follows(at)
+        ):  # 'the other two stand on the tray'
+            return False
         if at and self.number(at - 1) is not None and not (self.norms[at - 1] == "one" and form.form == "s"):
             return True
         if form.lemma in ("lie", "sit", "hang") and form.form in ("base", "s") and not after_determiner:
@@ -278,6 +295,8 @@ class NounChunker:
             return False
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
+        if form.form == "s" and before in (",", "and") and form.lemma in _NAMED_LIKE_THINGS and self._nouns.knows(norm):
+            return True
         if (
             form.form == "s"
             and form.kind in ("posture", "lean")
@@ -295,6 +314,9 @@ class NounChunker:
         after_noun = bool(before) and before not in self._closed and before[0].isalpha() and not is_adjective(before)
         if after_noun:
             plural = self._nouns.singular(before)[1]
+            if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
+                beyond = self.norms[at + 2]
+                return beyond in prepositions() or beyond in places_alone()  # 'the glue sticks go into the box'
             if form.form == "s":
                 return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
             return not plural and not (after in DETERMINERS or after in NUMBERS or after in POSSESSIVES)
@@ -361,6 +383,9 @@ class NounChunker:
         negated = False
         if norms[i] == "not" and self.starts(i + 1):
             negated, i = True, i + 1
+        doubted = not previous and norms[i] in HEDGES - APPROXIMATE and self.number(i + 1) is None
+        if doubted and norms[i + 1] != "any":
+            return at, None, ()  # 'perhaps the fork …' doubts the clause
         while norms[i] in ("only", "just", "exactly") or (norms[i] in HEDGES and norms[i] != "about"):
             if not self.starts(i + 1) or i - at > 2:
                 return at, None, ()
@@ -411,7 +436,8 @@ class NounChunker:
         i, found = self._modifiers(i, determiner is not None or owner is not None or count is not None)
         if count is None:
             number = self.number(i)
-            if number is not None and number == int(number) and norms[i] != "one" and self._nounish(i + 1):
+            unit = norms[i + 1].removesuffix("s") in UNITS
+            if number is not None and number == int(number) and norms[i] != "one" and self._nounish(i + 1) and not unit:
                 count, i = int(number), i + 1
                 i, more = self._modifiers(i, True)
                 found += more
@@ -497,7 +523,8 @@ class NounChunker:
                 ):
                     form = self._verbs.get(after)
                     goes_on = form is None or self.is_noun(later) or form.form in ("participle", "past")
-                    if goes_on and (not is_adjective(after) or self.adjective_before_noun(later)):
+                    noun = not is_adjective(after) or self.adjective_before_noun(later) or is_material_noun(after)
+                    if goes_on and noun:
                         return None
             elif (
                 self.is_noun(at + 1)
@@ -621,6 +648,8 @@ class NounChunker:
 
     def _modifies(self, at: int, determined: bool) -> bool:
         norm, after = self.norms[at], self.norms[at + 1]
+        if norm in _TOOL_ADJECTIVES and not self._nounish(at + 1) and after not in ("one", "ones", "than"):
+            return False
         if norm[:1].isdigit() and "-" in norm:
             return self._nounish(at + 1)
         if not norm or not norm[0].isalpha() or norm in ("there", "here"):
@@ -648,7 +677,12 @@ class NounChunker:
                     "silver",
                 )
             ):
-                if (is_material_noun(norm) and after in ("left", "right")) or self._letter(at + 1) is not None:
+                telegraphic = after in ("upper", "lower", "top", "bottom", "far", "near") and (
+                    self.norms[at + 2] in ("left", "right") and not determined
+                )
+                if (is_material_noun(norm) and (after in ("left", "right") or telegraphic)) or self._letter(
+                    at + 1
+                ) is not None:
                     return False
                 if norm in ("left", "right") and after in ("of", "to", "from"):
                     return False
@@ -725,8 +759,8 @@ class NounChunker:
 
     def _noun_by_position(self, at: int) -> bool:
         before = self.norms[at - 1] if at else ""
-        return (
-            before in DETERMINERS and self.norms[at] in ("orange", "square", "cream", "flat") and before in ("a", "an")
+        return (before in ("a", "an") and self.norms[at] in ("orange", "square", "cream", "flat")) or (
+            before in ("the", "some", "and", "with", "of", ",") and self.norms[at] in ("orange", "cream")
         )
 
     def _joins_adjectives(self, at: int) -> bool:
@@ -774,7 +808,8 @@ class NounChunker:
                 i = compound
                 continue
             norm = norms[i]
-            if norm in ("one", "ones") and not nouns and (modifiers or determiner or owner):
+            favourite = len(nouns) == 1 and not self._nouns.knows(nouns[0]) and norms[i - 1] == nouns[0]
+            if norm in ("one", "ones") and (not nouns or favourite) and (modifiers or determiner or owner):
                 phrase = NounPhrase(
                     self._span(start, i + 1), "", determiner, count, norm == "ones", "one", modifiers, owner=owner,
                     negated=negated,
@@ -913,7 +948,10 @@ class NounChunker:
         norm, after = self.norms[at], self.norms[at + 1]
         if not nouns or not norm.endswith("s") or norm.endswith("ss") or is_known(norm) or self._nouns.knows(norm):
             return False
-        if not (after in prepositions() or after in ARTICLES) or self._nouns.singular(nouns[-1])[1]:
+        if (
+            not (after in prepositions() or after in ARTICLES or after in ("you", "me", "us", "them"))
+            or self._nouns.singular(nouns[-1])[1]
+        ):
             return False
         start = at - len(nouns)
         determined = any(
@@ -986,6 +1024,13 @@ class NounChunker:
 
 
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
+_NAMED_LIKE_THINGS = word_set(
+    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape"
+)
+"""Verbs whose third person is more often the plural of a thing: *cups here, sandwiches there*."""
+_TOOL_ADJECTIVES = frozenset({"lighter", "cooler", "warmer", "shorter"})
+"""Comparatives that are things where no noun follows: *a lighter*."""
+_LY_NOUNS = word_set("family assembly jelly butterfly belly lily supply doily reply")
 _PREDICATIVE = frozenset({"left", "right", "close", "level", "parallel", "open"})
 _ED_NOUNS = word_set("bed shed sled weed seed reed bread thread spread bunkbed daybed flatbed waterbed")
 _ADJECTIVE_NOUNS = word_set("light glass square orange cream double metal wood plastic gold silver round inside main")

@@ -90,12 +90,17 @@ def _sided(
     """Return the predicate of *on each side*, *on the left side*, *in the right direction*, *on the other side*."""
     if kind == "corner":
         return None
+    if kind == "side" and phrase.plural and sides == ("opposite",):
+        return _made(relator, "each_side", arguments, span)
     if kind == "side" and (phrase.determiner in ("each", "either", "both") or (phrase.plural and phrase.count == 2)):
         return _made(relator, "each_side", arguments, span)
     if sides in (("opposite",), ("other",)) or (sides == ("far",) and kind == "side"):
         if arguments and sides != ("far",):
             return _made(relator, "opposite", arguments, span)
         return _made(relator, kind, arguments, span, part=sides[0])
+    if kind == "side" and not sides and phrase.owner is not None and phrase.owner.pronoun == "it":
+        lying = Adjective("sideways", "state", Degree.PLAIN, phrase.span)
+        return _made(relator, "state", (), span, value=lying)
     if kind == "side" and not sides:
         return _made(
             relator,

@@ -70,9 +70,12 @@ def read_english(
     drafts = discourse.read()
     writer = _Writer(text, file, ontology, discourse)
     stated = tuple(fact for draft in drafts for fact in writer.facts(draft))
+    by_sentence: dict[int, list[StatedFact]] = {}
+    for fact in stated:
+        by_sentence.setdefault(fact.sentence, []).append(fact)
     reading = Reading(
         text=text,
-        sentences=tuple(writer.sentence(s, [f for f in stated if f.sentence == i]) for i, s in enumerate(sentences)),
+        sentences=tuple(writer.sentence(s, by_sentence.get(i, [])) for i, s in enumerate(sentences)),
         stated=stated,
         mentions=writer.mentions(),
         absent=tuple(name for entity, name in writer.names.items() if entity.absent),

@@ -6,12 +6,14 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
-from deixis.grammar.english.entities import Entity, Role
+from deixis.grammar.english.entities import Entity, Role, is_one_thing
 from deixis.grammar.english.nouns import (
     GENERAL,
+    GROUPS,
     PAIRED,
     PARTS,
     PEOPLE,
+    REMOVABLE,
     SINGLE_PLURALS,
     SURROUNDINGS,
     VIEWER,
@@ -19,7 +21,10 @@ from deixis.grammar.english.nouns import (
     last_word,
 )
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
+from deixis.grammar.english.words import prepositions
 
+MAX_COUNTED = 1000
+"""Largest number of a noun phrase that is read as so many things."""
 REGIONS = frozenset(
     [
         "corner",
@@ -101,6 +106,9 @@ class References:
     text: str = ""
     surface: Entity | None = None
     doubtful: list[PronounUse] = field(default_factory=list)
+    renamed: list[Entity] = field(default_factory=list)  # entities with aliases
+    _by_last_word: dict[str, list[Entity]] = field(default_factory=dict)
+    _indexed: int = 0  # entities that the index holds
 
     def __post_init__(self) -> None:
         self.viewer = Entity(VIEWER, Role.VIEWER)
@@ -152,6 +160,10 @@ class References:
         if last in PARTS and noun == last and (phrase.owner is not None or phrase.of is not None):
             whole = self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
             return None if whole is None else Entity(noun, Role.PART, whole=whole)
+        if last in PARTS - REMOVABLE and noun != last and phrase.determiner != "a":
+            whole = self._earlier(replace(phrase, head=noun.rpartition(" ")[0], adjectives=(), determiner="the"))
+            if whole is not None:
+                return Entity(last, Role.PART, whole=whole)  # 'the knife blade'
         if phrase.of is not None and last in GENERAL:
             counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
@@ -165,7 +177,11 @@ class References:
 
     def _new(self, phrase: NounPhrase, role: Role) -> Entity:
         entity = Entity(phrase.head, role, born=self.sentence, indefinite=phrase.determiner in ("a", "an", None))
-        entity.adjectives = {(a.dimension, a.word) for a in phrase.adjectives if a.degree is Degree.PLAIN}
+        entity.adjectives = {
+            (a.dimension, a.word)
+            for a in phrase.adjectives
+            if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
+        }
         written = self.text[phrase.span[0] : phrase.span[1]].casefold()
         words = written.replace(",", " ").split()
         count = phrase.count
@@ -173,9 +189,12 @@ class References:
         lump = next((word for word in words if word in SINGLE_PLURALS), None)
         if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
             count = 2
+        if phrase.of is not None and phrase.of.plural and stem in GROUPS:
+            entity.aliases.add(phrase.of.head)
+            self.renamed.append(entity)  # 'a stack of three towels', and later 'the towels'
         if lump is not None and count == 2 and "pair" in words:
             count = None
-        if count is not None and 1 < count <= 1000:
+        if count is not None and 1 < count <= MAX_COUNTED:
             entity.split(count)
         elif phrase.plural:
             entity.plural = True
@@ -209,15 +228,23 @@ class References:
             end = max(end, min(len(said), phrase.of.span[1] - phrase.span[0]))
         return said[:end].strip(" ,;:.").removesuffix("'s")
 
+    def earlier(self, phrase: NounPhrase) -> Entity | None:
+        """Return the earlier object that a definite phrase stands for, or None."""
+        return self._earlier(phrase)
+
     def _earlier(self, phrase: NounPhrase) -> Entity | None:
         """Return the earlier object with the same noun, unless the phrase introduces another one."""
         if phrase.determiner in ("another", "a", "an", "some", "no") or (
             phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
         ):
             return None
-        known = list(reversed(list(self._known())))
-        for entity in sorted(known, key=lambda e: e.noun != phrase.head):  # the same noun before one that contains it
-            if not _same_noun(entity.noun, phrase.head) or _conflicting(entity, phrase):
+        latest_first = self._named_like(phrase.head)
+        if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
+            return several
+        for entity in sorted(
+            latest_first, key=lambda entity: (entity.noun != phrase.head, -_agreement(entity, phrase))
+        ):
+            if not _can_name(phrase.head, entity) or _conflicting(entity, phrase):
                 continue
             if phrase.determiner == "other" and not entity.members:
                 continue
@@ -230,10 +257,34 @@ class References:
                 and any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
             ):
                 entity.split(2)
+            if entity.plural and not entity.members and 1 < (phrase.count or 0) <= MAX_COUNTED:
+                entity.split(phrase.count or 0)  # 'the two corks'
             if entity.members and not phrase.plural and phrase.determiner not in ("each", "every", "all", "both"):
                 return self.member(entity, phrase) or entity
             return entity
         return None
+
+    def _named_like(self, head: str) -> list[Entity]:
+        """Return the known objects whose noun, or another noun for them, has the same last word, the latest first."""
+        for entity in self.entities[self._indexed :]:
+            self._by_last_word.setdefault(last_word(entity.noun), []).append(entity)
+        self._indexed = len(self.entities)
+        found = [
+            *self._by_last_word.get(last_word(head), ()),
+            *(e for e in self.renamed if last_word(head) in e.aliases),
+        ]
+        return [entity.itself for entity in reversed(found) if not entity.absent]
+
+    def _all_of(self, phrase: NounPhrase, latest_first: list[Entity]) -> Entity | None:
+        """Return the single things that a definite plural stands for: *the bins* after a green bin and a blue bin."""
+        named = [e for e in latest_first if _can_name(phrase.head, e) and not _conflicting(e, phrase)]
+        if any(entity.members or entity.plural for entity in named) or phrase.determiner not in DEFINITE | {
+            "both",
+            "all",
+        }:
+            return None
+        kept = named[: phrase.count] if phrase.count is not None else named
+        return Entity("", members=kept[::-1]) if len(kept) > 1 and len(kept) >= (phrase.count or 0) else None
 
     def _known(self) -> Iterator[Entity]:
         exact: list[Entity] = [entity.itself for entity in self.entities if not entity.absent]
@@ -319,7 +370,10 @@ class References:
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
         if word in ("former", "latter"):
-            pair = next((f for f in self.recent if f.subject is not None and f.others), None)
+            pair = next(
+                (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None
+            )
+            pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides)
@@ -333,12 +387,20 @@ class References:
         nouns = re.findall(
             r"\b(?:the|a|an|your|my)\s+((?:[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])", before, re.IGNORECASE
         )
-        if not nouns or len(nouns[-1].split()) > 3:
+        if (
+            not nouns
+            or len(nouns[-1].split()) > 3
+            or not prepositions().keys().isdisjoint(nouns[-1].casefold().split())
+        ):
             return None
         return self.find(NounPhrase(phrase.span, head=nouns[-1].casefold(), determiner="the"))
 
     def _ellipsis(self, phrase: NounPhrase, besides: Entity | None) -> Entity | None:
         group = self.find(phrase.of, None, besides) if phrase.of is not None else None
+        if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
+            contrasted = self._contrasted(phrase)
+            if contrasted is not None:
+                return contrasted
         if group is None and phrase.adjectives:
             colours = {a.word for a in phrase.adjectives if a.dimension == "colour"}
             if colours and (noun := self._last_noun()):  # the blue one, beside the red box
@@ -351,9 +413,11 @@ class References:
                     entity.adjectives = {("colour", c) for c in colours}
                     self.entities.append(entity)
                     return self._seen(entity, phrase)
+        if group is None and (contrasted := self._contrasted(phrase)) is not None:
+            return contrasted
         group = group or self.last_group(besides)
         if group is None or not group.members:
-            return None
+            return self._another_one(phrase, besides)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
             free = [leaf for leaf in group.leaves() if not any(pair[0] == "picked" for pair in leaf.adjectives)]
@@ -361,6 +425,29 @@ class References:
         if found is not None:
             self._picked(found, phrase)
         return found
+
+    def _contrasted(self, phrase: NounPhrase) -> Entity | None:
+        """Return *the front one* beside *the back burner*: the thing of the same noun with the other adjective."""
+        for adjective in phrase.adjectives:
+            if adjective.dimension not in ("position", "size", "height", "length", "rank", "colour"):
+                continue
+            for entity in reversed(list(self._known())):
+                words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
+                if not words or entity.group is not None or entity.members or not entity.noun:
+                    continue
+                if adjective.word in words:
+                    return self._seen(entity, phrase)
+                return self._new(replace(phrase, head=entity.noun, pronoun=None), entity.role)
+        return None
+
+    def _another_one(self, phrase: NounPhrase, besides: Entity | None) -> Entity | None:
+        """Return a new thing with the noun of the subject for *the one leaning against the wall*."""
+        if phrase.pronoun != "one" or not phrase.predicates:
+            return None
+        last = besides or next((f.subject for f in self.recent if f.subject is not None), None)
+        if last is None or last.role is not Role.THING or not last.noun:
+            return None
+        return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)
 
     def _last_noun(self) -> str | None:
         return self.entities[-1].noun if self.entities else None
@@ -372,6 +459,7 @@ class References:
             and OPPOSITES[relation] == last.relation and last.subject is not besides
         ):  # fmt: skip
             return last.others[0]
+        several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
                 if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON):
@@ -379,8 +467,11 @@ class References:
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue
+                if entity.itself.plural and not is_one_thing(entity.written):
+                    several = several or entity
+                    continue
                 return entity
-        return None
+        return several
 
     def _note_doubt(
         self, phrase: NounPhrase, chosen: Entity | None, relation: str | None, besides: Entity | None
@@ -420,15 +511,29 @@ def _same_noun(first: str, second: str) -> bool:
     return bool(short) and long[-len(short) :] == short
 
 
+def _can_name(head: str, entity: Entity) -> bool:
+    """Return True if a noun can name an entity again: its own noun, the end of it, or another noun for it."""
+    words = head.split()
+    return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
+
+
+def _agreement(entity: Entity, phrase: NounPhrase) -> int:
+    """Return the number of adjectives of a phrase that were used for an entity before."""
+    several = phrase.plural and bool(entity.members or entity.plural)
+    return several + sum((a.dimension, a.word) in entity.adjectives for a in phrase.adjectives)
+
+
 def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
+    if entity.members:
+        return False
     for adjective in phrase.adjectives:
-        if adjective.dimension not in ("colour", "material"):
-            continue
         words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
-        if entity.members:
-            continue
-        if words and adjective.word not in words:
+        if adjective.dimension in ("colour", "material", "position", "rank") and words and adjective.word not in words:
             return True
+        if adjective.dimension in ("size", "height", "length") and words:
+            pole = POLES.get(adjective.word)
+            if pole is not None and all(POLES.get(word) == -pole for word in words):
+                return True
     return False
 
 

@@ -8,11 +8,29 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.words import DIRECTION_WORDS, ORDINALS, TYPOS, adjectives, degree_of, word_set
+from deixis.grammar.english.words import (
+    DIRECTION_WORDS,
+    IS_FORMS,
+    ORDINALS,
+    TYPOS,
+    adjectives,
+    degree_of,
+    verb_forms,
+    word_set,
+)
 
+MAX_LABEL_WORDS = 5
+"""Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
 MAX_SENTENCE_WORDS = 400
 """Number of words after which a text without a full stop is cut."""
 
+_PAIRED_DASHES = 2
+_DASHES = frozenset({"-", "\u2013", "\u2014"})
+_STRUCK = re.compile(r"~~[^~\n]+~~|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
+_ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
+_RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
+_CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
+"""Words that deny what follows them, as ``not`` after a comma does."""
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
 LITERAL = "\u02bc"
 """First and last letter, in ``Word.norm``, of a name that is taken as it is: ``left_shoe``, or words in backticks."""
@@ -20,7 +38,8 @@ LITERAL = "\u02bc"
 _WORD = re.compile(
     r"`[^`\n]{1,1000}`|"
     r"(?<!\w)\w[\w-]*?_[\w-]*\w(?!\w)|"  # left_shoe
-    r"\b[wW]/(?:o\b)?|"  # with, without
+    r"\b[wW]/(?:o\b)?|\b(?:[A-Za-z]\.){2,}|"  # with, without
+    r"[^\W\d_]{1,3}\d+\b|"  # codes: M1
     r"[^\W\d_]+(?:['\u2019][^\W\d_]+)*(?:-[^\W_]+(?:['\u2019][^\W\d_]+)*)*"  # words, with apostrophes and hyphens
     r"|\d+(?:[.,:]\d+)*(?:st|nd|rd|th)?(?:-[^\W\d_]+)*"  # numbers, ordinals, 3-level
     r"|['\u2019](?:s|re|m|ll|d|ve)\b"
@@ -123,6 +142,63 @@ def _is_title(line: str) -> bool:
     return "\n" not in line.strip() and len(line.split()) <= 8 and line.rstrip()[-1:] not in (".", "!", "?", ",", ";")
 
 
+def _join_asides(text: str, words: list[Word]) -> None:
+    """Read two dashes as commas, and one dash after a few words without a verb as a colon."""
+    places = [
+        i for i, word in enumerate(words)
+        if word.norm in _DASHES and (word.norm != "-" or text[word.start - 1 : word.start].isspace())
+    ]  # fmt: skip
+    if len(places) == _PAIRED_DASHES:
+        for i in places:
+            words[i].norm = ","
+    elif len(places) == 1 and places[0] <= MAX_LABEL_WORDS:
+        verbs = verb_forms()
+        if not any(word.norm in IS_FORMS or word.norm in verbs for word in words[: places[0]]):
+            words[places[0]].norm = ":"
+
+
+def _without_cleft(words: list[Word]) -> None:
+    """Read *what you see behind the box is a cup* and *all that remains is a cup* without what only introduces."""
+    norms = [word.norm for word in words[:8]]
+    if len(norms) > 4 and norms[0] == "what" and norms[1] in ("you", "we", "i", "one") and "is" in norms[3:]:
+        end = next((i for i in range(2, 5) if norms[i] in ("see", "find", "notice", "have")), None)
+        if end is not None:
+            del words[: end + 1]
+    elif norms[:2] == ["all", "that"] or norms[:2] == ["all", "you"]:
+        be = next(
+            (i for i in range(2, len(norms)) if norms[i] in ("is", "are") and norms[i + 1 : i + 2] != ["left"]), None
+        )
+        if be is not None:
+            words[0].norm, words[0].end = "there", words[be - 1].end
+            del words[1:be]
+
+
+def _deny_contrasts(words: list[Word]) -> None:
+    """Read *rather than*, *instead of* and *let alone* within a sentence as *, not*."""
+    for i in range(len(words) - 2, -1, -1):
+        if words[i].norm == "nothing" and words[i + 1].norm == "but":
+            words[i].norm, words[i].end = "only", words[i + 1].end
+            del words[i + 1]
+    for i in range(len(words) - 2, -1, -1):
+        if words[i].norm in ("anywhere", "everywhere") and words[i + 1].norm in ("except", "but"):
+            words[i].norm, words[i].end = "not", words[i + 1].end
+            del words[i + 1]
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 3]] == ["not", "you", "dare"]:
+            del words[i + 1 : i + 3]
+    for i in range(len(words) - 2, -1, -1):
+        if (words[i].norm, words[i + 1].norm) in _RARELY:
+            words[i].norm, words[i].end = "rarely", words[i + 1].end
+            del words[i + 1]
+    for i in range(len(words) - 4, -1, -1):
+        if [word.norm for word in words[i : i + 2]] == ["all", "but"] and words[i + 3].norm == "of":
+            words[i].norm, words[i].end = "most", words[i + 2].end  # 'all but one of the forks'
+            del words[i + 1 : i + 3]
+    for i in range(1, len(words) - 2):
+        if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
+            words[i].norm, words[i + 1].norm = ",", "not"
+
+
 def words_of(text: str, span: Span) -> list[Word]:
     """Return the words and the punctuation marks of a sentence.
 
@@ -130,9 +206,12 @@ def words_of(text: str, span: Span) -> list[Word]:
     ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
     """
     found: list[Word] = []
+    struck = [match.span() for match in _STRUCK.finditer(text, *span)]
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()
+        if any(first <= start < last for first, last in struck):
+            continue
         norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
         norm = TYPOS.get(norm, norm)
         name = "_".join(raw.strip("`").split()).casefold() if raw[0] == "`" or "_" in raw[1:-1] else ""
@@ -142,12 +221,26 @@ def words_of(text: str, span: Span) -> list[Word]:
         if not raw[0].isalnum() and norm not in _CLITICS:
             if norm in ("and", "at"):
                 found.append(Word(raw, norm, start, end, True))
+            elif raw in _ARROWS:
+                found.append(Word(raw, ":", start, end, False))
+            elif unicodedata.category(raw)[0] in "SMC" and raw not in "<>=":
+                continue  # a pictograph, or a mark of one
+            elif raw == "." and found and found[-1].norm in _ABBREVIATIONS and found[-1].end == start and end < span[1]:
+                continue
             elif raw not in "\"'\u00b4\u201c\u201d\u2018\u2019`*_#~|":
                 found.append(Word(raw, raw, start, end, False))
             continue
         for piece, is_first in _pieces(norm):
             shown = raw[: len(piece)] if is_first else piece
             found.append(Word(shown, piece, start, end, is_first))
+    _join_asides(text, found)
+    _without_cleft(found)
+    _deny_contrasts(found)
+    for i in range(len(found) - 2, -1, -1):
+        if found[i].norm in ("'ve", "have", "has", "'s", "'d") and found[i + 1].norm == "got":
+            found[i].norm = "has" if found[i].norm in ("has", "'s") else "have"
+            found[i].end = found[i + 1].end
+            del found[i + 1]
     for i in range(len(found) - 2, -1, -1):
         if found[i].norm == found[i + 1].norm and found[i].norm in ("to", "the", "is", "a", "of", "on", "in", "and"):
             found[i].end = found[i + 1].end

@@ -111,6 +111,93 @@ IDIOMS = tuple(
         "if needed",
         "if necessary",
         "that is",
+        "e.g.",
+        "i.e.",
+        "etc",
+        "on the one hand",
+        "on the contrary",
+        "on the whole",
+        "on the spot",
+        "on the double",
+        "on the go",
+        "on time",
+        "on second thoughts",
+        "on the safe side",
+        "under the circumstances",
+        "under these circumstances",
+        "under the weather",
+        "in the first place",
+        "in the long run",
+        "in the meantime",
+        "in any case",
+        "in other words",
+        "in no time",
+        "in a hurry",
+        "in a moment",
+        "in the same way",
+        "in a way",
+        "at the same time",
+        "at hand",
+        "at any rate",
+        "at the latest",
+        "at the end of the day",
+        "by all means",
+        "by the book",
+        "between you and me",
+        "between ourselves",
+        "beside the point",
+        "behind the scenes",
+        "behind the times",
+        "above board",
+        "above average",
+        "below average",
+        "over the moon",
+        "over and over",
+        "off the top of my head",
+        "out of the way",
+        "right away",
+        "right off",
+        "to be precise",
+        "to be exact",
+        "as always",
+        "as ever",
+        "as before",
+        "as a rule",
+        "as far as i remember",
+        "as far as i know",
+        "as far as i can see",
+        "if i remember correctly",
+        "believe it or not",
+        "in plain view",
+        "in full view",
+        "for some reason",
+        "in this case",
+        "in that case",
+        "next time",
+        "last but not least",
+        "at rest",
+        "at an angle",
+        "in pairs",
+        "do not forget that",
+        "do not forget to",
+        "remember to",
+        "be careful to",
+        "be sure to",
+        "make sure to",
+        "take care to",
+        "take care that",
+        "care should be taken that",
+        "care must be taken that",
+        "it is best to",
+        "feel free to",
+        "left over",
+        "within reach",
+        "within easy reach",
+        "out of reach",
+        "at eye level",
+        "at a glance",
+        "from above",
+        "seen from above",
     )
 )
 """Fixed phrases that say nothing of places."""
@@ -257,6 +344,12 @@ UNITS = {
     "handbreadth": 0.1,
     "finger": 0.02,
     "hand": 0.1,
+    "thumb": 0.02,
+    "palm": 0.08,
+    "fist": 0.1,
+    "arm": 0.7,
+    "stride": 0.8,
+    "pace": 0.8,
 }
 """Metres of a unit of length, by its singular and its irregular plurals."""
 
@@ -298,6 +391,8 @@ HEDGES = word_set(
     " sometimes maybe perhaps possibly probably likely apparently seemingly presumably always rarely seldom hardly"
     " certainly definitely ideally preferably optionally"
 )
+APPROXIMATE = word_set("about around roughly approximately approx almost nearly")
+"""Hedges of a number or a place, which leave no doubt that the thing is there."""
 ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much well also still already now currently actually again only even both either simply closely"
@@ -306,13 +401,13 @@ ADVERBS = word_set(
     " neatly carefully gently loosely tightly firmly evenly centrally all up down back out off along there here"
     " together apart away nearby itself else instead please kindly basically kinda sorta obviously however therefore"
     " further farther close facedown freely freestanding separately individually alone solely lengthwise sideways"
-    " crosswise squarely least most more less super extremely"
+    " crosswise squarely dead bang smack slap ever least most more less super extremely"
 )
 DEGREE_ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much way well almost nearly partially partly completely fully diagonally vertically horizontally"
     " as about roughly approximately slight mostly even still all clearly kinda mainly only"
-    " vertically super extremely"
+    " vertically super extremely dead bang smack slap"
 )
 
 # Relation words that take an object. The key is the relation's name in the ontology; '-' is no spatial relation.
@@ -322,10 +417,20 @@ stacked: stacked upon
 on: on, upon, onto, atop, on top of, ontop of, on to, over top of
 inside: in, inside, inside of, within, into, in side of
 at: at
-near: near, near to, close to, by, nearby, around by, in the vicinity of, not far from, close by, near by, closed to
+by: by
+near: near, near to, close to, nearby, around by, in the vicinity of, not far from, close by, near by, closed to
 next_to: next to, beside, adjacent to, alongside, along side, along side of, right by, aside, besides, nex to, next
 next_to: to the side of, near to next
-far: far from, far away from, away from, apart from
+each_side: either side of, to either side of, on either side of, on each side of, on both sides of
+each_side: at either side of, at each side of, on opposite sides of, to both sides of
+in_front: this side of, on this side of
+behind: from behind, out from behind, on the far side of, the far side of
+-: depending on, regardless of, in spite of, despite, in case of, thanks to, on behalf of, with regard to
+-: as shown in, as seen in, as described in, as explained in, in the shape of, in the form of, in terms of
+-: clockwise from, counterclockwise from, anticlockwise from, clockwise of
+far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
+near: as close as possible to, as near as possible to
+far: apart from
 in_front: in front of, before, infront of, ahead of, in the front of, at the front of, in from of, in front
 behind: behind, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
 above: above, over, up above
@@ -376,6 +481,7 @@ behind: behind, in back, out back, in the background, beyond
 above: above, overhead, up above
 below: below, down below, underneath
 on: on top
+middle: dead centre, dead center, in dead centre, smack in the middle, bang in the middle, slap in the middle
 top: up top, up high, high up, at top
 beside: beside
 inside: inside, within
@@ -469,7 +575,7 @@ position: inner, leftmost, rightmost, topmost, bottommost, uppermost, lowermost,
 position: righthand, centermost, middlemost, outermost, innermost, foremost, hindmost, inside, outside, opposite
 position: outermost, lefthanded, righthanded, near-side, far-side, overhead, nearest, closest, farthest, furthest, next
 position: closer, nearer, farther, further, adjacent, distant, northern, southern, eastern, western, isolated, close
-position: frontmost, rearmost, backmost
+position: frontmost, rearmost, backmost, extreme
 state: open, opened, closed, shut, empty, full, broken, clean, dirty, wet, dry, lit, unlit, new, old, older, newer
 state: folded, unfolded, rolled, made, unmade, messy, tidy, neat, upright, vertical, horizontal, diagonal, tilted
 state: upside-down, inverted, nested, stacked, empty-handed, visible, hidden, half-open, half-closed, unopened, bare
@@ -527,6 +633,7 @@ _IRREGULAR_DEGREES = {
     "centre": ("middle", Degree.PLAIN),
     "central": ("middle", Degree.PLAIN),
     "rear": ("back", Degree.PLAIN),
+    "extreme": ("far", Degree.PLAIN),
     "gray": ("grey", Degree.PLAIN),
     "larger": ("large", Degree.COMPARATIVE),
     "largest": ("large", Degree.SUPERLATIVE),
@@ -550,6 +657,10 @@ def is_material_noun(word: str) -> bool:
     return word in _MATERIAL_NOUNS
 
 
+_TOOLS = frozenset({"opener", "cleaner", "dryer", "shutter", "hotter"})
+"""Nouns that look like the comparative of an adjective."""
+
+
 @cache
 def degree_of(word: str) -> tuple[str, Degree]:
     """Return the lemma and the degree of an adjective.
@@ -560,6 +671,8 @@ def degree_of(word: str) -> tuple[str, Degree]:
     irregular = _IRREGULAR_DEGREES.get(word)
     if irregular is not None:
         return irregular
+    if word in _TOOLS:
+        return word, Degree.PLAIN
     known = adjectives()
     for ending, degree in (("est", Degree.SUPERLATIVE), ("er", Degree.COMPARATIVE)):
         if word.endswith(ending):
@@ -576,7 +689,11 @@ def degree_of(word: str) -> tuple[str, Degree]:
 
 def is_adjective(word: str) -> bool:
     """Return True for an adjective that the tables hold, in any degree, or that has the ending of one."""
+    if word in _TOOLS:
+        return False
     if word in adjectives() or degree_of(word)[1] is not Degree.PLAIN:
+        return True
+    if word.startswith("un") and word[2:] in adjectives():
         return True
     return word.endswith(("-shaped", "-colored", "-coloured", "-sized", "-looking", "colored", "coloured", "shaped"))
 
@@ -610,11 +727,11 @@ posture: store, bury buries buried buried burying, stick sticks stuck stuck stic
 posture: fit, present, happen, come comes came come coming, stack
 posture: pile, line, perch, house, hide hides hid hidden hiding
 posture: label, use, see sees saw seen seeing, plug, nestle, nest, wedge
-posture: squeeze, drape, spread, fold, roll, roll, roost
+posture: squeeze, drape, throw throws threw thrown throwing, sprinkle, pour, spread, fold, roll, roll, roost
 posture: extend, run runs ran run running, start, begin begins began begun beginning, end, look, appear, seem, occur
 posture: shove, jam, press, center, centre, space, scatter, group, fasten, connect, link, tie, drop, serve, slide, hook
 posture: suspend, surround, cover, associate, align, angle, pair, connect, join, leave, turn, wall-mount, embed, display
-posture: flank, base, raise, lift, tie
+posture: base, raise, lift, tie
 posture: affix, hinge, anchor, glue, screw, bolt, secure
 posture: nail, tape, strap, wrap, lift, drag, raise, build builds built built building
 posture: fall falls fell fallen falling
@@ -633,11 +750,16 @@ other: start, help, look, walk, enter, approach, turn
 other: come comes came come coming, want, like, say says said said saying, think thinks thought thought thinking, try
 other: eat eats ate eaten eating, drink drinks drank drunk drinking, write writes wrote written writing, wash, let, take
 other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
+other: follow
 other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, see, notice
 other: ignore, disregard, skip, exclude
 other: choose chooses chose chosen choosing, find, select, pick, locate, identify, click, get gets got got getting, grab
 other: spot, hit hits hit hit hitting, search, situate
 other: balance, wrap, slide slides slid slid sliding, bring brings brought brought bringing
+posture: sleep sleeps slept slept sleeping, poke, peek, peep, dangle, sprawl, curl, coil, snake, loom, tower, doze
+posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range, reside, protrude, balance
+posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
+transitive: encircle, straddle
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
 TRANSITIVE_RELATIONS = {
@@ -659,6 +781,10 @@ TRANSITIVE_RELATIONS = {
     "display": ("with", False),
     "wear": ("with", False),
     "surround": ("around", False),
+    "encircle": ("around", False),
+    "straddle": ("across", False),
+    "occupy": ("inside", False),
+    "fill": ("inside", False),
     "enclose": ("around", False),
     "flank": ("each_side", False),
     "block": ("in_front", False),
@@ -723,11 +849,17 @@ def verb_forms() -> dict[str, VerbForm]:
             lemma = parts[0]
             forms = dict(zip(("s", "past", "participle", "ing"), parts[1:], strict=False))
             for form, regular in (("base", lemma), *_regular(lemma).items()):
+                if lemma in _ONLY_PARTICIPLES and form in ("base", "s"):
+                    continue
                 word = forms.get(form, regular) if form != "base" else lemma
                 found.setdefault(word, VerbForm(lemma, kind, form))
     for lemma in sorted(PUT_VERBS | FIND_VERBS):
         found.setdefault(lemma, VerbForm(lemma, "posture", "base"))
     return found
+
+
+_ONLY_PARTICIPLES = word_set("clip clamp ring tower string range coil slip lower fill wait stow")
+"""Verbs whose plain forms are nouns or adjectives more often."""
 
 
 def _regular(lemma: str) -> dict[str, str]:

@@ -35,12 +35,42 @@ PART, END, MIDDLE = (
 )
 
 
+MIN_SUPPORTED = 4
+"""Number of boxes on a box from which it is taken as the surface that they stand on."""
+MIN_SUPPORTED_SHARE = 0.6
+"""Share of the other boxes that stand on it."""
+
+
+def supporting_box(boxes: Array) -> int | None:
+    """Return the index of the box that most others of n boxes (n, 2, 3) stand on, such as a tray; None without one.
+
+    A box stands on another if its centre is within the other's outline and its underside is not below the other's.
+    """
+    if len(boxes) <= MIN_SUPPORTED or boxes.shape[2] < 3:
+        return None
+    low, high = boxes[:, 0], boxes[:, 1]
+    middle = (low + high) / 2
+    within = ((middle[None, :, :2] > low[:, None, :2]) & (middle[None, :, :2] < high[:, None, :2])).all(axis=2)
+    flat = high[:, None, 2] <= middle[None, :, 2]
+    stands = within & flat & (low[None, :, 2] >= low[:, None, 2]) & ~np.eye(len(boxes), dtype=bool)
+    counts = stands.sum(axis=1)
+    best = int(counts.argmax())
+    held = int(counts[best])
+    return best if held >= MIN_SUPPORTED and held >= MIN_SUPPORTED_SHARE * (len(boxes) - 1) else None
+
+
 def lean_on_surface(boxes: Array) -> Array:
     """Return the lean of n boxes (n, 2, d) on the surface that holds them, shape (n, 2), in [0, 1].
 
-    The surface is their common bounding box with a margin of half of their mean spacing on every side.
+    The surface is the box that most others stand on. Without one, it is their common bounding box with a margin of half
+    of their mean spacing on every side.
     """
     low, high = boxes[:, 0, :2], boxes[:, 1, :2]
+    support = supporting_box(boxes)
+    if support is not None:
+        before, after = np.maximum(low - low[support], 0.0), np.maximum(high[support] - high, 0.0)
+        held: Array = np.clip(before / np.maximum(before + after, 1e-9), 0.0, 1.0)
+        return held
     least, most = low.min(axis=0), high.max(axis=0)
     margin = np.maximum((most - least) / (2 * len(boxes)), 1e-9)
     before, after = low - (least - margin), (most + margin) - high

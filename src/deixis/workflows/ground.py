@@ -15,10 +15,13 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.learning.scene_evidence import conflict_notes, graph_evidence, shortlisted_evidence, viewpoint_notes
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
@@ -27,6 +30,7 @@ from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.places import supporting_box
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.memory_budget import (
     DEFAULT_MEMORY_LIMIT,
@@ -159,6 +163,15 @@ class GroundingRequest:
         return Implications(self.graph, min(TIME_LIMIT, self.due.share(CONFLICT_SHARE).left))
 
     @cached_property
+    def surface(self) -> tuple[str, str] | None:
+        """Word of a text for what its things stand on, and the perceived thing that this is; None without one."""
+        name = self.script.reading.surface if self.script.reading is not None else None
+        if name is None or name in self.graph.nodes or self.scene.unit == "px":
+            return None
+        support = supporting_box(self.scene.boxes)
+        return None if support is None else (name, self.scene.ids[support])
+
+    @cached_property
     def conflict(self) -> Conflict | None:
         """The facts that cannot hold together, as few as there are, where the script contradicts itself.
 
@@ -194,8 +207,11 @@ class GroundingRequest:
         weights = self.meaning.weights if self.sizes else replace(self.meaning.weights, sizes=0.0)
         return replace(self.meaning, graded=self.meaning.graded and not self.literal, weights=weights)
 
-    def evidence(self, scene: Scene) -> Evidence:
-        """Return the evidence for which thing each name refers to, in the scene as seen from one side."""
+    def evidence(self, scene: Scene, keep_surface_free: bool = True) -> Evidence:
+        """Return the evidence for which thing each name refers to, in the scene as seen from one side.
+
+        ``keep_surface_free`` lets no name but that of the surface be the thing that the others stand on.
+        """
         if self.shortlisted:
             known = shortlisted_evidence(
                 self.graph, scene, self.script.ontology, self.effective_meaning, self.memory_limit, self.due
@@ -210,6 +226,9 @@ class GroundingRequest:
             deadline=self.due,
             claims=self.script.claims,
         )
+        if self.surface is not None and keep_surface_free:
+            others = np.array([thing != self.surface[1] for thing in known.scene.nodes])
+            known = replace(known, allowed=known.allowed & others[None, :])
         return replace(known, memory_limited=memory_limited, consistent=self._consistent)
 
     @cached_property
@@ -298,9 +317,23 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
             if side is None:
                 engine = engine_named(request.engine, select)
                 found = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction).noting(notes)
+                if request.surface is not None and not found.matches:
+                    known = request.evidence(request.scene, keep_surface_free=False)
+                    found = ground_evidence(known, engine, deadline, contradiction).noting(notes)
             else:
                 found = ground_from_sides(request.evidence, side, request.engine, select, deadline, contradiction)
+    if request.surface is not None:
+        name, thing = request.surface
+        others = {one: match for one, match in found.matches.items() if match.perceived != thing}
+        found = replace(found, matches=others | {name: _surface_match(name, thing)})
     return replace(found, scene=request.scene)
+
+
+def _surface_match(name: str, thing: str) -> Match:
+    """Return the match of the surface: it is the only thing that the others stand on."""
+    return Match(
+        object=name, perceived=thing, score=1.0, similarity=1.0, decided=True, alternatives=(), probability=None
+    )
 
 
 def _contradiction(request: GroundingRequest) -> tuple[str, ...]:

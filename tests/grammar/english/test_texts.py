@@ -1,0 +1,89 @@
+"""Texts in many voices with the facts that they state, and sentences that must not become facts."""
+
+from pathlib import Path
+
+import pytest
+from bench_english import Score, written_facts, written_texts, written_traps
+
+from deixis.grammar.english.reader import read_english
+from deixis.ontology.claims import Claim
+
+TEXTS = Path(__file__).parent / "texts"
+MIN_FOUND, MIN_RIGHT = 0.85, 0.85
+
+
+@pytest.mark.parametrize(
+    "file", sorted(path for path in TEXTS.glob("*.txt") if path.stem != "traps"), ids=lambda path: path.stem
+)
+def test_most_stated_facts_are_found_and_right(file: Path) -> None:
+    score = Score()
+    for text in written_texts(file):
+        score.add(text)
+    assert score.found >= MIN_FOUND * score.stated
+    assert score.right >= MIN_RIGHT * score.told
+
+
+def test_no_trap_becomes_a_fact() -> None:
+    assert list(written_traps(TEXTS / "traps.txt")) == []
+
+
+def test_notation_of_facts_reads_signs_parts_and_names() -> None:
+    first, second = written_facts("not corner:far left(lamp, desk); ~between(a cup, jar, pot)")
+    assert (first["negated"], first["part"], first["object"]) == (True, "far left", ["desk"])
+    assert (second["asserted"], second["subject"], second["object"]) == (False, "a cup", ["jar", "pot"])
+
+
+def asserted(text: str) -> list[str]:
+    """Return the facts that a text asserts, without counts, colours and sizes."""
+    reading = read_english(text).reading
+    assert reading is not None
+    minor = ("count(", "colour(", "size(", "material(", "contents(", "kind(")
+    return [str(fact.content) for fact in reading.stated if fact.asserted and not str(fact.content).startswith(minor)]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Plate centre, fork left of the plate.", ["middle(plate)", "left(fork, plate)"]),
+        ("Around the jar are arranged two nuts.", ["around(nut_1, jar)", "around(nut_2, jar)"]),
+        ("The chair on which the coat hangs faces the jar.", ["on(coat, chair)", "facing(chair, jar)"]),
+        ("The glue is behind the pot rather than next to it.", ["behind(glue, pot)", "not next_to(glue, pot)"]),
+        ("The tape should be in the box, but it is under the box.", ["under(tape, box)"]),
+        ("If there is a lemon, put it on the saucer.", []),
+        ("Perhaps the cup is behind the jug.", []),
+        ("Under no circumstances must the jar stand on the box.", ["not on(jar, box)"]),
+        ("There isn't anything under the napkin.", ["none_under(napkin)"]),
+        ("Spoons are kept in the jar and forks in the box.", ["inside(spoons, jar)", "inside(forks, box)"]),
+        ("The left box holds pens, the right one pencils.", ["inside(pens, left_box)", "inside(pencils, right_box)"]),
+        ("On the left:\n- a cup\n- a jug, behind the cup\n",
+         ["part(cup, 'left')", "behind(jug, cup)", "part(jug, 'left')"]),
+        ("To the left of the pot put the jug.", ["left(jug, pot)"]),
+        ("The pot is flanked by two cups.", ["each_side(cup_1, pot)", "each_side(cup_2, pot)"]),
+        ("I've got the jar – my best one – behind the pot 🍵.", ["behind(jar, pot)"]),
+        ("The cup ~~on the tray~~ is next to the jug.", ["next_to(cup, jug)"]),
+        ("A stack of three towels is on the stool. A brush lies on the towels.",
+         ["on(stack, stool)", "on(brush, stack)"]),
+        ("The cup is on its own saucer.", ["on(cup, saucer)"]),
+        ("The cup, not the jug, is on the box.", ["on(cup, box)", "not on(jug, box)"]),
+        ("And the knife? It lies behind the bowl.", ["behind(knife, bowl)"]),
+        ("Neither the fork nor the knife is behind the bowl.", ["not behind(fork, bowl)", "not behind(knife, bowl)"]),
+    ],
+)  # fmt: skip
+def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[str]) -> None:
+    assert asserted(text) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"),
+    [
+        ("The jar is a hand's width from the pot.", 0.1),
+        ("The jar is half a metre from the pot.", 0.5),
+        ("The jar is approx. 40 cm to the right of the pot.", 0.4),
+        ("The jar stands no closer than 10 cm to the pot.", 0.1),
+    ],
+)
+def test_lengths_are_read_as_they_are_spoken(text: str, metres: float) -> None:
+    reading = read_english(text).reading
+    assert reading is not None
+    claims = [fact.content for fact in reading.stated if isinstance(fact.content, Claim)]
+    assert [claim.metres for claim in claims if claim.metres is not None] == [metres]
