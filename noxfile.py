@@ -16,6 +16,15 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session(python=["3.11", "3.12"])
+def types(session: nox.Session) -> None:
+    """Check the types with mypy and pyright in an environment made from the lock."""
+    session.install("--require-hashes", "-r", "requirements.lock")
+    session.install("--no-deps", "--no-build-isolation", "--editable", ".")
+    session.run("mypy")
+    session.run("basedpyright", "--pythonpath", f"{session.bin}/python")
+
+
+@nox.session(python=["3.11", "3.12"])
 def wheel(session: nox.Session) -> None:
     """Install the wheel with all extras, as a user does, and run the demo."""
     session.install(".[all]")

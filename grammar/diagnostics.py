@@ -32,7 +32,18 @@ MAX_NAME_SEARCHED = 200  # maximum length in characters of a name that is search
 
 
 def bad_token(token: Token) -> StatementError:
-    """Return the error for a token that is not allowed anywhere in a script."""
+    """Return the error for a token that is not allowed anywhere in a script.
+
+    Parameters
+    ----------
+    token
+        The token.
+
+    Returns
+    -------
+    StatementError
+        The error, which is not raised.
+    """
     if token.type == "UNKNOWN":
         character, where = token[0], source_of(token)
         where = replace(where, end_column=where.column + 1)
@@ -55,7 +66,24 @@ def bad_token(token: Token) -> StatementError:
 
 
 def unexpected(tokens: list[Token], at: int, accepts: set[str], draft: Draft) -> StatementError:
-    """Return the error for a statement in which the parser does not accept token number ``at``."""
+    """Return the error for a statement in which the parser does not accept a token.
+
+    Parameters
+    ----------
+    tokens
+        Tokens of the statement.
+    at
+        Position of the token.
+    accepts
+        Terminals that the parser accepts there.
+    draft
+        The script so far, whose names may be suggested.
+
+    Returns
+    -------
+    StatementError
+        The error, which is not raised.
+    """
     if tokens[0].type == "_LAYOUT":
         found = f", not '{shortened(tokens[at])}'" if at < len(tokens) else ""
         hint = 'as in: layout dinner "A dinner" seen from chair'

@@ -37,13 +37,37 @@ class Draft:
     _relations: dict[str, Relation] = field(default_factory=dict)
 
     def nearest(self, word: str, known: list[str]) -> str | None:
-        """Return the known word that resembles ``word`` most; None when more problems were found than are shown."""
+        """Return the known word that resembles a word most.
+
+        Parameters
+        ----------
+        word
+            The word.
+        known
+            Known words.
+
+        Returns
+        -------
+        str or None
+            The word, or None if none resembles it, or more problems were found than are shown.
+        """
         if len(self.problems) >= MAX_PROBLEMS_SHOWN or len(word) > MAX_COMPARED_CHARACTERS:
             return None
         return nearest(word.casefold(), known)
 
     def relation(self, phrase: str) -> Relation:
-        """Return the relation that a phrase stands for; the lexer has checked that there is one."""
+        """Return the relation that a phrase stands for; the lexer has checked that there is one.
+
+        Parameters
+        ----------
+        phrase
+            A phrase that the lexer has found to be one of a relation.
+
+        Returns
+        -------
+        Relation
+            The relation.
+        """
         found = self._relations.get(phrase)
         if found is None:
             found = self._relations[phrase] = self.ontology.relations.by_word[plain_phrase(phrase)]
@@ -66,7 +90,20 @@ class Draft:
         return {plain_phrase(word): weight for word, weight in self.ontology.hedges.items()}
 
     def grow(self, more: int, source: Source) -> None:
-        """Count facts before they are created; raise StatementError above ``MAX_FACTS``."""
+        """Count facts before they are created.
+
+        Parameters
+        ----------
+        more
+            Number of further facts.
+        source
+            Place of the statement.
+
+        Raises
+        ------
+        StatementError
+            If the script would have more than ``MAX_FACTS`` facts.
+        """
         if self.size + more > MAX_FACTS:
             raise StatementError(
                 source, f"a script must state at most {MAX_FACTS:,} facts; this statement exceeds that"
@@ -74,9 +111,26 @@ class Draft:
         self.size += more
 
     def quality(self, word: str, source: Source) -> tuple[Kind | None, Colour | None]:
-        """Return the kind and the colour that a word stands for; one of them may be None.
+        """Return the kind and the colour that a word stands for.
 
-        A plural such as 'forks' stands for its kind. Raises StatementError for a word that stands for neither.
+        A plural such as 'forks' stands for its kind.
+
+        Parameters
+        ----------
+        word
+            The word.
+        source
+            Its place.
+
+        Returns
+        -------
+        tuple
+            Kind and colour; one of them may be None.
+
+        Raises
+        ------
+        StatementError
+            If the word stands for neither.
         """
         colours = self.ontology.colours
         for form in (word, *singulars(word)):
@@ -93,7 +147,20 @@ class Draft:
         raise StatementError(source, message, hint, whole)
 
     def paint(self, subjects: tuple[Mention, ...], colour: Colour) -> None:
-        """Record a declared colour; raise StatementError for an object that was declared in another colour before."""
+        """Record a declared colour.
+
+        Parameters
+        ----------
+        subjects
+            The objects.
+        colour
+            Their colour.
+
+        Raises
+        ------
+        StatementError
+            If an object was declared in another colour before.
+        """
         for mention in subjects:
             for name in mention.names:
                 before = self.coloured.setdefault(name, colour)
@@ -102,7 +169,20 @@ class Draft:
                     raise StatementError(mention.source, message, "an object has one colour: state the main one")
 
     def declare(self, subjects: tuple[Mention, ...], kind: Kind) -> None:
-        """Record a declared kind; raise StatementError for an object that was declared as another kind before."""
+        """Record a declared kind.
+
+        Parameters
+        ----------
+        subjects
+            The objects.
+        kind
+            Their kind.
+
+        Raises
+        ------
+        StatementError
+            If an object was declared as another kind before.
+        """
         kinds = self.ontology.kinds
         for mention in subjects:
             for name in mention.names:

@@ -94,5 +94,18 @@ class StatementError(Exception):
 
 
 def shortened(name: str, limit: int = 60) -> str:
-    """Return a name or phrase for a message, cut to ``limit`` characters."""
+    """Shorten a name or phrase for a message.
+
+    Parameters
+    ----------
+    name
+        The name.
+    limit
+        Maximum number of characters.
+
+    Returns
+    -------
+    str
+        The beginning of the name.
+    """
     return name if len(name) <= limit else name[: limit - 1] + "…"

@@ -27,6 +27,11 @@ def read_text(path: Path, shown: str, lenient: bool = False) -> str:
     lenient
         Decode bytes that are not UTF-8 as the replacement character instead of raising an error.
 
+    Returns
+    -------
+    str
+        The text.
+
     Raises
     ------
     ScriptFileError
@@ -67,10 +72,27 @@ class Includes:
     seen: set[Path] = field(default_factory=set)
 
     def find(self, path: str, beside: Path, source: Source) -> Path | None:
-        """Return the real path of an included file, or None if it was read before.
+        """Return the real path of an included file.
 
-        ``beside`` is the folder of the including file. Raises StatementError for a path outside the script's folder,
-        a file that includes itself, and more or deeper includes than the limits allow.
+        Parameters
+        ----------
+        path
+            Path as the script writes it.
+        beside
+            Folder of the including file.
+        source
+            Place of the statement.
+
+        Returns
+        -------
+        Path or None
+            The path, or None if the file was read before.
+
+        Raises
+        ------
+        StatementError
+            If the path is outside the script's folder, a file includes itself, or there are more or deeper includes
+            than the limits allow.
         """
         if not path.strip():
             raise StatementError(source, "an include needs a file name")

@@ -32,6 +32,18 @@ def format_script(script: Script) -> str:
 
     Formatting the result again changes nothing.
 
+    Parameters
+    ----------
+    script
+        A parsed script.
+
+    Returns
+    -------
+    str
+        The text, with its comments, and a line end at its end.
+
+    Examples
+    --------
     >>> from deixis.grammar.parser import parse_script
     >>> print(format_script(parse_script("left(salad fork, the plate); not on(napkin, plate)  # never")), end="")
     salad_fork left of plate
@@ -109,7 +121,18 @@ class StatementWriter:
         self._written: dict[str, str] = {}
 
     def write(self, statement: Statement) -> str:
-        """Return the statement on one line, without a line end."""
+        """Return the statement on one line, without a line end.
+
+        Parameters
+        ----------
+        statement
+            The statement.
+
+        Returns
+        -------
+        str
+            The line.
+        """
         match statement:
             case Header(name, title, viewpoint, _, surface):
                 on = f"on {self.name(surface)}" if surface else None
@@ -179,7 +202,18 @@ class StatementWriter:
         return value if value.isdecimal() and 1 <= len(value) <= 2 and value[0] != "0" else f'"{value}"'
 
     def name(self, name: str) -> str:
-        """Return the name, quoted if it would not be read back unchanged."""
+        """Quote a name if it would not be read back unchanged.
+
+        Parameters
+        ----------
+        name
+            The name.
+
+        Returns
+        -------
+        str
+            The name as a script writes it.
+        """
         written = self._written.get(name)
         if written is None:
             written = name if self._language.reads_as_name(name) else f'"{name}"'
@@ -223,6 +257,18 @@ def layout_script(layout: LayoutConcept, ontology: Ontology) -> str:
     """Return a layout as a script in canonical form, one fact per line.
 
     Reading the script gives the same facts, kinds, colours and header.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    ontology
+        Words of the language.
+
+    Returns
+    -------
+    str
+        The text of the script.
     """
     lines = _Lines()
     statements = tuple(_statements(layout, ontology, lines))

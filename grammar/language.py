@@ -28,7 +28,23 @@ class NoLexer(Lexer):
         pass
 
     def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
-        """Raise NotImplementedError: lark never calls it."""
+        """Raise NotImplementedError: lark never calls it.
+
+        Parameters
+        ----------
+        lexer_state, parser_state
+            States of lark.
+
+        Yields
+        ------
+        Token
+            Nothing.
+
+        Raises
+        ------
+        NotImplementedError
+            Always.
+        """
         raise NotImplementedError("tokens come from the scanner")
 
 
@@ -38,7 +54,18 @@ class KeepUnusedTerminals(PostLex):
     always_accept = TERMINALS_WITHOUT_RULE
 
     def process(self, stream: Iterator[Token]) -> Iterator[Token]:
-        """Return the tokens unchanged."""
+        """Return the tokens unchanged.
+
+        Parameters
+        ----------
+        stream
+            The tokens.
+
+        Yields
+        ------
+        Token
+            A token.
+        """
         return stream
 
 
@@ -51,17 +78,50 @@ class Language:
     phrase_starts: frozenset[str]  # words that begin a longer relation phrase: 'upper', 'to', 'in front'
 
     def reads_as_name(self, text: str) -> bool:
-        """Return True if the unquoted text is read as a name of exactly this spelling, also before a relation."""
+        """Say whether an unquoted text is read as a name of exactly this spelling, also before a relation.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
         return plain_phrase(text) not in self.phrase_starts and self.is_name_token(text)
 
     def is_name_token(self, text: str) -> bool:
-        """Return True if the unquoted text, alone, is one NAME token of this spelling, with blanks as underscores."""
+        """Return True if the unquoted text, alone, is one NAME token of this spelling, with blanks as underscores.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
         found = list(self.scanner.tokens(text))
         return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text.replace(" ", "_")
 
 
 def language_of(ontology: Ontology) -> Language:
-    """Return the language with the words of an ontology; it is cached by these words."""
+    """Return the language with the words of an ontology; it is cached by these words.
+
+    Parameters
+    ----------
+    ontology
+        The ontology.
+
+    Returns
+    -------
+    Language
+        The language: its lexer and its parser.
+    """
     return _build(
         tuple(ontology.relations.by_word),
         tuple(plain_phrase(hedge) for hedge in ontology.hedges),

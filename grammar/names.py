@@ -38,12 +38,36 @@ RELATING_TERMINALS = frozenset({"RELATION", "IS", "VERB"})
 
 
 def is_also_noun(token: Token) -> bool:
-    """Return True for a function word that can also name a thing: a watering can."""
+    """Say whether a function word can also name a thing: a watering can.
+
+    Parameters
+    ----------
+    token
+        The token of the word.
+
+    Returns
+    -------
+    bool
+        True if it can.
+    """
     return token.type == "FUNCTION" and token.casefold() in NOUNS_TOO
 
 
 def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
-    """Return True if word number ``at`` is reserved, unless it is the only word that can relate the others."""
+    """Say whether a reserved word may have been written as a name.
+
+    Parameters
+    ----------
+    tokens
+        Tokens of the statement.
+    at
+        Position of the word.
+
+    Returns
+    -------
+    bool
+        False if it is the only word that can relate the others.
+    """
     others = (token.type for number, token in enumerate(tokens) if number != at)
     return tokens[at].type in RESERVED_FOR and (
         tokens[at].type != "RELATION" or not RELATING_TERMINALS.isdisjoint(others)
@@ -51,7 +75,20 @@ def may_be_meant_as_name(tokens: list[Token], at: int) -> bool:
 
 
 def naming_hint(tokens: list[Token], at: int) -> str:
-    """Return a hint on how to write a name that contains the reserved word number ``at``."""
+    """Return a hint on how to write a name that contains a reserved word.
+
+    Parameters
+    ----------
+    tokens
+        Tokens of the statement.
+    at
+        Position of the word.
+
+    Returns
+    -------
+    str
+        The hint.
+    """
     word = tokens[at]
     parts = [str(t) for t in tokens[max(at - 1, 0) : at + 2] if t is word or t.type == "NAME"]
     joined = "_".join("_".join(parts).split())
@@ -70,6 +107,18 @@ JOINERS = "\u200c\u200d"  # invisible, but part of words in Persian and the scri
 def key_of(name: str) -> str:
     """Return the key by which names are compared: casefolded, and in Unicode normal form C.
 
+    Parameters
+    ----------
+    name
+        The name.
+
+    Returns
+    -------
+    str
+        The key.
+
+    Examples
+    --------
     >>> key_of("Dinner_Plate") == key_of("dinner_plate")
     True
     """
@@ -79,7 +128,22 @@ def key_of(name: str) -> str:
 def unquote(text: str, source: Source) -> str:
     """Return the name that a quoted text stands for, with blanks as underscores.
 
-    Raises StatementError for an empty name or a control character.
+    Parameters
+    ----------
+    text
+        The text with its quotes.
+    source
+        Its place.
+
+    Returns
+    -------
+    str
+        The name.
+
+    Raises
+    ------
+    StatementError
+        If the name is empty or has a control character.
     """
     for i, character in enumerate(text):
         if not (character.isprintable() or character in BLANKS or character in JOINERS):
@@ -92,7 +156,20 @@ def unquote(text: str, source: Source) -> str:
 
 
 def require_short(name: str, source: Source) -> None:
-    """Raise StatementError for a name or a title of more than ``MAX_NAME`` characters."""
+    """Raise StatementError for a name or a title that is too long.
+
+    Parameters
+    ----------
+    name
+        The name.
+    source
+        Its place.
+
+    Raises
+    ------
+    StatementError
+        If it has more than ``MAX_NAME`` characters.
+    """
     if len(name) > MAX_NAME:
         raise StatementError(source, f"a name must have at most {MAX_NAME:,} characters, got {len(name):,}")
 
@@ -106,7 +183,27 @@ class NameTable:
         self._names: dict[str, tuple[str, ...]] = {}
 
     def mention(self, name: str, count: int | None, source: Source) -> Mention:
-        """Return the object or objects that a name means; raise StatementError if it contradicts earlier mentions."""
+        """Return the object or objects that a name means.
+
+        Parameters
+        ----------
+        name
+            The name.
+        count
+            Number before the name, or None.
+        source
+            Its place.
+
+        Returns
+        -------
+        Mention
+            The mention.
+
+        Raises
+        ------
+        StatementError
+            If it contradicts earlier mentions.
+        """
         require_short(name, source)
         key = key_of(name)
         if count is not None:

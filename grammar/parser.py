@@ -149,7 +149,13 @@ class FileReader:
         self.text = self.text.removeprefix("\ufeff").replace("\r\n", "\n")
 
     def read(self) -> Iterator[Statement]:
-        """Yield the statements without errors; add the errors of the others to the draft."""
+        """Yield the statements without errors; add the errors of the others to the draft.
+
+        Yields
+        ------
+        Statement
+            A statement.
+        """
         here = Place(self.draft, self.file, Source(self.file, 1, 1, 1, 1))
         statement: Statement | None
         first = True
@@ -172,7 +178,13 @@ class FileReader:
             first = False
 
     def statements(self) -> Iterator[list[Token]]:
-        """Yield the tokens of each statement, and collect the comments; a comma at a line's end joins the next line."""
+        """Yield the tokens of each statement, and collect the comments; a comma at a line's end joins the next line.
+
+        Yields
+        ------
+        list of Token
+            Tokens of one statement.
+        """
         statement: list[Token] = []
         line = 0  # of the last token that is not a comment
         for token in self.language.scanner.tokens(self.text):

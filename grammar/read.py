@@ -16,7 +16,18 @@ STANDARD_INPUT = "-"
 
 
 def is_english(path: str | Path) -> bool:
-    """Return True if a script of this name is a text in English: ``.txt``, or ``-`` for standard input."""
+    """Say whether a script of a given name is a text in English.
+
+    Parameters
+    ----------
+    path
+        The name.
+
+    Returns
+    -------
+    bool
+        True for ``.txt``, and for ``-``, which is standard input.
+    """
     return str(path) == STANDARD_INPUT or str(path).casefold().endswith(ENGLISH_ENDINGS)
 
 
@@ -38,6 +49,11 @@ def read_script(
         Time limit.
     strict
         Take a phrase of an English text that is not understood as an error.
+
+    Returns
+    -------
+    Script
+        The facts with their places in the text.
 
     Raises
     ------

@@ -94,7 +94,13 @@ class RelationStatement:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Yield a fact for each subject and object, in the order of writing."""
+        """Yield a fact for each subject and object, in the order of writing.
+
+        Yields
+        ------
+        Fact
+            A fact.
+        """
         for subject, thing in product(_names(self.subjects), _names(self.objects)):
             yield _fact(subject, self.relations, thing, self)
 
@@ -109,7 +115,13 @@ class Chain:
     source: Source
 
     def facts(self) -> Iterator[Fact]:
-        """Yield a fact for each pair of neighbours, in the order of writing."""
+        """Yield a fact for each pair of neighbours, in the order of writing.
+
+        Yields
+        ------
+        Fact
+            A fact.
+        """
         relations = (self.relation,)
         for subject, thing in pairwise(_names(self.objects)):
             yield _fact(subject, relations, thing, self)
@@ -169,7 +181,13 @@ class Script(Answer):
         return f"{self.file}{title}: {count(len(self.objects), 'object')}, {count(len(self.facts), 'fact')}"
 
     def all_statements(self) -> Iterator[Statement]:
-        """Return the statements in order; those of an included file follow its include."""
+        """Return the statements in order; those of an included file follow its include.
+
+        Yields
+        ------
+        Statement
+            A statement of the script or of an included file.
+        """
         return _flat(self.statements)
 
     @cached_property
@@ -242,6 +260,13 @@ class Script(Answer):
 
         The kind of a node is the declared kind of the object, or else the kind that its name stands for, or None.
 
+        Returns
+        -------
+        RelationGraph
+            A graph with a node for each object and an edge for each fact, in the wide reading.
+
+        Examples
+        --------
         >>> from deixis.grammar.parser import parse_script
         >>> graph = parse_script("2 wine_glass right of the red thingummy").graph()
         >>> [kind and kind.rpartition("#")[2] for kind in graph.kinds]
@@ -270,7 +295,18 @@ def _flat(statements: tuple[Statement, ...]) -> Iterator[Statement]:
 
 
 def mentions(statement: Statement) -> tuple[Mention, ...]:
-    """Return the mentions of objects in a statement, in order."""
+    """Return the mentions of objects in a statement, in order.
+
+    Parameters
+    ----------
+    statement
+        The statement.
+
+    Returns
+    -------
+    tuple of Mention
+        The mentions.
+    """
     match statement:
         case Declaration(subjects=subjects):
             return subjects

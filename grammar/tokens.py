@@ -40,6 +40,16 @@ class Scanner:
         """Yield the tokens of a text, with the words of each name joined.
 
         No rule of the grammar accepts FUNCTION, ARTICLE or ``TERMINALS_WITHOUT_RULE``.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Yields
+        ------
+        Token
+            A token.
         """
         run: list[Token] = []
         for token in self._terminals(text):
@@ -75,6 +85,18 @@ def join(run: list[Token], following: str) -> Iterator[Token]:
     """Yield the names in a run of words: an article before a word starts a new name and is dropped.
 
     ``a`` is a name if no word follows it, so that ``left(a, b)`` and ``a is a plate`` mean an object called a.
+
+    Parameters
+    ----------
+    run
+        Tokens of consecutive words.
+    following
+        Type of the token after the run.
+
+    Yields
+    ------
+    Token
+        A token of a name.
     """
     words: list[Token] = []
     last = len(run) - 1

@@ -33,18 +33,51 @@ Pair = tuple[tuple[Relation, ...], Mention, Mention]
 
 
 def source_of(token: Token) -> Source:
-    """Return the place of a token."""
+    """Return the place of a token.
+
+    Parameters
+    ----------
+    token
+        The token.
+
+    Returns
+    -------
+    Source
+        File, line and column, from start to end.
+    """
     return Source(place.get().file, token.line, token.column, token.end_line, token.end_column)  # type: ignore[arg-type]
 
 
 def span_of(tokens: list[Token]) -> Source:
-    """Return the place of a run of tokens, from the start of the first to the end of the last."""
+    """Return the place of a run of tokens, from the start of the first to the end of the last.
+
+    Parameters
+    ----------
+    tokens
+        The tokens, at least one.
+
+    Returns
+    -------
+    Source
+        File, line and column, from start to end.
+    """
     first, last = tokens[0], tokens[-1]
     return Source(place.get().file, first.line, first.column, last.end_line, last.end_column)  # type: ignore[arg-type]
 
 
 def text_of(token: Token) -> str:
-    """Return the name that a NAME or STRING token stands for."""
+    """Return the name that a NAME or STRING token stands for.
+
+    Parameters
+    ----------
+    token
+        The token.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     return unquote(token[1:-1], source_of(token)) if token.type == "STRING" else str(token)
 
 

@@ -126,8 +126,22 @@ class Expected:
 
 
 def expected_next(text: str, ontology: Ontology | None = None) -> Expected:
-    """Return the terminals of the grammar that can follow a text; none if its last statement has an error.
+    """Return the terminals of the grammar that can follow a text.
 
+    Parameters
+    ----------
+    text
+        The beginning of a script.
+    ontology
+        Words of the language; default: the shipped ones.
+
+    Returns
+    -------
+    Expected
+        The terminals, and the words that they have; none if the last statement has an error.
+
+    Examples
+    --------
     >>> found = expected_next("fork left of plate; the knife")
     >>> "RELATION" in found.terminals, "NAME" in found.terminals
     (True, False)

@@ -84,6 +84,18 @@ def phrase_pattern(phrases: Iterable[str]) -> str:
     Blanks, underscores and articles may separate the words of a phrase. The expression is a prefix tree: matching
     costs one branch per letter instead of one per phrase, and tries nothing twice.
 
+    Parameters
+    ----------
+    phrases
+        The phrases.
+
+    Returns
+    -------
+    str
+        The expression.
+
+    Examples
+    --------
     >>> pattern = re.compile(phrase_pattern(["left", "to left of"]), re.IGNORECASE)
     >>> [pattern.match(text) is not None for text in ("to the left_of", "left", "left_glass", "lefty")]
     [True, True, False, False]
@@ -110,6 +122,18 @@ def _alternatives(tree: dict[str, Any]) -> str:
 def chains(ontology: Ontology) -> dict[str, Relation]:
     """Return the relation of each chain head, without its colon: from one side to the opposite, for each direction.
 
+    Parameters
+    ----------
+    ontology
+        The ontology.
+
+    Returns
+    -------
+    dict
+        Relation by chain head.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> found = chains(default_ontology())
     >>> found["left to right"].name, found["top left to bottom right"].name, found["above to below"].name

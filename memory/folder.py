@@ -49,7 +49,20 @@ class FolderState(Enum):
 def inspect(folder: Path) -> FolderState:
     """Return the state of a folder, without opening its store.
 
-    Raises MemoryFormatError for something other than a memory, or a damaged one.
+    Parameters
+    ----------
+    folder
+        The folder.
+
+    Returns
+    -------
+    FolderState
+        Absent, empty, an unfinished memory, or a memory.
+
+    Raises
+    ------
+    MemoryFormatError
+        If it is something else, or a damaged memory.
     """
     if not folder.exists():
         if folder.is_symlink():
@@ -79,7 +92,23 @@ def inspect(folder: Path) -> FolderState:
 
 
 def read_mark(folder: Path) -> dict[str, Any]:
-    """Return the content of ``memory.json``. Raises MemoryFormatError where it is invalid."""
+    """Return the content of ``memory.json``.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    dict
+        Parsed JSON.
+
+    Raises
+    ------
+    MemoryFormatError
+        If it is invalid.
+    """
     file = folder / MARK
     try:
         mark = json.loads(file.read_text(encoding="utf-8"))
@@ -104,15 +133,35 @@ def store_in(folder: Path) -> Path:
     """Return the path of the store.
 
     After an interrupted swap the store is beside its place, until :func:`finish` moves it back.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    Path
+        The path.
     """
     aside = not (folder / STORE).is_dir() and (folder / OLD).is_dir()
     return folder / (OLD if aside else STORE)
 
 
 def check_store_opens(folder: Path) -> None:
-    """Open the store for reading and close it, which changes nothing. Raises MemoryFormatError.
+    """Open the store for reading and close it, which changes nothing.
 
     The caller must own the folder, as another process could replace the files.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Raises
+    ------
+    MemoryFormatError
+        If it cannot be opened.
     """
     store = store_in(folder)
     current = store / "CURRENT"
@@ -138,7 +187,17 @@ def check_store_opens(folder: Path) -> None:
 
 
 def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
-    """Make a memory in an empty folder: a store filled by ``fill``, then ``memory.json``."""
+    """Make a memory in an empty folder.
+
+    Parameters
+    ----------
+    folder
+        The folder.
+    fill
+        Function that fills the new store.
+    digest
+        Digest of the package's ontology, for ``memory.json``.
+    """
     disk.remove(folder / NEW)
     (folder / NEW_MARK).unlink(missing_ok=True)
     try:
@@ -155,7 +214,13 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
 
 
 def finish(folder: Path) -> None:
-    """Finish or undo what a crash interrupted."""
+    """Finish or undo what a crash interrupted.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    """
     if not (folder / MARK).exists():
         disk.rename(folder / NEW_MARK, folder / MARK)
     if (folder / OLD).is_dir():
@@ -170,7 +235,15 @@ def finish(folder: Path) -> None:
 
 
 def swap(folder: Path, mark: dict[str, Any]) -> None:
-    """Replace ``semantic`` with ``semantic.new``, and ``memory.json`` with ``mark``; neither store may be open."""
+    """Replace ``semantic`` with ``semantic.new``, and ``memory.json``; neither store may be open.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    mark
+        New content of ``memory.json``.
+    """
     _write(folder / NEW_MARK, mark)
     disk.rename(folder / STORE, folder / OLD)
     disk.rename(folder / NEW, folder / STORE)
@@ -179,7 +252,15 @@ def swap(folder: Path, mark: dict[str, Any]) -> None:
 
 
 def migrate(folder: Path, steps: Mapping[int, Migration]) -> None:
-    """Migrate an older memory to this version, one step at a time, each on a copy that is then swapped in."""
+    """Migrate an older memory to this version, one step at a time, each on a copy that is then swapped in.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    steps
+        Function by the version that it migrates from.
+    """
     mark = read_mark(folder)
     while mark["version"] != VERSION:
         step = steps[mark["version"]]
@@ -193,19 +274,49 @@ def migrate(folder: Path, steps: Mapping[int, Migration]) -> None:
 
 
 def write_mark(folder: Path, mark: dict[str, Any]) -> None:
-    """Replace ``memory.json`` in one step."""
+    """Replace ``memory.json`` in one step.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    mark
+        New content.
+    """
     _write(folder / NEW_MARK, mark)
     disk.rename(folder / NEW_MARK, folder / MARK)
 
 
 def size(folder: Path) -> int:
-    """Return the bytes of all files under a folder, except the snapshot, whose files are those of the store."""
+    """Return the bytes of all files under a folder, except the snapshot, whose files are those of the store.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    int
+        The number of bytes.
+    """
     files = (file for file in folder.rglob("*") if folder / SNAPSHOT not in file.parents)
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def one_line(error: BaseException) -> str:
-    """Return an error's text without line ends."""
+    """Return an error's text without line ends.
+
+    Parameters
+    ----------
+    error
+        The error.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     return " ".join(str(error).split())
 
 
@@ -218,7 +329,18 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
 
 @contextmanager
 def committed(folder: Path) -> Iterator[None]:
-    """Turn errors of a write into MemoryWriteError."""
+    """Turn errors of a write into MemoryWriteError.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Yields
+    ------
+    None
+        Nothing; errors in the block are turned.
+    """
     advice = "check that the disk has room and the folder is writable, then try again: earlier content is unchanged"
     with wrap_storage_errors(folder, "written", advice):
         yield
@@ -226,14 +348,40 @@ def committed(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def reading(folder: Path) -> Iterator[None]:
-    """Turn errors of a read into MemoryWriteError."""
+    """Turn errors of a read into MemoryWriteError.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Yields
+    ------
+    None
+        Nothing; errors in the block are turned.
+    """
     with wrap_storage_errors(folder, "read", "restore the folder from a copy"):
         yield
 
 
 @contextmanager
 def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
-    """Turn errors of the store or the system into MemoryWriteError, or DamagedMemoryError for a corrupt store."""
+    """Turn errors of the store or the system into MemoryWriteError, or DamagedMemoryError for a corrupt store.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    done
+        Participle for the message: ``written`` or ``read``.
+    advice
+        What to do, for the message.
+
+    Yields
+    ------
+    None
+        Nothing; errors in the block are turned.
+    """
     try:
         yield
     except (OSError, RuntimeError) as error:

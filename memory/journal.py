@@ -65,12 +65,26 @@ class JournalEntry:
 
 
 def new_id() -> str:
-    """Return a new unique id for a journal."""
+    """Return a new unique id for a journal.
+
+    Returns
+    -------
+    str
+        The id.
+    """
     return secrets.token_hex(8)
 
 
 def write_journal(folder: Path, entry: JournalEntry) -> None:
-    """Write the journal in one step, and sync it to the disk."""
+    """Write the journal in one step, and sync it to the disk.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    entry
+        The write in progress.
+    """
     digest = hashlib.sha256()
     with (folder / NEW_JOURNAL).open("wb") as out:
         for part in _parts(entry):
@@ -93,7 +107,18 @@ def _parts(entry: JournalEntry) -> Iterator[bytes]:
 
 
 def read_journal(folder: Path) -> JournalEntry | None:
-    """Return the write in progress, or None; an incomplete journal counts as none, as its write had changed nothing."""
+    """Return the write in progress.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    JournalEntry or None
+        The entry, or None; an incomplete journal counts as none, as its write had changed nothing.
+    """
     try:
         data = (folder / JOURNAL).read_bytes()
     except FileNotFoundError:
@@ -115,15 +140,36 @@ def read_journal(folder: Path) -> JournalEntry | None:
 
 
 def clear_journal(folder: Path) -> None:
-    """Remove the journal, if there is one."""
+    """Remove the journal, if there is one.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    """
     for name in (JOURNAL, NEW_JOURNAL):
         (folder / name).unlink(missing_ok=True)
 
 
 def has_committed(memory: Path, id: str) -> bool:
-    """Return whether the semantic store of a memory has committed the write with an id; only read the store.
+    """Say whether the semantic store has committed a write, by reading it only.
 
-    Raises MemoryFormatError where the store cannot be read.
+    Parameters
+    ----------
+    memory
+        The folder of the memory.
+    id
+        Id of the write.
+
+    Returns
+    -------
+    bool
+        True if it has.
+
+    Raises
+    ------
+    MemoryFormatError
+        If the store cannot be read.
     """
     store = files.store_in(memory)
     if not store.is_dir():

@@ -35,7 +35,23 @@ class OnDemand(Generic[Held]):
         return self._held is not None
 
     def get(self, create: bool = False) -> Held:
-        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
+        """Return the open memory.
+
+        Parameters
+        ----------
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        Held
+            The store.
+
+        Raises
+        ------
+        DeixisError
+            If there is no memory and ``create`` is False.
+        """
         self.require_usable()
         if self._held is None:
             self._held = self._open_at(self.path, create)
@@ -59,7 +75,13 @@ class OnDemand(Generic[Held]):
 
 
 def default_memory() -> Path:
-    """Return ``$DEIXIS_MEMORY``, or the default folder for the user's data."""
+    """Return ``$DEIXIS_MEMORY``, or the default folder for the user's data.
+
+    Returns
+    -------
+    Path
+        The path, which need not exist.
+    """
     named = os.environ.get("DEIXIS_MEMORY")
     if named:
         return Path(named)

@@ -45,7 +45,13 @@ class Closing(ABC):
 
 
 def rename(old: Path, new: Path) -> None:
-    """Rename a file or folder, and sync the directory so that the new name survives a crash."""
+    """Rename a file or folder, and sync the directory so that the new name survives a crash.
+
+    Parameters
+    ----------
+    old, new
+        Its present path and its new one.
+    """
     old.replace(new)
     descriptor = os.open(new.parent, os.O_RDONLY)
     try:
@@ -55,7 +61,13 @@ def rename(old: Path, new: Path) -> None:
 
 
 def remove(path: Path) -> None:
-    """Remove a folder and its content, if it exists."""
+    """Remove a folder and its content, if it exists.
+
+    Parameters
+    ----------
+    path
+        The folder.
+    """
     if path.is_dir():
         shutil.rmtree(path)
 
@@ -77,8 +89,24 @@ class OwnerLock:
     def acquire(cls, folder: Path) -> OwnerLock:
         """Take the lock; :meth:`sign` then writes the owner into the file.
 
-        Raises MemoryBusyError, naming the owner, where another process has the lock; ReadOnlyMemoryError where the
-        folder cannot be written; MemoryWriteError where the lock file cannot be made for another reason.
+        Parameters
+        ----------
+        folder
+            The folder of the memory.
+
+        Returns
+        -------
+        OwnerLock
+            The lock.
+
+        Raises
+        ------
+        MemoryBusyError
+            If another process has the lock; the message names it.
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        MemoryWriteError
+            If the lock file cannot be made for another reason.
         """
         real = Path(os.path.realpath(folder))
         with _guard:
@@ -98,7 +126,13 @@ class OwnerLock:
             raise MemoryWriteError(f"{self._folder / LOCK_FILE}: cannot be written: {error.strerror}") from error
 
     def release(self, undo: bool = False) -> None:
-        """Release the lock and erase the owner's name; with ``undo``, restore the folder as it was found."""
+        """Release the lock and erase the owner's name.
+
+        Parameters
+        ----------
+        undo
+            True to restore the folder as it was found.
+        """
         with _guard:
             if _held.get(self._folder) is not self:
                 return  # the lock is the parent's, or was released
@@ -123,7 +157,23 @@ class ReaderLock:
 
     @classmethod
     def acquire(cls, folder: Path) -> ReaderLock:
-        """Take the lock if the folder has a lock file. Raises MemoryBusyError where a writer has it."""
+        """Take the lock if the folder has a lock file.
+
+        Parameters
+        ----------
+        folder
+            The folder of the memory.
+
+        Returns
+        -------
+        ReaderLock
+            The lock.
+
+        Raises
+        ------
+        MemoryBusyError
+            If a writer has it.
+        """
         real = Path(os.path.realpath(folder))
         with _guard:
             if real in _held:
@@ -141,7 +191,13 @@ class ReaderLock:
         return cls(descriptor)
 
     def release(self, undo: bool = False) -> None:
-        """Release the lock; ``undo`` has no effect."""
+        """Release the lock.
+
+        Parameters
+        ----------
+        undo
+            Has no effect.
+        """
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
@@ -154,8 +210,16 @@ _threads_left_behind = False  # True if this process was forked from one that ha
 def begin_opening(folder: Path) -> None:
     """Record that a store on disk is about to be opened.
 
-    Raises MemoryBusyError in a process that was forked from one that had opened a store: the libraries' threads stayed
-    in the parent, and opening would wait for them forever.
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Raises
+    ------
+    MemoryBusyError
+        In a process that was forked from one that had opened a store: the libraries' threads stayed in the parent, and
+        opening would wait for them forever.
     """
     global _has_opened
     if _threads_left_behind:
@@ -180,7 +244,18 @@ os.register_at_fork(after_in_child=leave_to_parent)
 
 
 def forked(folder: Path) -> MemoryBusyError:
-    """Return the error for a memory that was open when this process was forked from its owner."""
+    """Return the error for a memory that was open when this process was forked from its owner.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    MemoryBusyError
+        The error, which is not raised.
+    """
     return MemoryBusyError(
         f"the memory at {folder} is held by the process from which this one was forked; open a memory in the process "
         "that uses it, or close it before forking"

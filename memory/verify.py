@@ -68,6 +68,11 @@ def verify(memory: Path, progress: Progress | None = None, stale: Stale | None =
         Function that yields a line for each part of the semantic store that does not follow from its lessons. It is
         called if the store could be read.
 
+    Returns
+    -------
+    Verified
+        Which stores were read, and what is wrong with them.
+
     Raises
     ------
     MemoryFormatError

@@ -56,6 +56,18 @@ ALL_ALLEN = (1 << 13) - 1
 def allen_mask(relations: Iterable[Allen]) -> int:
     """Return a set of Allen relations as a 13-bit mask, bit *i* for code *i*.
 
+    Parameters
+    ----------
+    relations
+        The relations.
+
+    Returns
+    -------
+    int
+        The mask.
+
+    Examples
+    --------
     >>> allen_mask([Allen.BEFORE, Allen.MEETS])
     3
     """
@@ -68,6 +80,18 @@ def allen_mask(relations: Iterable[Allen]) -> int:
 def members(mask: int) -> tuple[Allen, ...]:
     """Return the relations in a 13-bit mask, in the order of their codes.
 
+    Parameters
+    ----------
+    mask
+        The mask.
+
+    Returns
+    -------
+    tuple of Allen
+        The relations.
+
+    Examples
+    --------
     >>> [r.symbol for r in members(0b11)]
     ['<', 'm']
     """
@@ -75,7 +99,18 @@ def members(mask: int) -> tuple[Allen, ...]:
 
 
 def mask_array(mask: int) -> NDArray[np.bool_]:
-    """Return a 13-bit mask as a boolean array of shape (13,)."""
+    """Return a 13-bit mask as a boolean array of shape (13,).
+
+    Parameters
+    ----------
+    mask
+        The mask.
+
+    Returns
+    -------
+    ndarray
+        True for the relations in the set, shape (13,).
+    """
     import numpy as np
 
     return np.array([bool(mask >> code & 1) for code in range(13)])

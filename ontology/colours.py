@@ -38,7 +38,13 @@ class Colour:
     broader: str | None = None
 
     def matrix(self) -> NDArray[np.float64]:
-        """Return the covariance as a symmetric matrix, shape (3, 3)."""
+        """Return the covariance as a symmetric matrix, shape (3, 3).
+
+        Returns
+        -------
+        ndarray
+            The matrix, in CIELAB.
+        """
         import numpy as np
 
         ll, la, lb, aa, ab, bb = self.covariance
@@ -90,14 +96,36 @@ class Colours:
         return max((len(word.split()) for word in self.words), default=0)
 
     def of_word(self, word: str) -> Colour | None:
-        """Return the colour that a word stands for; ``dark_blue``, ``Dark blue`` and ``dark-blue`` are equal."""
+        """Return the colour that a word stands for.
+
+        Parameters
+        ----------
+        word
+            The word; ``dark_blue``, ``Dark blue`` and ``dark-blue`` are equal.
+
+        Returns
+        -------
+        Colour or None
+            The colour, or None for other words.
+        """
         return self.words.get(" ".join(_parts(word)))
 
     def split(self, name: str) -> tuple[Colour | None, str]:
         """Return the longest colour at the start of a name, and the rest of the name.
 
-        The colour is None where the name starts with no colour, or is a colour and nothing else.
+        Parameters
+        ----------
+        name
+            The name.
 
+        Returns
+        -------
+        tuple
+            The colour and the rest. The colour is None where the name starts with no colour, or is a colour and nothing
+            else.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> colours = default_ontology().colours
         >>> [(colour and colour.label, rest) for colour, rest in map(colours.split, ("light_blue_mug", "orange"))]
@@ -118,8 +146,20 @@ def _parts(name: str) -> list[str]:
 
 
 def rgb_of_hex(text: str) -> Rgb | None:
-    """Return the colour that ``#rrggbb`` stands for, or None for any other text.
+    """Return the colour that ``#rrggbb`` stands for.
 
+    Parameters
+    ----------
+    text
+        The text.
+
+    Returns
+    -------
+    Rgb or None
+        Red, green and blue, 0 to 255, or None for any other text.
+
+    Examples
+    --------
     >>> rgb_of_hex("#Ff8000"), rgb_of_hex("#f80")
     ((255, 128, 0), None)
     """
@@ -132,6 +172,18 @@ def rgb_of_hex(text: str) -> Rgb | None:
 def hex_of_rgb(rgb: Rgb) -> str:
     """Return the colour as ``#rrggbb``.
 
+    Parameters
+    ----------
+    rgb
+        Red, green and blue, 0 to 255.
+
+    Returns
+    -------
+    str
+        The text, in lower case.
+
+    Examples
+    --------
     >>> hex_of_rgb((255, 128, 0))
     '#ff8000'
     """
@@ -147,6 +199,11 @@ def colours_from_triples(triples: TripleIndex, words: dict[str, tuple[str, ...]]
         The statements of the TBox.
     words
         The words of each colour, by IRI.
+
+    Returns
+    -------
+    Colours
+        The colours.
 
     Raises
     ------

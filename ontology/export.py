@@ -20,7 +20,18 @@ if TYPE_CHECKING:
 
 
 def fact_to_dict(fact: Fact) -> dict[str, Any]:
-    """Return a fact as it appears in the JSON output of the commands."""
+    """Return a fact as it appears in the JSON output of the commands.
+
+    Parameters
+    ----------
+    fact
+        The fact.
+
+    Returns
+    -------
+    dict
+        Relations, names, sign, weight, and its place if it has one.
+    """
     entry: dict[str, Any] = {
         "relation": " or ".join(relation.word for relation in fact.relations),
         "subject": fact.subject,
@@ -69,7 +80,18 @@ def claim_to_dict(claim: Claim, surface: str | None = None) -> dict[str, Any]:
 
 
 def graph_to_dict(graph: RelationGraph) -> dict[str, Any]:
-    """Return the graph as plain data, ready for ``json.dumps``."""
+    """Return the graph as plain data, ready for ``json.dumps``.
+
+    Parameters
+    ----------
+    graph
+        The graph.
+
+    Returns
+    -------
+    dict
+        Nodes with their kinds and colours, and edges.
+    """
     nodes: list[dict[str, Any]] = []
     for i, name in enumerate(graph.nodes):
         node: dict[str, Any] = {"id": name}
@@ -115,6 +137,11 @@ def graph_to_turtle(graph: RelationGraph, base: str = GRAPH_BASE) -> str:
     base
         Prefix of the IRIs: each object is ``base`` + its name, and each edge is a ``dx:RelationStatement`` named
         ``base`` + ``fact/`` + its number.
+
+    Returns
+    -------
+    str
+        The text.
     """
     lines = [f"@prefix {prefix}: <{iri}> ." for prefix, iri in PREFIXES.items()]
     lines.append("")
@@ -148,6 +175,11 @@ def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequen
         Node indices of subject and object, shape (k, 2).
     iris
         The IRIs of the nodes in angle brackets, as of :func:`node_iris`.
+
+    Returns
+    -------
+    str
+        The lines; empty without a pair.
     """
     import numpy as np
 
@@ -157,12 +189,26 @@ def pairs_to_ntriples(relation: Relation, pairs: NDArray[np.int64], iris: Sequen
     subjects, begins = np.unique(pairs[:, 0], return_index=True)
     for subject, objects in zip(subjects.tolist(), np.split(pairs[:, 1], begins[1:]), strict=True):
         head = f"{iris[subject]} <{relation.iri}> "
-        chunks.append(head + f" .\n{head}".join([iris[other] for other in objects.tolist()]) + " .\n")
+        others: list[int] = objects.tolist()
+        chunks.append(head + f" .\n{head}".join([iris[other] for other in others]) + " .\n")
     return "".join(chunks)
 
 
 def node_iris(graph: RelationGraph, base: str = GRAPH_BASE) -> list[str]:
-    """Return the IRIs of the nodes in angle brackets, as :func:`graph_to_turtle` writes them."""
+    """Return the IRIs of the nodes in angle brackets, as :func:`graph_to_turtle` writes them.
+
+    Parameters
+    ----------
+    graph
+        The graph.
+    base
+        Prefix of the IRIs.
+
+    Returns
+    -------
+    list of str
+        One IRI for each node.
+    """
     return [_iri(base, name) for name in graph.nodes]
 
 
@@ -183,7 +229,18 @@ def _literal(text: str) -> str:
 
 
 def graph_to_dot(graph: RelationGraph) -> str:
-    """Return the graph in Graphviz's DOT language: denied facts dashed, optional ones dotted, hedged ones thinner."""
+    """Return the graph in Graphviz's DOT language: denied facts dashed, optional ones dotted, hedged ones thinner.
+
+    Parameters
+    ----------
+    graph
+        The graph.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     lines = ["digraph layout {", "    node [shape=box, style=rounded, fontname=Helvetica];"]
     lines += [f"    {_literal(name)};" for name in graph.nodes]
     for fact in graph.facts():

@@ -81,7 +81,18 @@ OPTIONAL_WEIGHT = 0.5
 
 
 def dispensable(facts: Iterable[Fact]) -> frozenset[str]:
-    """Return the objects that no certain fact needs: all facts about them are denied, optional or hedged."""
+    """Return the objects that no certain fact needs: all facts about them are denied, optional or hedged.
+
+    Parameters
+    ----------
+    facts
+        The facts.
+
+    Returns
+    -------
+    frozenset of str
+        Names of the objects.
+    """
     mentioned: set[str] = set()
     needed: set[str] = set()
     for fact in facts:

@@ -79,7 +79,13 @@ class RelationGraph:
         return affirmed
 
     def affirming(self) -> RelationGraph:
-        """Return an equivalent graph without weights below one half: rare facts become denials of the other weight."""
+        """Return an equivalent graph without weights below one half: rare facts become denials of the other weight.
+
+        Returns
+        -------
+        RelationGraph
+            The graph.
+        """
         return replace(self, positive=self.affirmed, weights=self.affirmed_weights)
 
     @classmethod
@@ -92,7 +98,33 @@ class RelationGraph:
         boxes: NDArray[np.float64] | None = None,
         colours: Sequence[str | None] = (),
     ) -> RelationGraph:
-        """Return the graph of the facts; raise GraphError if a fact names an object that is not in ``nodes``."""
+        """Return the graph of some facts.
+
+        Parameters
+        ----------
+        vocabulary
+            Relations of the ontology.
+        nodes
+            Names of the n objects.
+        facts
+            The facts, each of which becomes an edge.
+        kinds
+            Class IRI of each node or None; empty if no kind is known.
+        boxes
+            Least and greatest corners, shape (n, 2, d), or None.
+        colours
+            IRI of the colour of each node or None; empty if no colour is known.
+
+        Returns
+        -------
+        RelationGraph
+            The graph.
+
+        Raises
+        ------
+        GraphError
+            If a fact names an object that is not in ``nodes``.
+        """
         index = {name: i for i, name in enumerate(nodes)}
         listed = list(facts)
         for fact in listed:
@@ -119,14 +151,41 @@ class RelationGraph:
         return len(self.subjects)
 
     def index(self, node: str) -> int:
-        """Return the position of a node; raise GraphError if there is no node of that name."""
+        """Return the position of a node.
+
+        Parameters
+        ----------
+        node
+            Its name.
+
+        Returns
+        -------
+        int
+            The position.
+
+        Raises
+        ------
+        GraphError
+            If there is no node of that name.
+        """
         try:
             return self._index[node]
         except KeyError:
             raise GraphError(f"the graph has no object '{node}'") from None
 
     def fact(self, edge: int) -> Fact:
-        """Return one edge as a fact."""
+        """Return one edge as a fact.
+
+        Parameters
+        ----------
+        edge
+            Position of the edge.
+
+        Returns
+        -------
+        Fact
+            The fact.
+        """
         return Fact(
             subject=self.nodes[self.subjects[edge]],
             relations=self.vocabulary.members(int(self.relation_sets[edge])),
@@ -138,11 +197,28 @@ class RelationGraph:
         )
 
     def facts(self) -> Iterator[Fact]:
-        """Yield all edges as facts, in their order."""
+        """Yield all edges as facts, in their order.
+
+        Yields
+        ------
+        Fact
+            A fact.
+        """
         return (self.fact(edge) for edge in range(len(self)))
 
     def subgraph(self, nodes: Sequence[str]) -> RelationGraph:
-        """Return the induced subgraph of these nodes, in the order given."""
+        """Return the induced subgraph of these nodes, in the order given.
+
+        Parameters
+        ----------
+        nodes
+            Names of the nodes, in the wanted order.
+
+        Returns
+        -------
+        RelationGraph
+            The graph with the edges among them.
+        """
         keep = np.array([self.index(name) for name in nodes], dtype=np.int64)
         position = np.full(len(self.nodes), -1, dtype=np.int32)
         position[keep] = np.arange(len(keep), dtype=np.int32)
@@ -208,6 +284,11 @@ class RelationGraph:
         It leaves out facts that are not a single affirmed relation of the ten, and rare facts, which amount to denials.
         Of several facts about one pair, it keeps the most specific label: the one that implies the most others, and the
         first stated of equals.
+
+        Returns
+        -------
+        PaperGraph
+            The labelled graph.
         """
         labels = tuple(r.word for r in self.vocabulary.of_reading(Reading.EXACT))
         words = (self.vocabulary.paper_word(r) for r in self.vocabulary.values())
@@ -240,15 +321,28 @@ class PaperGraph:
     labels: tuple[str, ...]  # L_E
 
     def adjacency(self) -> NDArray[np.float64]:
-        """Return one 0/1 matrix per label, shape (labels, n, n); axis 1 is the start of an edge, axis 2 its end."""
+        """Return one 0/1 matrix per label.
+
+        Returns
+        -------
+        ndarray
+            Matrices of shape (labels, n, n); axis 1 is the start of an edge, axis 2 its end.
+        """
         n = len(self.vertices)
         matrices = np.zeros((len(self.labels), n, n))
         matrices[self.edge_labels, self.edges[:, 0], self.edges[:, 1]] = 1.0
         return matrices
 
     def histograms(self) -> NDArray[np.int64]:
-        """Return the labelled edge histograms of Definition 2, shape (n, 2, labels): incoming, then outgoing edges.
+        """Return the labelled edge histograms of Definition 2.
 
+        Returns
+        -------
+        ndarray
+            Counts of shape (n, 2, labels): incoming, then outgoing edges.
+
+        Examples
+        --------
         >>> graph = PaperGraph(("a", "b"), ("a", "b"), np.array([[0, 1]], np.int32), np.zeros(1, np.int8), ("left",))
         >>> graph.histograms().tolist()
         [[[0], [1]], [[1], [0]]]

@@ -67,6 +67,18 @@ _SINGULAR = {many: one for one, many in IRREGULAR.items()} | {"cactuses": "cactu
 def plural(noun: str) -> str:
     """Return the plural of a noun in the singular; of several words, the last one is inflected.
 
+    Parameters
+    ----------
+    noun
+        The noun.
+
+    Returns
+    -------
+    str
+        The plural.
+
+    Examples
+    --------
     >>> [plural(noun) for noun in ("fork", "wine glass", "kitchen knife", "berry", "toy", "photo", "scissors")]
     ['forks', 'wine glasses', 'kitchen knives', 'berries', 'toys', 'photos', 'scissors']
     """
@@ -85,10 +97,22 @@ def plural(noun: str) -> str:
 
 
 def singulars(noun: str) -> tuple[str, ...]:
-    """Return the possible singulars of a noun, the most likely first; only the noun itself if it is not a plural.
+    """Return the possible singulars of a noun.
 
     Spelling leaves the singular open in some cases: *cookies* and *berries*, *shoes* and *potatoes*.
 
+    Parameters
+    ----------
+    noun
+        A noun in the singular or the plural.
+
+    Returns
+    -------
+    tuple of str
+        The singulars, the most likely first; only the noun itself if it is not a plural.
+
+    Examples
+    --------
     >>> singulars("cookies"), singulars("wine glasses"), singulars("menus"), singulars("knives")
     (('cooky', 'cookie'), ('wine glass', 'wine glasse'), ('menus', 'menu'), ('knife',))
     """
@@ -101,6 +125,18 @@ def singular(noun: str) -> str:
 
     A :class:`~deixis.ontology.lexicon.lexicon.Lexicon` decides the open cases by the nouns that it knows.
 
+    Parameters
+    ----------
+    noun
+        A noun in the singular or the plural.
+
+    Returns
+    -------
+    str
+        The singular.
+
+    Examples
+    --------
     >>> [singular(noun) for noun in ("forks", "children", "glass", "boxes", "mice", "trousers")]
     ['fork', 'child', 'glass', 'box', 'mouse', 'trousers']
     """

@@ -14,6 +14,18 @@ from deixis.ontology.inflection import singulars
 def plain_name(name: str) -> str:
     """Return the name of an object without its trailing number.
 
+    Parameters
+    ----------
+    name
+        The name.
+
+    Returns
+    -------
+    str
+        The name without the number and the underscore before it.
+
+    Examples
+    --------
     >>> plain_name("wine_glass_2"), plain_name("fork")
     ('wine_glass', 'fork')
     """
@@ -23,6 +35,18 @@ def plain_name(name: str) -> str:
 def with_article(noun: str) -> str:
     """Return a noun with its indefinite article, chosen by its spelling.
 
+    Parameters
+    ----------
+    noun
+        The noun.
+
+    Returns
+    -------
+    str
+        Article and noun.
+
+    Examples
+    --------
     >>> with_article("egg cup"), with_article("utensil"), with_article("fork")
     ('an egg cup', 'a utensil', 'a fork')
     """
@@ -56,10 +80,12 @@ class FurtherKinds(Protocol):
     @property
     def kinds(self) -> Mapping[str, Kind]:
         """Kinds by IRI."""
+        ...
 
     @property
     def words(self) -> Mapping[str, tuple[Kind, ...]]:
         """Kinds by word."""
+        ...
 
 
 class Kinds:
@@ -117,13 +143,36 @@ class Kinds:
         return every
 
     def of_word(self, word: str) -> Kind | None:
-        """Return the kind that a word stands for; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` are equal."""
+        """Return the kind that a word stands for.
+
+        Parameters
+        ----------
+        word
+            The word; ``dinner_plate``, ``Dinner plate`` and ``DinnerPlate`` are equal.
+
+        Returns
+        -------
+        Kind or None
+            The kind, or None for other words.
+        """
         plain = spaced(word)
         return self.words.get(plain) or next(iter(self.senses(plain)), None)
 
     def senses(self, word: str) -> tuple[Kind, ...]:
-        """Return all kinds that a word stands for, the usual one first; *arm chair* and *armchair* are equal.
+        """Return all kinds that a word stands for.
 
+        Parameters
+        ----------
+        word
+            The word; *arm chair* and *armchair* are equal.
+
+        Returns
+        -------
+        tuple of Kind
+            The kinds, the usual one first.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> [kind.name for kind in default_ontology().kinds.senses("glasses")]
         ['Glass', 'Spectacles']
@@ -134,9 +183,21 @@ class Kinds:
     def head_noun(self, noun: str) -> tuple[tuple[Kind, ...], str]:
         """Return all kinds that the longest known end of a noun stands for, and the words before this end.
 
-        Without a known end, the kinds are empty and the words are the whole noun. Plurals count; of *cup of tea*, the
-        cup counts, and of *pair of scissors* the scissors.
+        Plurals count; of *cup of tea*, the cup counts, and of *pair of scissors* the scissors.
 
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        tuple
+            The kinds, and the words before the known end. Without a known end, the kinds are empty and the words are
+            the whole noun.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> kinds, rest = default_ontology().kinds.head_noun("old_rice_bowls")
         >>> [kind.name for kind in kinds], rest
@@ -148,15 +209,50 @@ class Kinds:
         return self._heads[key]
 
     def is_a(self, kind: Kind, broader: Kind) -> bool:
-        """Return whether ``kind`` is ``broader`` or a subclass of it."""
+        """Say whether a kind is a broader one or a subclass of it.
+
+        Parameters
+        ----------
+        kind
+            The kind.
+        broader
+            The broader kind.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
         return kind.iri == broader.iri or broader.iri in kind.broader
 
     def parent(self, kind: Kind) -> Kind:
-        """Return the narrowest kind above a kind: the kind itself for the kind of all things."""
+        """Return the narrowest kind above a kind.
+
+        Parameters
+        ----------
+        kind
+            The kind.
+
+        Returns
+        -------
+        Kind
+            Its parent; the kind itself for the kind of all things.
+        """
         return max((self[iri] for iri in sorted(kind.broader)), key=lambda above: len(above.broader), default=kind)
 
     def in_tbox(self, iri: str) -> bool:
-        """Return whether the TBox, not only the lexicon, has the kind."""
+        """Say whether the TBox, not only the lexicon, has a kind.
+
+        Parameters
+        ----------
+        iri
+            Class IRI of the kind.
+
+        Returns
+        -------
+        bool
+            True if it has.
+        """
         return iri in self._by_iri
 
     def _find_head(self, noun: str) -> tuple[tuple[Kind, ...], str]:
@@ -179,6 +275,18 @@ class Kinds:
 def spaced(word: str) -> str:
     """Return a word case-folded, with single spaces for underscores and hyphens.
 
+    Parameters
+    ----------
+    word
+        The word.
+
+    Returns
+    -------
+    str
+        The word.
+
+    Examples
+    --------
     >>> spaced("Coffee_Table")
     'coffee table'
     """

@@ -72,7 +72,13 @@ class Relation:
         return self.inverse == self.name
 
     def admits(self) -> NDArray[np.bool_]:
-        """Return the admitted atoms as a boolean array of shape (13, 13), axes x and y, indexed by Allen code."""
+        """Return the admitted atoms of the rectangle algebra.
+
+        Returns
+        -------
+        ndarray
+            Boolean array of shape (13, 13): Allen codes of the axes x and y.
+        """
         import numpy as np
 
         codes = np.arange(13)
@@ -116,11 +122,33 @@ class Relations(Mapping[str, Relation]):
         return len(self._all)
 
     def of_reading(self, reading: Reading) -> tuple[Relation, ...]:
-        """Return the relations of one reading, by index."""
+        """Return the relations of one reading.
+
+        Parameters
+        ----------
+        reading
+            The reading.
+
+        Returns
+        -------
+        tuple of Relation
+            The relations, by index.
+        """
         return tuple(relation for relation in self._all if relation.reading is reading)
 
     def members(self, mask: int) -> tuple[Relation, ...]:
-        """Return the relations in a relation set, by index."""
+        """Return the relations in a relation set.
+
+        Parameters
+        ----------
+        mask
+            Bit mask over the relations.
+
+        Returns
+        -------
+        tuple of Relation
+            The relations, by index.
+        """
         return tuple(relation for relation in self._all if mask >> relation.index & 1)
 
     @cached_property
@@ -138,20 +166,53 @@ class Relations(Mapping[str, Relation]):
         return words
 
     def wide(self, exact: Relation) -> Relation:
-        """Return the wide relation of the same word."""
+        """Return the wide relation of the same word.
+
+        Parameters
+        ----------
+        exact
+            The exact relation.
+
+        Returns
+        -------
+        Relation
+            The wide relation.
+        """
         if exact.reading is Reading.GRADED:
             return exact
         return self._by_name[exact.word]
 
     def paper_word(self, relation: Relation) -> str | None:
-        """Return the one of the ten words that a relation has or implies (*top* for *behind*), or None."""
+        """Return the one of the ten words that a relation has or implies.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        str or None
+            The word, such as *top* for *behind*, or None.
+        """
         if relation.reading is not Reading.GRADED:
             return relation.word
         wide = [name for name in sorted(relation.broader) if self._by_name[name].reading is Reading.WIDE]
         return wide[0] if wide else None
 
     def exact(self, wide: Relation) -> Relation:
-        """Return the exact relation of the same word; a graded word has only one reading."""
+        """Return the exact relation of the same word.
+
+        Parameters
+        ----------
+        wide
+            A relation in any reading.
+
+        Returns
+        -------
+        Relation
+            The exact relation, or the graded one, which is the only reading of its word.
+        """
         if wide.reading is Reading.GRADED:
             return wide
         return next(r for r in self._all if r.word == wide.word and r.reading is Reading.EXACT)
@@ -183,6 +244,18 @@ class Relations(Mapping[str, Relation]):
 def plain_phrase(words: str) -> str:
     """Return a phrase in the form that scripts are matched against: case-folded, without articles and underscores.
 
+    Parameters
+    ----------
+    words
+        The phrase.
+
+    Returns
+    -------
+    str
+        The plain form.
+
+    Examples
+    --------
     >>> plain_phrase("To the  Left_of")
     'to left of'
     """
@@ -193,8 +266,22 @@ ARTICLES = frozenset({"the", "a", "an"})
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that is spelt most like ``word``, or None if all are too different.
+    """Return the known word that is spelt most like a word.
 
+    Parameters
+    ----------
+    word
+        The word.
+    known
+        The known words.
+
+    Returns
+    -------
+    str or None
+        The nearest word, or None if all are too different.
+
+    Examples
+    --------
     >>> nearest("rihgt", ["left", "right"])
     'right'
     """
@@ -203,7 +290,27 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 
 
 def relation_from_triples(iri: str, triples: TripleIndex, index: int) -> Relation:
-    """Build a relation from the statements about ``iri``; raise OntologyError if a statement is missing."""
+    """Build a relation from the statements about it.
+
+    Parameters
+    ----------
+    iri
+        IRI of the relation.
+    triples
+        The TBox.
+    index
+        Index of the relation in its vocabulary.
+
+    Returns
+    -------
+    Relation
+        The relation.
+
+    Raises
+    ------
+    OntologyError
+        If a statement is missing.
+    """
     label = triples.only(iri, W3C.RDFS_LABEL)
     reading = READINGS[DX(triples.only(iri, DX.READING))]
     broader = [

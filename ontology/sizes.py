@@ -37,8 +37,22 @@ class Extent:
         return f"{100 * self.least:g} to {100 * self.greatest:g} cm"
 
     def admits(self, metres: float, tolerance: float = 0.0) -> bool:
-        """Return whether a length lies in the range, give or take ``tolerance`` metres.
+        """Say whether a length lies in the range.
 
+        Parameters
+        ----------
+        metres
+            The length.
+        tolerance
+            Metres by which it may lie outside.
+
+        Returns
+        -------
+        bool
+            True if it does.
+
+        Examples
+        --------
         >>> Extent(0.2, 0.25, 0.3).admits(0.31), Extent(0.2, 0.25, 0.3).admits(0.31, tolerance=0.02)
         (False, True)
         """
@@ -68,7 +82,18 @@ class SizeRange:
         return f"{self.length} long and {self.width} wide"
 
     def is_about_as_large_as(self, other: SizeRange) -> bool:
-        """Return whether typical length and height differ by a factor of at most ``ABOUT_AS_LARGE``."""
+        """Say whether typical length and height differ by a factor of at most ``ABOUT_AS_LARGE``.
+
+        Parameters
+        ----------
+        other
+            The size to compare with.
+
+        Returns
+        -------
+        bool
+            True if they do not differ by more.
+        """
         pairs = ((self.length, other.length), (self.height, other.height))
         return all(max(a.typical, b.typical) <= ABOUT_AS_LARGE * min(a.typical, b.typical) for a, b in pairs)
 
@@ -79,10 +104,12 @@ class FurtherSizes(Protocol):
     @property
     def sizes(self) -> Mapping[str, SizeRange]:
         """Sizes by kind."""
+        ...
 
     @property
     def parents(self) -> Mapping[str, tuple[str, ...]]:
         """Parents by kind."""
+        ...
 
 
 class Sizes:
@@ -107,9 +134,22 @@ class Sizes:
         self._nouns = nouns
 
     def of(self, kind: str | None) -> SizeRange:
-        """Return the size of a kind, or the size stated of all things where the kind is None.
+        """Return the size of a kind.
 
-        Raises OntologyError if the TBox states no size of all things.
+        Parameters
+        ----------
+        kind
+            Class IRI of the kind, or None for the size of all things.
+
+        Returns
+        -------
+        SizeRange
+            The size, in metres.
+
+        Raises
+        ------
+        OntologyError
+            If the TBox states no size of all things.
         """
         if kind is not None and kind not in self._parents and self._nouns is not None:
             self._take_in(self._nouns())
@@ -140,9 +180,24 @@ _EXTENTS = {
 
 
 def sizes_from_triples(triples: TripleIndex, nouns: Callable[[], FurtherSizes] | None = None) -> Sizes:
-    """Read all sizes from the TBox; raise OntologyError where one is incomplete or its numbers are out of order.
+    """Read all sizes from the TBox.
 
-    ``nouns`` reads the lexicon, with the sizes of the kinds that the TBox does not have.
+    Parameters
+    ----------
+    triples
+        The statements of the TBox.
+    nouns
+        Function that reads the lexicon, with the sizes of the kinds that the TBox does not have.
+
+    Returns
+    -------
+    Sizes
+        The sizes.
+
+    Raises
+    ------
+    OntologyError
+        If a size is incomplete or its numbers are out of order.
     """
     classes = triples.subjects(W3C.RDF_TYPE, W3C.OWL_CLASS)
     stated = {iri: _size_range(iri, triples) for iri in classes if triples.values(iri, DX.OUTLINE)}

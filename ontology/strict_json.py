@@ -27,6 +27,11 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
     no_number
         Message about ``NaN`` and ``Infinity``, after their name. None accepts them, for readers that check them later.
 
+    Returns
+    -------
+    object
+        The parsed data.
+
     Raises
     ------
     error
@@ -76,6 +81,18 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
 def json_type(data: Any) -> str:
     """Return the JSON type of a value in words, for messages.
 
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+
+    Returns
+    -------
+    str
+        The type with its article.
+
+    Examples
+    --------
     >>> json_type(None), json_type(1.5), json_type([]), json_type("fork")
     ('null', 'a number', 'a list', 'a string')
     """

@@ -55,9 +55,21 @@ class Ontology:
     def quality(self, words: str) -> tuple[Kind | None, Colour | None]:
         """Return the kind, the colour, or both, that words such as ``red mug`` stand for.
 
-        A colour is split off only where the other words are not a kind by themselves: a red wine glass need not be
-        red. Words that name neither give (None, None); a colour before unknown words gives (None, colour).
+        A colour is split off only where the other words are not a kind by themselves: a red wine glass need not be red.
 
+        Parameters
+        ----------
+        words
+            The words.
+
+        Returns
+        -------
+        tuple
+            Kind and colour. Words that name neither give (None, None); a colour before unknown words gives (None,
+            colour).
+
+        Examples
+        --------
         >>> kind, colour = default_ontology().quality("red mug")
         >>> kind.name, colour.label
         ('Mug', 'red')
@@ -78,6 +90,18 @@ class Ontology:
         that is not a kind itself is of the kind of its head noun: a rice bowl is a bowl. A noun that has several senses
         and is not a word of the TBox counts only if things of all its senses are about as large.
 
+        Parameters
+        ----------
+        name
+            Name of an object.
+
+        Returns
+        -------
+        tuple
+            Kind and colour; either may be None.
+
+        Examples
+        --------
         >>> [kind and kind.name for kind, _ in map(default_ontology().of_name, ("rice_bowl_2", "mouse", "router"))]
         ['Bowl', 'ComputerMouse', None]
         """
@@ -101,6 +125,11 @@ def load_ontology(*extra: str) -> Ontology:
     ----------
     *extra
         Turtle texts. A ``skos:altLabel`` is enough for scripts to understand a new word for a relation.
+
+    Returns
+    -------
+    Ontology
+        The ontology.
 
     Raises
     ------
@@ -141,7 +170,13 @@ def load_ontology(*extra: str) -> Ontology:
 
 
 def tbox_turtle() -> str:
-    """Return the shipped TBox as one Turtle text."""
+    """Return the shipped TBox as one Turtle text.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     return "\n".join(file.read_text(encoding="utf-8") for file in TBOX_FILES)
 
 

@@ -35,16 +35,44 @@ class TermIndex(Generic[Term]):
         self._subjects: dict[Term, dict[Term, set[Term]]] = defaultdict(lambda: defaultdict(set))
 
     def add(self, subject: Term, predicate: Term, object: Term) -> None:
-        """Add a triple; adding it twice changes nothing."""
+        """Add a triple; adding it twice changes nothing.
+
+        Parameters
+        ----------
+        subject, predicate, object
+            Terms of the triple.
+        """
         self._objects[predicate][subject].add(object)
         self._subjects[predicate][object].add(subject)
 
     def objects(self, subject: Term, predicate: Term) -> Collection[Term]:
-        """Return the objects of a subject under a predicate; do not modify the collection."""
+        """Return the objects of a subject under a predicate.
+
+        Parameters
+        ----------
+        subject, predicate
+            Terms.
+
+        Returns
+        -------
+        collection of Term
+            The objects; do not modify the collection.
+        """
         return self._objects[predicate].get(subject, ()) if predicate in self._objects else ()
 
     def subjects(self, predicate: Term, object: Term) -> Collection[Term]:
-        """Return the subjects of an object under a predicate; do not modify the collection."""
+        """Return the subjects of an object under a predicate.
+
+        Parameters
+        ----------
+        predicate, object
+            Terms.
+
+        Returns
+        -------
+        collection of Term
+            The subjects; do not modify the collection.
+        """
         return self._subjects[predicate].get(object, ()) if predicate in self._subjects else ()
 
 
@@ -58,26 +86,88 @@ class TripleIndex(TermIndex[str]):
             self.add(subject, triple.predicate.value, value)
 
     def values(self, subject: str, predicate: str) -> list[str]:
-        """Return the objects of a subject under a predicate, sorted."""
+        """Return the objects of a subject under a predicate.
+
+        Parameters
+        ----------
+        subject, predicate
+            IRIs.
+
+        Returns
+        -------
+        list of str
+            The objects, sorted.
+        """
         return sorted(self.objects(subject, predicate))
 
     def value(self, subject: str, predicate: str) -> str | None:
-        """Return the first of the sorted objects, or None if there is no object."""
+        """Return the first of the sorted objects of a subject under a predicate.
+
+        Parameters
+        ----------
+        subject, predicate
+            IRIs.
+
+        Returns
+        -------
+        str or None
+            The object, or None if there is none.
+        """
         return min(self.objects(subject, predicate), default=None)
 
     def only(self, subject: str, predicate: str) -> str:
-        """Return the only object of a subject under a predicate; raise OntologyError unless there is exactly one."""
+        """Return the only object of a subject under a predicate.
+
+        Parameters
+        ----------
+        subject, predicate
+            IRIs.
+
+        Returns
+        -------
+        str
+            The object.
+
+        Raises
+        ------
+        OntologyError
+            Unless there is exactly one.
+        """
         found = self.values(subject, predicate)
         if len(found) != 1:
             raise OntologyError(f"<{subject}> must have exactly one <{predicate}>, got {len(found)}")
         return found[0]
 
     def subjects(self, predicate: str, object: str) -> list[str]:
-        """Return the subjects that have an object under a predicate, sorted."""
+        """Return the subjects that have an object under a predicate.
+
+        Parameters
+        ----------
+        predicate
+            IRI.
+        object
+            IRI or text.
+
+        Returns
+        -------
+        list of str
+            The subjects, sorted.
+        """
         return sorted(super().subjects(predicate, object))
 
     def ancestors(self, subject: str, predicate: str) -> frozenset[str]:
-        """Return all terms reached from ``subject`` along ``predicate``, without itself; cycles are allowed."""
+        """Return all terms reached from a term along a predicate; cycles are allowed.
+
+        Parameters
+        ----------
+        subject, predicate
+            IRIs.
+
+        Returns
+        -------
+        frozenset of str
+            IRIs of the terms, without the subject itself.
+        """
         seen: set[str] = set()
         todo = [subject]
         while todo:

@@ -22,6 +22,18 @@ LEARNED = "https://w3id.org/deixis/learned/"
 def learned_iri(*parts: str | int) -> str:
     """Return an IRI under :data:`LEARNED`, each part percent-encoded so that no part can add a path segment.
 
+    Parameters
+    ----------
+    parts
+        Parts of the path.
+
+    Returns
+    -------
+    str
+        The IRI.
+
+    Examples
+    --------
     >>> learned_iri("category", "fish knife>")
     'https://w3id.org/deixis/learned/category/fish%20knife%3E'
     """
@@ -34,18 +46,52 @@ def _encoded(part: str) -> str:
 
 
 def category_iri(name: str) -> str:
-    """Return the IRI of the learned class of the objects called ``name``."""
+    """Return the IRI of the learned class of the objects called ``name``.
+
+    Parameters
+    ----------
+    name
+        Name of the category.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("category", name)
 
 
 def content_key(content: str) -> str:
-    """Return a hash of a text: 16 hexadecimal digits of SHA-256, valid in the label of a blank node."""
+    """Return a hash of a text: 16 hexadecimal digits of SHA-256, valid in the label of a blank node.
+
+    Parameters
+    ----------
+    content
+        The text.
+
+    Returns
+    -------
+    str
+        The hash.
+    """
     return hashlib.sha256(content.encode("utf-8")).hexdigest()[:16]
 
 
 def last_part(iri: str) -> str:
     """Return the last part of a learned IRI, decoded.
 
+    Parameters
+    ----------
+    iri
+        The IRI.
+
+    Returns
+    -------
+    str
+        The part.
+
+    Examples
+    --------
     >>> last_part(learned_iri("category", "fish knife>"))
     'fish knife>'
     """
@@ -56,12 +102,34 @@ XSD = "http://www.w3.org/2001/XMLSchema#"
 
 
 def iri(value: str) -> ox.NamedNode:
-    """Return a named node; ``value`` may be a member of the closed vocabulary."""
+    """Return a named node.
+
+    Parameters
+    ----------
+    value
+        An IRI, which may be a member of the closed vocabulary.
+
+    Returns
+    -------
+    ox.NamedNode
+        The node.
+    """
     return ox.NamedNode(str(value))
 
 
 def text(value: str) -> ox.Literal:
-    """Return a plain string literal."""
+    """Return a plain string literal.
+
+    Parameters
+    ----------
+    value
+        The text.
+
+    Returns
+    -------
+    ox.Literal
+        The literal.
+    """
     return ox.Literal(value)
 
 
@@ -70,6 +138,16 @@ def typed(value: bool | int | float | datetime) -> ox.Literal:
 
     A boolean, integer or datetime keeps its type; a datetime has milliseconds, the finest unit that HermiT reads. A
     float becomes an xsd:double.
+
+    Parameters
+    ----------
+    value
+        The value.
+
+    Returns
+    -------
+    ox.Literal
+        The literal.
     """
     if isinstance(value, bool):
         return ox.Literal(str(value).lower(), datatype=iri(XSD + "boolean"))
@@ -80,7 +158,18 @@ def typed(value: bool | int | float | datetime) -> ox.Literal:
 
 
 def decimal(value: float) -> ox.Literal:
-    """Return a number as xsd:decimal, which is written without an exponent."""
+    """Return a number as xsd:decimal, which is written without an exponent.
+
+    Parameters
+    ----------
+    value
+        The number.
+
+    Returns
+    -------
+    ox.Literal
+        The literal.
+    """
     return ox.Literal(format(Decimal(repr(float(value))), "f"), datatype=iri(XSD + "decimal"))
 
 
@@ -98,7 +187,15 @@ class Description:
         self._triples: list[ox.Triple] = []
 
     def say(self, predicate: str, *objects: ox.NamedNode | ox.Literal) -> None:
-        """Add one triple per object."""
+        """Add one triple per object.
+
+        Parameters
+        ----------
+        predicate
+            IRI of the predicate.
+        objects
+            The objects, each of which gives a triple.
+        """
         self._triples += [ox.Triple(self.subject, iri(predicate), value) for value in objects]
 
     def __iter__(self) -> Iterator[ox.Triple]:
@@ -109,13 +206,36 @@ GENID = "https://w3id.org/deixis/.well-known/genid/"
 
 
 def skolem(key: str) -> ox.NamedNode:
-    """Return the IRI that stands for a blank node; ``key`` has only letters, digits, ``-``, ``_`` and ``.``."""
+    """Return the IRI that stands for a blank node.
+
+    Parameters
+    ----------
+    key
+        Label of the blank node: letters, digits, ``-``, ``_`` and ``.``.
+
+    Returns
+    -------
+    ox.NamedNode
+        The IRI.
+    """
     return ox.NamedNode(GENID + key)
 
 
 def with_blank_nodes(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
     """Yield the triples with Skolem IRIs replaced by blank nodes.
 
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
+
+    Examples
+    --------
     >>> list(with_blank_nodes([ox.Triple(skolem("x"), ox.NamedNode("urn:p"), ox.Literal("1"))]))[0].subject
     <BlankNode value=x>
     """
@@ -124,7 +244,18 @@ def with_blank_nodes(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
 
 
 def with_names(triples: Iterable[ox.Triple]) -> Iterator[ox.Triple]:
-    """Yield the triples with blank nodes replaced by Skolem IRIs, made from their labels."""
+    """Yield the triples with blank nodes replaced by Skolem IRIs, made from their labels.
+
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
+    """
     for triple in triples:
         yield ox.Triple(_named(triple.subject), triple.predicate, _named(triple.object))
 
@@ -133,7 +264,18 @@ _Term = TypeVar("_Term")
 
 
 def with_blank(term: _Term) -> _Term | ox.BlankNode:
-    """Return the blank node that a Skolem IRI stands for, or any other term unchanged."""
+    """Return the blank node that a Skolem IRI stands for, or any other term unchanged.
+
+    Parameters
+    ----------
+    term
+        The term.
+
+    Returns
+    -------
+    _Term or ox.BlankNode
+        The blank node, or the term itself.
+    """
     if isinstance(term, ox.NamedNode) and term.value.startswith(GENID):
         return ox.BlankNode(term.value.removeprefix(GENID))
     return term

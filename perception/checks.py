@@ -18,14 +18,50 @@ MAX_SHOWN = 60
 
 
 def mapping(data: Any, where: str) -> Mapping[str, Any]:
-    """Return ``data`` if it is a JSON object; else raise SceneError."""
+    """Check that parsed JSON is an object.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+    where
+        Its place, for the message.
+
+    Returns
+    -------
+    dict
+        The data.
+
+    Raises
+    ------
+    SceneError
+        If it is anything else.
+    """
     if not isinstance(data, Mapping):
         raise SceneError(f"{where} must be an object {{…}}, got {json_type(data)}")
     return data
 
 
 def number(data: Any, where: str) -> float:
-    """Return ``data`` as a float if it is a finite number; else raise SceneError."""
+    """Check that parsed JSON is a finite number.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+    where
+        Its place, for the message.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    SceneError
+        If it is anything else.
+    """
     if isinstance(data, bool) or not isinstance(data, int | float):
         raise SceneError(f"{where} must be a number, got {json_type(data)}")
     try:
@@ -38,7 +74,25 @@ def number(data: Any, where: str) -> float:
 
 
 def text(data: Any, where: str) -> str:
-    """Return ``data`` if it is a string that is not blank, not too long, and can be encoded as UTF-8."""
+    """Check that parsed JSON is a string that is not blank, not too long, and can be encoded as UTF-8.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+    where
+        Its place, for the message.
+
+    Returns
+    -------
+    str
+        The string.
+
+    Raises
+    ------
+    SceneError
+        If it is anything else.
+    """
     if not isinstance(data, str):
         raise SceneError(f"{where} must be a string, got {json_type(data)}")
     if not data.strip():
@@ -51,7 +105,25 @@ def text(data: Any, where: str) -> str:
 
 
 def score(entry: Mapping[str, Any], where: str) -> float:
-    """Return the ``score`` of a detector, a probability; 1 if the entry has no score."""
+    """Return the ``score`` of a detector.
+
+    Parameters
+    ----------
+    entry
+        Parsed JSON of one detection.
+    where
+        Its place, for the message.
+
+    Returns
+    -------
+    float
+        The probability, in [0, 1]; 1 if the entry has no score.
+
+    Raises
+    ------
+    SceneError
+        If the score is not a probability.
+    """
     found = entry.get("score")
     value = 1.0 if found is None else number(found, f"{where}: 'score'")
     if not 0 <= value <= 1:
@@ -60,7 +132,25 @@ def score(entry: Mapping[str, Any], where: str) -> float:
 
 
 def pixels(data: Any, where: str) -> float | None:
-    """Return the height or width of an image in pixels, or None if it is not given."""
+    """Return the height or width of an image.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON, or None.
+    where
+        Its place, for the message.
+
+    Returns
+    -------
+    float or None
+        The number of pixels, or None if it is not given.
+
+    Raises
+    ------
+    SceneError
+        If it is not a positive number.
+    """
     if data is None:
         return None
     value = number(data, where)
@@ -70,7 +160,27 @@ def pixels(data: Any, where: str) -> float | None:
 
 
 def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
-    """Return the list under ``key``; raise SceneError if it is missing or not a list."""
+    """Return the list under a key.
+
+    Parameters
+    ----------
+    entry
+        Parsed JSON of an object.
+    key
+        The key.
+    where
+        Place of the object, for the message.
+
+    Returns
+    -------
+    list of object
+        The list.
+
+    Raises
+    ------
+    SceneError
+        If it is missing or not a list.
+    """
     if key not in entry:
         raise SceneError(f"{where}: '{key}' is missing")
     if not isinstance(entry[key], list):
@@ -79,8 +189,20 @@ def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
 
 
 def shown(value: object) -> str:
-    r"""Return a value for an error message: on one line, with at most :data:`MAX_SHOWN` characters.
+    r"""Return a value for an error message.
 
+    Parameters
+    ----------
+    value
+        The value.
+
+    Returns
+    -------
+    str
+        Text on one line, with at most :data:`MAX_SHOWN` characters.
+
+    Examples
+    --------
     >>> shown("a.jpg"), len(shown("a" * 1000))
     ('a.jpg', 60)
     >>> print(shown("two\nlines"))

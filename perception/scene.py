@@ -51,7 +51,18 @@ class OrientedBox:
     extents: tuple[float, float, float]
 
     def rounded(self, digits: int) -> OrientedBox:
-        """Return the box with coordinates and extents rounded to ``digits`` decimals."""
+        """Return the box with rounded coordinates and extents.
+
+        Parameters
+        ----------
+        digits
+            Number of decimals, in the unit of the scene.
+
+        Returns
+        -------
+        OrientedBox
+            The box with all of its numbers rounded.
+        """
         x, y, z, length, width, height = (round(value, digits) for value in (*self.centre, *self.extents))
         return OrientedBox((x, y, z), round(self.yaw, digits), (length, width, height))
 
@@ -61,14 +72,36 @@ class OrientedBox:
         return turned_axes(self.yaw)
 
     def to_open3d(self) -> Any:
-        """Return the box as an ``open3d.geometry.OrientedBoundingBox``."""
+        """Return the box for Open3D.
+
+        Returns
+        -------
+        open3d.geometry.OrientedBoundingBox
+            The box with its centre, rotation and extents.
+
+        Raises
+        ------
+        MissingExtraError
+            If Open3D is not installed.
+        """
         from deixis.perception.open3d import open3d
 
         return open3d().geometry.OrientedBoundingBox(np.array(self.centre), self.axes.T, np.array(self.extents))
 
 
 def turned_axes(yaw: float) -> NDArray[np.float64]:
-    """Return the axes turned by ``yaw`` radians about the vertical, as rows of shape (3, 3)."""
+    """Return axes turned about the vertical.
+
+    Parameters
+    ----------
+    yaw
+        Angle in radians, counter-clockwise seen from above.
+
+    Returns
+    -------
+    ndarray
+        The axes as rows, shape (3, 3).
+    """
     cosine, sine = np.cos(yaw), np.sin(yaw)
     return np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
@@ -124,7 +157,18 @@ class PerceivedObject:
     front: tuple[float, float] | None = None
 
     def to_open3d(self) -> Any:
-        """Return the box as an ``open3d.geometry.AxisAlignedBoundingBox``; a box without heights lies at z = 0."""
+        """Return the axis-aligned box for Open3D.
+
+        Returns
+        -------
+        open3d.geometry.AxisAlignedBoundingBox
+            The box; one without heights lies at z = 0.
+
+        Raises
+        ------
+        MissingExtraError
+            If Open3D is not installed.
+        """
         from deixis.perception.open3d import open3d
 
         low, high = (np.array([*corner, 0.0][:3]) for corner in (self.minimum, self.maximum))
@@ -242,8 +286,17 @@ class Scene(Answer):
             Names of the objects, strings or integers; ``o1``, ``o2``, … without them.
         labels, confidences
             Label of each object or None, and the probability that the label is right.
+        frame
+            Name of the frame of the coordinates.
+        viewpoint
+            Name of the side from which x points right and y away; ``unknown`` if the axes have no such meaning.
         unit
             ``m``, or ``px`` for boxes in an image.
+
+        Returns
+        -------
+        Scene
+            A scene of n objects.
 
         Raises
         ------
@@ -291,8 +344,26 @@ class Scene(Answer):
     ) -> Scene:
         """Return a scene of Open3D bounding boxes, point clouds or meshes.
 
-        Each object has the axis-aligned box around its shape, and the points if the shape is a point cloud. ``ids`` and
-        ``labels`` have the same meaning as in :meth:`from_boxes`.
+        Each object has the axis-aligned box around its shape, and the points if the shape is a point cloud.
+
+        Parameters
+        ----------
+        boxes
+            Geometries of Open3D.
+        ids, labels
+            Name of each object, and its label or None, as in :meth:`from_boxes`.
+        viewpoint
+            Name of the side from which x points right and y away.
+
+        Returns
+        -------
+        Scene
+            An object for each geometry, in metres.
+
+        Raises
+        ------
+        SceneError
+            If a geometry is empty, or the numbers of ids or labels do not agree.
         """
         from deixis.perception.open3d import open3d
 
@@ -308,24 +379,61 @@ class Scene(Answer):
 
     @classmethod
     def from_coco(cls, source: str | Path | Mapping[str, Any], image: str | int | None = None) -> Scene:
-        """Return the scene of one image in a file (or parsed JSON) of COCO instance annotations.
+        """Return the scene of one image in COCO instance annotations.
 
-        ``image`` selects the image by file name or id if there are several. Raises SceneError for bad input.
+        Parameters
+        ----------
+        source
+            File of annotations, or parsed JSON of one.
+        image
+            File name or id of the image, if there are several.
+
+        Returns
+        -------
+        Scene
+            The annotated boxes, in pixels, with y upward.
+
+        Raises
+        ------
+        SceneError
+            If the annotations are invalid, or the image is not among them.
         """
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
 
     @classmethod
     def from_detections3d(cls, message: Any, *, viewpoint: str = "chair") -> Scene:
-        """Return the scene of a ``vision_msgs/Detection3DArray``, given as a message or as dictionaries.
+        """Return the scene of a ``vision_msgs/Detection3DArray``.
 
-        :func:`deixis.perception.formats.detections3d.scene_from_detections3d` lists the fields.
+        Parameters
+        ----------
+        message
+            The message, or its fields as dictionaries and lists;
+            :func:`deixis.perception.formats.detections3d.scene_from_detections3d` lists the fields.
+        viewpoint
+            Name of the side from which x points right and y away.
+
+        Returns
+        -------
+        Scene
+            An object for each detection, in metres, with the probabilities of its labels.
+
+        Raises
+        ------
+        SceneError
+            If a field is missing or has another type.
         """
         read: Callable[..., Scene] = _format("detections3d").scene_from_detections3d
         return read(message, viewpoint=viewpoint)
 
     def to_detections3d(self) -> dict[str, Any]:
-        """Return the fields of a ``vision_msgs/Detection3DArray``, as dictionaries and lists."""
+        """Return the fields of a ``vision_msgs/Detection3DArray``.
+
+        Returns
+        -------
+        dict
+            The fields as dictionaries and lists, in metres.
+        """
         write: Callable[[Scene], dict[str, Any]] = _format("detections3d").scene_to_detections3d
         return write(self)
 
@@ -378,7 +486,20 @@ class Scene(Answer):
     def cloud_of(self, id: str) -> PointCloud:
         """Return the points of an object in the frame of the scene; a file is read again on each call.
 
-        Raises SceneError if the scene has no such object, the object has no points, or its file cannot be read.
+        Parameters
+        ----------
+        id
+            Id of the object.
+
+        Returns
+        -------
+        PointCloud
+            The points of the object, in metres.
+
+        Raises
+        ------
+        SceneError
+            If the scene has no such object, the object has no points, or its file cannot be read.
         """
         if id not in self.ids:
             raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
@@ -401,7 +522,17 @@ class Scene(Answer):
         """Return the geometries for ``open3d.visualization.draw_geometries``: each object's points and box.
 
         The box is the oriented one if the object has one, else the axis-aligned one, in the colour of the object (black
-        if it is unknown). Raises SceneError if a cloud file cannot be read.
+        if it is unknown).
+
+        Returns
+        -------
+        list of open3d.geometry.Geometry3D
+            Clouds and boxes, in the order of the objects.
+
+        Raises
+        ------
+        SceneError
+            If a cloud file cannot be read.
         """
         shapes: list[Any] = []
         for thing in self.objects:
@@ -426,7 +557,17 @@ class Scene(Answer):
         tolerance
             Overlap up to which two intervals count as touching, in the unit of the scene.
         deadline
-            Time limit; OutOfTimeError is raised when it passes.
+            Time limit.
+
+        Returns
+        -------
+        SceneRelations
+            The exact relations as matrices of shape (n, n).
+
+        Raises
+        ------
+        OutOfTimeError
+            If the deadline passes.
         """
         key = (id(vocabulary), tolerance)
         if key not in self._relations:
@@ -438,16 +579,46 @@ class Scene(Answer):
         return self._relations[key]
 
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:
-        """Return the relations of all pairs as a complete relation graph, for export."""
+        """Return the relations of all pairs as a complete relation graph, for export.
+
+        Parameters
+        ----------
+        vocabulary
+            Relations of the ontology.
+        tolerance
+            Overlap up to which two intervals count as touching, in the unit of the scene.
+
+        Returns
+        -------
+        RelationGraph
+            A graph with a node for each object and an edge for each ordered pair.
+        """
         return self.relations(vocabulary, tolerance).graph()
 
     def without_labels(self) -> Scene:
-        """Return the scene without labels and candidates."""
+        """Return the scene without labels and candidates.
+
+        Returns
+        -------
+        Scene
+            The scene; boxes, clouds and colours are kept.
+        """
         bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
         return replace(self, objects=tuple(bare))
 
     def reordered(self, order: Sequence[int]) -> Scene:
-        """Return the scene with its objects in another order, and without the detection."""
+        """Return the scene with its objects in another order, and without the detection.
+
+        Parameters
+        ----------
+        order
+            Present positions of the n objects, in their new order.
+
+        Returns
+        -------
+        Scene
+            The scene.
+        """
         return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
 
 

@@ -28,7 +28,18 @@ class SettingError(DeixisError, ValueError):
 
 
 def require_time_limit(seconds: float) -> None:
-    """Raise SettingError unless ``seconds`` is a number of at least 0."""
+    """Raise SettingError unless a time limit is a number of at least 0.
+
+    Parameters
+    ----------
+    seconds
+        The time limit.
+
+    Raises
+    ------
+    SettingError
+        If it is not.
+    """
     if not isinstance(seconds, Real) or not seconds >= 0:
         raise SettingError(f"the time limit must be 0 or more seconds, got {seconds}")
 

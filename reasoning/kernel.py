@@ -26,7 +26,18 @@ Steps = Callable[..., int]
 
 
 def elements(*arguments: Any) -> int:
-    """Return the total number of elements of the arrays among the arguments."""
+    """Return the total number of elements of the arrays among the arguments.
+
+    Parameters
+    ----------
+    arguments
+        Arguments of a kernel, arrays or others.
+
+    Returns
+    -------
+    int
+        The total number of elements.
+    """
     return sum(getattr(argument, "size", 0) for argument in arguments)
 
 
@@ -61,7 +72,13 @@ class Kernel:
         return self._calling(lambda other: other.interpretation)
 
     def load(self) -> Callable[..., Any]:
-        """Return numba's dispatcher of the function, in which the kernels that it calls are dispatchers too."""
+        """Load numba's dispatcher of the function, in which the kernels that it calls are dispatchers too.
+
+        Returns
+        -------
+        callable
+            The dispatcher.
+        """
         self.dispatcher = self.compiled(self._calling(lambda other: other.dispatcher or other.load()))
         return self.dispatcher
 
@@ -73,7 +90,18 @@ class Kernel:
         return FunctionType(self.function.__code__, {**scope, **others}) if others else self.function
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Return the compiled version of the function."""
+        """Return the compiled version of the function.
+
+        Parameters
+        ----------
+        function
+            A Python function.
+
+        Returns
+        -------
+        callable
+            Its compiled version.
+        """
         dispatcher: Callable[..., Any] = _numba().njit(**self.options)(function)
         return dispatcher
 
@@ -90,13 +118,38 @@ class Instruction(Kernel):
         return self.function(*arguments)
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Return numba's version."""
+        """Return numba's version.
+
+        Parameters
+        ----------
+        function
+            A Python function.
+
+        Returns
+        -------
+        callable
+            Numba's version.
+        """
         return self.intrinsic()
 
 
 def kernel(steps: Steps = elements, **options: Any) -> Callable[[Callable[..., Any]], Kernel]:
     """Return a decorator that makes a function a kernel, interpreted while its calls take few steps.
 
+    Parameters
+    ----------
+    steps
+        Function of the arguments of a call that estimates its number of steps.
+    options
+        Options of ``numba.njit``.
+
+    Returns
+    -------
+    callable
+        The decorator.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> @kernel()
     ... def total(numbers):
@@ -111,12 +164,29 @@ def kernel(steps: Steps = elements, **options: Any) -> Callable[[Callable[..., A
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
-    """Return the decorator ``numba.njit(**options)``, but import numba only when the kernel is first called."""
+    """Return the decorator ``numba.njit(**options)``, but import numba only when the kernel is first called.
+
+    Parameters
+    ----------
+    options
+        Options of ``numba.njit``.
+
+    Returns
+    -------
+    callable
+        The decorator.
+    """
     return lambda function: Kernel(function, None, **options)
 
 
 def interprets() -> bool:
-    """Return True while kernels with little to do are still interpreted."""
+    """Say whether kernels with little to do are still interpreted.
+
+    Returns
+    -------
+    bool
+        False once enough steps were interpreted, or kernels were compiled on purpose.
+    """
     return Kernel.interpreted <= MAX_INTERPRETED
 
 
@@ -126,7 +196,13 @@ def load_compiled() -> None:
 
 
 def when_compiling(tell: Callable[[], object]) -> None:
-    """Call ``tell`` whenever numba compiles a function that is not kept on disk, which takes seconds."""
+    """Call a function whenever numba compiles a function that is not kept on disk, which takes seconds.
+
+    Parameters
+    ----------
+    tell
+        The function.
+    """
     _COMPILE_LISTENERS.append(tell)
 
 

@@ -847,7 +847,7 @@ def verb_forms() -> dict[str, VerbForm]:
         for entry in entries:
             parts = entry.split()
             lemma = parts[0]
-            forms = dict(zip(("s", "past", "participle", "ing"), parts[1:], strict=False))
+            forms: dict[str, str] = dict(zip(("s", "past", "participle", "ing"), parts[1:], strict=False))
             for form, regular in (("base", lemma), *_regular(lemma).items()):
                 if lemma in _ONLY_PARTICIPLES and form in ("base", "s"):
                     continue

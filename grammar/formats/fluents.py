@@ -54,7 +54,22 @@ class FluentFile:
 def read_fluents(path: str | Path) -> FluentFile:
     """Read a file of fluents.
 
-    Raises FluentFileError, with the place, for a file with an error, and ScriptFileError for one that cannot be read.
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    FluentFile
+        The fluents and their relations.
+
+    Raises
+    ------
+    FluentFileError
+        If the file has an error; the message names the place.
+    ScriptFileError
+        If the file cannot be read.
     """
     if Path(path).is_dir():
         raise FluentFileError(f"{path}: this is a directory, not a file of fluents")
@@ -62,8 +77,27 @@ def read_fluents(path: str | Path) -> FluentFile:
 
 
 def parse_fluents(text: str, file: str = "<fluents>") -> FluentFile:
-    """Read the text of a file of fluents; ``file`` is its name in messages and explanations.
+    """Read the text of a file of fluents.
 
+    Parameters
+    ----------
+    text
+        The text, in JSON.
+    file
+        Its name in messages and explanations.
+
+    Returns
+    -------
+    FluentFile
+        The fluents and their relations.
+
+    Raises
+    ------
+    FluentFileError
+        If the text has an error; the message names the line and column, or the path to the place.
+
+    Examples
+    --------
     >>> cup = '{"id": "f", "statement": ["cup", "full"], "start": [0, 2]}'
     >>> parsed = parse_fluents(f'{{"origin": "noon", "fluents": [{cup}]}}')
     >>> str(parsed.fluents[0])
@@ -203,7 +237,18 @@ def _suggestion(name: str, names: Collection[str]) -> str:
 
 
 def format_fluents(content: FluentFile) -> str:
-    """Return the text of a file of fluents, one fluent or relation per line; reading it gives the same content."""
+    """Return the text of a file of fluents, one fluent or relation per line.
+
+    Parameters
+    ----------
+    content
+        The fluents and their relations.
+
+    Returns
+    -------
+    str
+        The text; reading it gives the same content.
+    """
     head = f'{{\n  "origin": {_json(content.origin)},\n  "unit": "s",\n'
     fluents = _lines([_fluent_to_dict(fluent) for fluent in content.fluents])
     relations = _lines([_relation_to_dict(relation) for relation in content.relations])
@@ -211,8 +256,20 @@ def format_fluents(content: FluentFile) -> str:
 
 
 def bounds_to_json(bounds: Bounds) -> Any:
-    """Return bounds as a file writes them: ``[lower, upper]``, or an object if an end is open.
+    """Return bounds as a file writes them.
 
+    Parameters
+    ----------
+    bounds
+        Lower and upper bound in seconds.
+
+    Returns
+    -------
+    list or dict
+        ``[lower, upper]``, or an object if an end is open.
+
+    Examples
+    --------
     >>> bounds_to_json(Bounds(0, 5)), bounds_to_json(Bounds(2.5))
     ([0, 5], [2.5, None])
     """

@@ -38,6 +38,11 @@ def parse_habits(text: str, file: str = "<text>") -> StatedHabits:
     file
         Name of the text in error messages.
 
+    Returns
+    -------
+    StatedHabits
+        The examples, the rules and the places.
+
     Raises
     ------
     HabitsFileError
@@ -78,5 +83,23 @@ def parse_habits(text: str, file: str = "<text>") -> StatedHabits:
 
 
 def read_habits(path: str | Path) -> StatedHabits:
-    """Read a file of habits; see :func:`parse_habits`."""
+    """Read a file of habits.
+
+    Parameters
+    ----------
+    path
+        The file; :func:`parse_habits` says what it holds.
+
+    Returns
+    -------
+    StatedHabits
+        The examples, the rules and the places.
+
+    Raises
+    ------
+    HabitsFileError
+        If a line has another form, or puts a thing in two places.
+    ScriptFileError
+        If the file cannot be read.
+    """
     return parse_habits(read_text(Path(path), str(path)), str(path))

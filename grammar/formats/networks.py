@@ -85,8 +85,29 @@ def read_networks(path: str | Path, calculi: Sequence[Calculus]) -> tuple[Networ
 
 
 def parse_networks(text: str, calculi: Sequence[Calculus], file: str = "<text>") -> tuple[NetworkText, ...]:
-    r"""Return the networks in a text; raise NetworkFileError with the file, line and column of each error.
+    r"""Return the networks in a text.
 
+    Parameters
+    ----------
+    text
+        The text.
+    calculi
+        Calculi of its relations.
+    file
+        Its name in messages.
+
+    Returns
+    -------
+    tuple of NetworkText
+        The networks, each with its comment and line.
+
+    Raises
+    ------
+    NetworkFileError
+        If the text has errors; the message names the line and column of each.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> point = calculus("point")
     >>> found = parse_networks("2 # three things\n0 1 ( < )\n1 2 (< =)\n.", [point])
@@ -212,15 +233,41 @@ class _Reader:
 
 
 def write_networks(networks: Iterable[tuple[Network, str]]) -> str:
-    """Return networks with their comments as text; reading the text gives the same networks.
+    """Return networks with their comments as text.
 
-    Raises NetworkError for a network without things, which the format cannot express.
+    Parameters
+    ----------
+    networks
+        Pairs of a network and its comment.
+
+    Returns
+    -------
+    str
+        The text; reading it gives the same networks.
+
+    Raises
+    ------
+    NetworkError
+        If a network has no things, which the format cannot express.
     """
     return "".join(f"{line}\n" for network, comment in networks for line in network_lines((network,), comment))
 
 
 def network_lines(networks: Sequence[Network], comment: str = "") -> Iterator[str]:
-    """Yield the lines of one network; if it is over several calculi, every line names its own."""
+    """Yield the lines of one network.
+
+    Parameters
+    ----------
+    networks
+        The network over each of its calculi; if these are several, every line names its own.
+    comment
+        Comment of the first line.
+
+    Yields
+    ------
+    str
+        A line without its end.
+    """
     size = networks[0].size
     if size < 1:
         raise NetworkError("a network must have at least one thing to be written, got none")

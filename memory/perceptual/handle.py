@@ -334,6 +334,8 @@ class Handle:
         with self._idle:
             db, self._db = self._db, None
             self._idle.wait_for(lambda: not self._calls)
+        if db is None:
+            return
         sealed = self._failed is None and self._scratch is None
         with contextlib.suppress(plyvel.Error, OSError):  # all acknowledged batches are in the log already
             if sealed:

@@ -57,7 +57,13 @@ class Dump:
     models: dict[ModelSet, set[ox.Triple]] = field(default_factory=lambda: defaultdict(set))
 
     def quads(self) -> Iterator[ox.Quad]:
-        """Yield all quads that a new memory stores for this content."""
+        """Yield all quads that a new memory stores for this content.
+
+        Yields
+        ------
+        ox.Quad
+            A quad.
+        """
         for name, triples in self.canonical.items():
             yield from _in(graph_iri(name), triples)
         for lesson, graphs in self.lessons.items():
@@ -76,6 +82,11 @@ class Dump:
         """Return the lessons in the order of their stated starting times, then by id.
 
         The numbers of lessons in a memory are not exported, so that the order of learning does not change the export.
+
+        Returns
+        -------
+        list of str
+            Ids of the lessons.
         """
 
         def started(lesson: str) -> datetime:
@@ -86,7 +97,18 @@ class Dump:
         return sorted(self.lessons, key=lambda lesson: (started(lesson), lesson))
 
     def loose(self, name: GraphName) -> set[ox.Triple]:
-        """Return the triples of a canonical graph that come from no lesson, no learned model and not the package."""
+        """Return the triples of a canonical graph that come from no lesson, no learned model and not the package.
+
+        Parameters
+        ----------
+        name
+            Name of the graph.
+
+        Returns
+        -------
+        set of ox.Triple
+            The triples.
+        """
         held = [self.package[name], *(graphs[name] for graphs in self.lessons.values())]
         held += self.models.values() if name is GraphName.LEARNED else ()
         return self.canonical[name].difference(*held) | self.loaded[name]
@@ -95,7 +117,20 @@ class Dump:
 def read_dump(file: Path) -> Dump:
     """Read a file. Plain triples become the asserted graph of a lesson that is named after the file.
 
-    Raises ImportFormatError for a file that cannot be read, or that has a graph unknown to memories.
+    Parameters
+    ----------
+    file
+        The file.
+
+    Returns
+    -------
+    Dump
+        The content by lesson and graph.
+
+    Raises
+    ------
+    ImportFormatError
+        If the file cannot be read, or has a graph unknown to memories.
     """
     dump, plain = Dump(), list[ox.Triple]()
     found: dict[str, list[ox.Triple]] = defaultdict(list)

@@ -46,6 +46,11 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
         the asserted, inferred and learned graphs and the episodes into one graph, for tools such as Protégé and
         owlready2. It declares each individual as an ``owl:NamedIndividual``.
 
+    Returns
+    -------
+    str
+        The text.
+
     Raises
     ------
     ImportFormatError
@@ -66,6 +71,16 @@ def with_named_individuals(triples: Sequence[ox.Triple]) -> Iterator[ox.Triple]:
 
     An individual has a type outside the vocabularies of RDF, RDFS and OWL, and none in that of OWL: neither a class nor
     a property is declared. Tools such as owlready2 list declared individuals only.
+
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
     """
     yield from triples
     typed = [(t.subject, t.object) for t in triples if t.predicate == TYPE and isinstance(t.object, ox.NamedNode)]
@@ -82,6 +97,13 @@ def import_dump(file: str | Path, target: str | Path) -> None:
     A TriG or N-Quads file that an export wrote gives the same graphs back. It is merged into a memory with content
     lesson by lesson; learned models are imported where the memory has none. Plain triples (Turtle, N-Triples, RDF/XML)
     become a lesson that is named after the file.
+
+    Parameters
+    ----------
+    file
+        The file.
+    target
+        Path of the memory.
 
     Raises
     ------
@@ -104,7 +126,26 @@ def import_dump(file: str | Path, target: str | Path) -> None:
 def merging_dump(memory: SemanticMemory, file: Path) -> Change:
     """Return the change that imports a file into an open memory, to be committed with what follows from both.
 
-    The inferred graph of the file is left out. Raises as :func:`import_dump`.
+    The inferred graph of the file is left out.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    file
+        The file.
+
+    Returns
+    -------
+    Change
+        Triples to add.
+
+    Raises
+    ------
+    ImportFormatError
+        If the file cannot be read.
+    RejectedWriteError
+        If the file breaks the shapes, or has a known lesson with other content.
     """
     dump = read_dump(file)
     dump.canonical[GraphName.INFERRED].clear()

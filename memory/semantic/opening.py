@@ -77,7 +77,20 @@ READABLE = 1
 def open_for_reading(folder: Path) -> ox.Store:
     """Open the store of a folder that cannot be written, without repairs and migrations.
 
-    Raises MemoryFormatError for a format that must be migrated first.
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    ox.Store
+        The store.
+
+    Raises
+    ------
+    MemoryFormatError
+        If its format must be migrated first.
     """
     if files.read_mark(folder)["version"] < READABLE:
         raise MemoryFormatError(
@@ -93,7 +106,18 @@ def open_for_reading(folder: Path) -> ox.Store:
 
 
 def open_store(folder: Path) -> ox.Store:
-    """Open ``semantic/`` for reading and writing."""
+    """Open ``semantic/`` for reading and writing.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+
+    Returns
+    -------
+    ox.Store
+        The store.
+    """
     try:
         return ox.Store(folder / files.STORE)
     except (OSError, RuntimeError) as error:
@@ -110,7 +134,22 @@ def _fill(store: ox.Store) -> None:
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
-    """Open a memory, or make one whose store ``fill`` fills; raise as ``SemanticMemory.open``."""
+    """Open a memory, or make one; raise as ``SemanticMemory.open``.
+
+    Parameters
+    ----------
+    folder
+        The folder of the memory.
+    create
+        True to make a memory where there is none.
+    fill
+        Function that fills a new store.
+
+    Returns
+    -------
+    Opened
+        The store with its lock.
+    """
     begin_opening(folder)
     remove_stale()
     state = files.inspect(folder)

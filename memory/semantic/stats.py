@@ -28,7 +28,22 @@ class MemoryStats:
 
 
 def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
-    """Return the counts of a store's content."""
+    """Return the counts of a store's content.
+
+    Parameters
+    ----------
+    store
+        The store.
+    folder
+        The folder of the memory.
+    lessons
+        Number of lessons.
+
+    Returns
+    -------
+    MemoryStats
+        The counts.
+    """
     learned, asserted = graph_iri(GraphName.LEARNED), graph_iri(GraphName.ASSERTED)
     return MemoryStats(
         triples={name: _number(store, f"{{ GRAPH {graph_iri(name)} {{ ?x ?p ?o }} }}", "*") for name in GraphName},

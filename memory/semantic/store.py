@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -65,7 +66,15 @@ if TYPE_CHECKING:
 
 
 def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
-    """Load triples in a copy of the store: see :meth:`SemanticMemory.load`."""
+    """Load triples in a copy of the store: see :meth:`SemanticMemory.load`.
+
+    Parameters
+    ----------
+    opened
+        The open memory, whose store is replaced.
+    contributions
+        Triples by graph.
+    """
     from deixis.memory.semantic.validation.validate import check_store
 
     if GraphName.INFERRED in contributions:
@@ -86,7 +95,15 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
 
 
 def commit_aside(opened: Opened, write: Callable[[SemanticMemory], None]) -> None:
-    """Commit many parts in a copy of the store: see :meth:`SemanticMemory.commit_in_bulk`."""
+    """Commit many parts in a copy of the store: see :meth:`SemanticMemory.commit_in_bulk`.
+
+    Parameters
+    ----------
+    opened
+        The open memory, whose store is replaced.
+    write
+        Function that commits the parts.
+    """
 
     def fill(aside: Path) -> None:
         opened.store.backup(aside)
@@ -101,7 +118,15 @@ def commit_aside(opened: Opened, write: Callable[[SemanticMemory], None]) -> Non
 
 
 def rewrite(opened: Opened, mark: dict[str, Any]) -> None:
-    """Rewrite the store with its present content only, as the store itself never frees the texts of removed triples."""
+    """Rewrite the store with its present content only, as the store itself never frees the texts of removed triples.
+
+    Parameters
+    ----------
+    opened
+        The open memory, whose store is replaced.
+    mark
+        New content of ``memory.json``.
+    """
 
     def fill(aside: Path) -> None:
         store = ox.Store(aside)
@@ -159,11 +184,31 @@ class SemanticMemory(Closing):
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> SemanticMemory:
-        """Open a memory, or make one with ``create``.
+        """Open a memory, or make one.
 
-        A memory in a folder that cannot be written is opened for reading only: a write raises ReadOnlyMemoryError.
-        Raises MemoryBusyError where another process has it open, MemoryFormatError where there is no memory or its
-        files are invalid, MemoryWriteError where the folder cannot be written. A failed opening changes nothing.
+        A memory in a folder that cannot be written is opened for reading only: a write raises ReadOnlyMemoryError. A
+        failed opening changes nothing.
+
+        Parameters
+        ----------
+        path
+            The folder of the memory.
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        SemanticMemory
+            The open memory, which this process owns until it is closed.
+
+        Raises
+        ------
+        MemoryBusyError
+            If another process has it open.
+        MemoryFormatError
+            If there is no memory, or its files are invalid.
+        MemoryWriteError
+            If the folder cannot be written.
         """
         return cls(open_memory(Path(path), create))
 
@@ -218,7 +263,24 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Write a lesson, and what then follows from all lessons, in one step; see :meth:`learn_all`."""
+        """Write a lesson, and what then follows from all lessons, in one step; see :meth:`learn_all`.
+
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+        contributions
+            Triples by graph.
+        inferred
+            The new inferred graph.
+        models
+            Sets of learned models to replace.
+
+        Raises
+        ------
+        RejectedWriteError
+            If the lesson is known already, has no triples, or breaks the shapes.
+        """
         self.learn_all({lesson: contributions}, inferred, models)
 
     def learn_all(
@@ -227,11 +289,21 @@ class SemanticMemory(Closing):
         inferred: Sequence[ox.Triple],
         models: Models | None = None,
     ) -> None:
-        """Write lessons, and what then follows from all lessons, in one step.
+        """Write lessons, and what then follows from all lessons, in one step; blank nodes get names.
 
-        ``inferred`` replaces the inferred graph, ``models`` replaces the sets of models in it. Blank nodes get names.
-        Raises RejectedWriteError, having written nothing, where a lesson is known already, has no triples, or breaks
-        the shapes.
+        Parameters
+        ----------
+        lessons
+            Triples by graph, by the id of the lesson.
+        inferred
+            The new inferred graph.
+        models
+            Sets of learned models to replace.
+
+        Raises
+        ------
+        RejectedWriteError
+            If a lesson is known already, has no triples, or breaks the shapes; nothing is written then.
         """
         self.commit(
             together(self.arrival(lessons), concluding(self.store, inferred), modelling(self.store, models or {}))
@@ -240,7 +312,20 @@ class SemanticMemory(Closing):
     def arrival(self, lessons: Mapping[str, Mapping[GraphName, Sequence[ox.Triple]]]) -> Change:
         """Return the change that new lessons make, to be committed with what follows from it.
 
-        Raises as :meth:`learn_all`.
+        Parameters
+        ----------
+        lessons
+            Triples by graph, by the id of the lesson.
+
+        Returns
+        -------
+        Change
+            The change.
+
+        Raises
+        ------
+        RejectedWriteError
+            If a lesson is known already, has no triples, or breaks the shapes.
         """
         changes = []
         for lesson, contributions in lessons.items():
@@ -253,7 +338,23 @@ class SemanticMemory(Closing):
         return together(*changes, Change(operations=tuple(ledger.numbering(self.store, list(lessons)))))
 
     def departure(self, lesson: str) -> Change:
-        """Return the change that removes a lesson, to be committed with what follows; raise as :meth:`forget`."""
+        """Return the change that removes a lesson, to be committed with what follows.
+
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+
+        Returns
+        -------
+        Change
+            The change.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
+        """
         self._known(lesson)
         with reading(self.path):
             self._forgets += 1
@@ -261,22 +362,54 @@ class SemanticMemory(Closing):
             return together(departing(self.store, lesson), unlinking(lesson), number)
 
     def forget(self, lesson: str, inferred: Sequence[ox.Triple], models: Models | None = None) -> None:
-        """Remove what only this lesson contributed, and replace the inferred graph and models, in one step.
+        """Remove what only one lesson contributed, and replace the inferred graph and models, in one step.
 
-        Raises UnknownLessonError, naming the nearest one, where there is no such lesson; RejectedWriteError where
-        something that stays depends on something that is removed.
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+        inferred
+            The new inferred graph.
+        models
+            Sets of learned models to replace.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson; the message names the nearest one.
+        RejectedWriteError
+            If something that stays depends on something that is removed.
         """
         gone = self.departure(lesson)
         self.commit(together(gone, concluding(self.store, inferred), modelling(self.store, models or {})))
 
     def keep_models(self, models: Models) -> None:
-        """Replace some sets of learned models in one step; an empty set removes the models."""
+        """Replace some sets of learned models in one step.
+
+        Parameters
+        ----------
+        models
+            Sets of learned models; an empty set removes the models.
+        """
         change = modelling(self.store, models)
         if change.operations:
             self.commit(change, self.kept_up() if ModelSet.SIZES not in models else None)
 
     def models(self, which: ModelSet, properties: Iterable[str] | None = None) -> list[ox.Triple]:
-        """Return the triples of a set of learned models, or only those with some properties."""
+        """Return the triples of a set of learned models.
+
+        Parameters
+        ----------
+        which
+            The set.
+        properties
+            IRIs of the wanted properties; default: all.
+
+        Returns
+        -------
+        list of ox.Triple
+            The triples.
+        """
         graph = models_graph(which)
         with reading(self.path):
             if properties is None:
@@ -287,30 +420,82 @@ class SemanticMemory(Closing):
     def load(self, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> None:
         """Write many triples that belong to no lesson: fast, all or nothing, checked by the same shapes.
 
-        Raises RejectedWriteError, having written nothing, where they break the shapes.
+        Parameters
+        ----------
+        contributions
+            Triples by graph.
+
+        Raises
+        ------
+        RejectedWriteError
+            If they break the shapes; nothing is written then.
         """
         self._drop_views()
         with self._writing():
             load_aside(self._writable, contributions)
 
     def lessons(self) -> tuple[str, ...]:
-        """Return the lessons in the order learned."""
+        """Return the lessons in the order learned.
+
+        Returns
+        -------
+        tuple of str
+            Ids of the lessons.
+        """
         with reading(self.path):
             return ledger.lessons(self.store)
 
     def knows(self, lesson: str) -> bool:
-        """Return whether there is a lesson with this id."""
+        """Say whether there is a lesson with an id.
+
+        Parameters
+        ----------
+        lesson
+            The id.
+
+        Returns
+        -------
+        bool
+            True if there is one.
+        """
         with reading(self.path):
             return ledger.knows(self.store, lesson)
 
     def contributions(self, lesson: str) -> dict[GraphName, list[ox.Triple]]:
-        """Return the contributions of one lesson, by graph; raise UnknownLessonError for an unknown lesson."""
+        """Return the contributions of one lesson.
+
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+
+        Returns
+        -------
+        dict
+            Triples by graph.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
+        """
         self._known(lesson)
         with reading(self.path):
             return ledger.copies(self.store, lesson)
 
     def triples(self, name: GraphName) -> Iterator[ox.Triple]:
-        """Yield the triples of a canonical graph, in no stated order."""
+        """Yield the triples of a canonical graph, in no stated order.
+
+        Parameters
+        ----------
+        name
+            Name of the graph.
+
+        Yields
+        ------
+        ox.Triple
+            A triple.
+        """
         with reading(self.path):
             yield from ledger.triples_in(self.store, graph_iri(GraphName(name)))
 
@@ -330,6 +515,11 @@ class SemanticMemory(Closing):
         memory_limit
             Bytes for the evaluation. The answer may take a sixteenth of them.
 
+        Returns
+        -------
+        QueryResult
+            The answer, read to the end, with notes on what it may lack.
+
         Raises
         ------
         QueryError
@@ -338,18 +528,24 @@ class SemanticMemory(Closing):
         QueryTimeoutError, QueryMemoryError
             A limit is reached. Both are QueryErrors; there are no partial answers.
         """
-        from deixis.memory.semantic.queries.sparql import require_terms, run_query
+        from deixis.memory.semantic.queries.sparql import notes_on, require_terms, run_query
 
         with reading(self.path):
             require_terms(self.store, sparql)
             if self._union is None:
                 self._union = default_graph(self.store)
-            return run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
+            found = run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
+            return replace(found, notes=notes_on(self.store, sparql))
 
     def dataset(self) -> rdflib.Dataset:
         """Return a live, read-only view of the six canonical graphs for rdflib.
 
         Its ``query`` takes text, and has the limits of :meth:`query`.
+
+        Returns
+        -------
+        rdflib.Dataset
+            The view, which is closed with this memory.
         """
         from deixis.memory.semantic.queries.rdflib_view import dataset_view
 
@@ -366,16 +562,33 @@ class SemanticMemory(Closing):
         return self._queries.ask(self.store, request, limits)
 
     def stats(self) -> MemoryStats:
-        """Return counts of the content."""
+        """Return counts of the content.
+
+        Returns
+        -------
+        MemoryStats
+            The counts.
+        """
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
     def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
-        """Write a change in one step if the result conforms to the shapes; otherwise raise RejectedWriteError.
+        """Write a change in one step if the result conforms to the shapes.
 
-        ``kept_up`` are the rules by which the inferred graph and the statistics are up to date after the change; see
-        :meth:`kept_up`. Without it they must be recomputed. ``journal`` is the id of the write over both stores that
-        this commit decides, if it decides one.
+        Parameters
+        ----------
+        change
+            The change.
+        kept_up
+            Rules by which the inferred graph and the statistics are up to date after the change; see :meth:`kept_up`.
+            Without them they must be recomputed.
+        journal
+            Id of the write over both stores that this commit decides, if it decides one.
+
+        Raises
+        ------
+        RejectedWriteError
+            If the result does not conform to the shapes; nothing is written then.
         """
         from deixis.memory.semantic.validation.validate import check_change
 
@@ -389,17 +602,28 @@ class SemanticMemory(Closing):
             self.store.flush()
 
     def commit_in_bulk(self, write: Callable[[SemanticMemory], None]) -> None:
-        """Commit many changes at once: ``write`` commits them to a copy of this memory, which then replaces it.
+        """Commit many changes at once, to a copy of this memory, which then replaces it.
 
         This is several times as fast as one commit of all, in the memory that one change takes. If ``write`` raises,
         this memory stays as it is.
+
+        Parameters
+        ----------
+        write
+            Function that commits the changes to the copy.
         """
         self._drop_views()
         with self._writing():
             commit_aside(self._writable, write)
 
     def kept_up(self) -> str | None:
-        """Return the rules by which the inferred graph and the statistics are up to date; None means they are not."""
+        """Return the rules by which the inferred graph and the statistics are up to date.
+
+        Returns
+        -------
+        str or None
+            The rules, or None if the graph or the statistics are not up to date.
+        """
         with reading(self.path):
             return ledger.kept_up(self.store)
 

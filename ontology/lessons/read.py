@@ -19,13 +19,39 @@ from deixis.ontology.vocabulary import DX, PROV, W3C
 
 
 def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:
-    """Return all layouts in the learned triples, by lesson."""
+    """Return all layouts in the learned triples.
+
+    Parameters
+    ----------
+    triples
+        Triples of the learned graph.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    tuple of LayoutConcept
+        The layouts, by lesson.
+    """
     index = TripleIndex(triples)
     return tuple(_layout(layout, index, relations) for layout in index.subjects(W3C.RDFS_SUB_CLASS_OF, DX.LAYOUT))
 
 
 def unknown_layout(name: str, known: Iterable[str]) -> UnknownTermError:
-    """Return the error for a layout name that is not known; its message suggests the nearest of the known names."""
+    """Return the error for a layout name that is not known.
+
+    Parameters
+    ----------
+    name
+        The name.
+    known
+        The known names, the nearest of which the message suggests.
+
+    Returns
+    -------
+    UnknownTermError
+        The error, which is not raised.
+    """
     names = sorted(set(known))
     if not names:
         return UnknownTermError(f"no layout '{name}' has been learned; the memory has no layouts yet")
@@ -124,7 +150,20 @@ class LessonRecord:
 
 
 def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) -> tuple[LessonRecord, ...]:
-    """Return all lessons that store their script and their scene, by id."""
+    """Return all lessons that store their script and their scene.
+
+    Parameters
+    ----------
+    learned
+        Triples of the learned graph.
+    episodes
+        Triples of the graph of episodes.
+
+    Returns
+    -------
+    tuple of LessonRecord
+        The lessons, by id.
+    """
     told, said = TripleIndex(episodes), TripleIndex(learned)
     records = []
     for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):

@@ -27,7 +27,18 @@ _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 
 
 def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
-    """Yield the shapes graph of a layout, with Skolem IRIs for blank nodes."""
+    """Yield the shapes graph of a layout, with Skolem IRIs for blank nodes.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
+    """
     writer = _Shapes(layout)
     yield from writer.extra()
     spare = dispensable(layout.facts)
@@ -182,6 +193,11 @@ def scene_data(
         IRI of the colour of each object whose colour is not the described one.
     held
         Whether each claim holds, by its position from 1; those that cannot be decided are left out.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
     """
     scene = learned_iri("checked", layout.lesson)
     yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))

@@ -43,7 +43,18 @@ class LayoutConcept:
     surface: str | None = None  # what everything stands on, which is not a role
 
     def graph(self, vocabulary: Relations) -> RelationGraph:
-        """Return the layout as a relation graph over its roles."""
+        """Return the layout as a relation graph over its roles.
+
+        Parameters
+        ----------
+        vocabulary
+            Relations of the ontology.
+
+        Returns
+        -------
+        RelationGraph
+            A graph with a node for each role and an edge for each fact.
+        """
         names = [role.name for role in self.roles]
         kinds, colours = ([role.kind for role in self.roles], [role.colour for role in self.roles])
         from deixis.ontology.graph import RelationGraph
@@ -197,7 +208,13 @@ class Lesson:
         return self.layout.lesson
 
     def categories(self) -> tuple[Match, ...]:
-        """Return the decided matches, which teach a category; doubtful or interchangeable objects teach none."""
+        """Return the decided matches, which teach a category.
+
+        Returns
+        -------
+        tuple of Match
+            The matches; doubtful or interchangeable objects teach no category.
+        """
         return tuple(match for match in self.matches if match.decided)
 
 
@@ -229,6 +246,11 @@ def next_lesson_id(name: str, taken: Callable[[str], bool]) -> str:
         Name of the layout.
     taken
         Function that returns whether an id is in use.
+
+    Returns
+    -------
+    str
+        Name and number, such as ``formal_dinner-2``.
 
     Examples
     --------

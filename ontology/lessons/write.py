@@ -29,7 +29,20 @@ _CORNERS = ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y), (DX.MIN_Z, DX.MAX_Z))
 
 
 def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]:
-    """Yield the layout as a class with its roles and statements, the categories, and the matches."""
+    """Yield the layout as a class with its roles and statements, the categories, and the matches.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+    relations
+        Relations of the ontology.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the learned graph.
+    """
     layout = lesson.layout
     yield from _layout(layout, relations)
     for position, role in enumerate(layout.roles, 1):
@@ -46,7 +59,20 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
 
 
 def noun_triples(lesson: Lesson, kinds: Kinds) -> Iterator[ox.Triple]:
-    """Yield the classes of the lexicon that the layout's roles have and that the TBox does not, up to the TBox."""
+    """Yield the classes of the lexicon that the layout's roles have and that the TBox does not, up to the TBox.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+    kinds
+        The known kinds.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the learned graph.
+    """
     known = dict.fromkeys(kinds[role.kind] for role in lesson.layout.roles if role.kind and role.kind in kinds)
     above = dict.fromkeys(kinds[name] for kind in known for name in sorted(kind.broader))
     for kind in known | above:
@@ -59,7 +85,18 @@ def noun_triples(lesson: Lesson, kinds: Kinds) -> Iterator[ox.Triple]:
 
 
 def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
-    """Yield the scene: its objects with boxes, their exact relations, and the categories of decided matches."""
+    """Yield the scene: its objects with boxes, their exact relations, and the categories of decided matches.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the asserted graph.
+    """
     record, scene = lesson.scene, scene_iri(lesson)
     about = Description(scene)
     about.say(W3C.RDF_TYPE, iri(DX.SCENE))
@@ -78,7 +115,18 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
 
 
 def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
-    """Yield the provenance of the lesson: its time, script, scene, engine and software version."""
+    """Yield the provenance of the lesson: its time, script, scene, engine and software version.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the graph of episodes.
+    """
     about = Description(lesson_iri(lesson.id))
     about.say(W3C.RDF_TYPE, iri(DX.LESSON))
     if isinstance(lesson, WordLesson):
@@ -103,27 +151,86 @@ def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
 
 
 def lesson_iri(lesson: str) -> str:
-    """Return the IRI of a lesson."""
+    """Return the IRI of a lesson.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("lesson", lesson)
 
 
 def script_iri(lesson: str) -> str:
-    """Return the IRI of a lesson's script, which its statements are derived from."""
+    """Return the IRI of a lesson's script, which its statements are derived from.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("lesson", lesson, "script")
 
 
 def layout_iri(lesson: str) -> str:
-    """Return the IRI of the layout that a lesson taught."""
+    """Return the IRI of the layout that a lesson taught.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("layout", lesson)
 
 
 def role_iri(lesson: str, role: str) -> str:
-    """Return the IRI of a role of a layout."""
+    """Return the IRI of a role of a layout.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+    role
+        Name of the role.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("layout", lesson, "role", role)
 
 
 def fact_iri(lesson: str, position: int) -> str:
-    """Return the IRI of the statement of a layout's fact; ``position`` counts from 1."""
+    """Return the IRI of the statement of a layout's fact.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+    position
+        Position of the fact in the layout, from 1.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("layout", lesson, "fact", position)
 
 
@@ -133,17 +240,52 @@ def claim_iri(lesson: str, position: int) -> str:
 
 
 def scene_iri(lesson: Lesson | WordLesson) -> str:
-    """Return the IRI of a lesson's scene, made from its content, so that lessons from one scene share its objects."""
+    """Return the IRI of a lesson's scene, made from its content, so that lessons from one scene share its objects.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return scene_text_iri(lesson.scene_text)
 
 
 def scene_text_iri(scene_text: str) -> str:
-    """Return the IRI of the scene with this text."""
+    """Return the IRI of the scene with this text.
+
+    Parameters
+    ----------
+    scene_text
+        JSON of the scene.
+
+    Returns
+    -------
+    str
+        The IRI, which depends on the text only.
+    """
     return learned_iri("scene", content_key(scene_text))
 
 
 def thing_iri(lesson: Lesson | WordLesson, name: str) -> str:
-    """Return the IRI of an object of a lesson's scene."""
+    """Return the IRI of an object of a lesson's scene.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+    name
+        Id of the object in the scene.
+
+    Returns
+    -------
+    str
+        The IRI.
+    """
     return learned_iri("scene", content_key(lesson.scene_text), name)
 
 

@@ -57,7 +57,23 @@ def adjectives() -> Mapping[str, Description]:
 
 
 def read_adjectives(text: str) -> dict[str, Description]:
-    """Read lines ``dimension [+|-]: word, synonym, …``; raise OntologyError, with its number, for one that differs."""
+    """Read lines ``dimension [+|-]: word, synonym, …``.
+
+    Parameters
+    ----------
+    text
+        Content of the file.
+
+    Returns
+    -------
+    dict
+        Meaning by adjective.
+
+    Raises
+    ------
+    OntologyError
+        If a line differs; the message has its number.
+    """
     found: dict[str, Description] = {}
     for number, raw in enumerate(text.splitlines(), 1):
         line = raw.partition("#")[0].strip()

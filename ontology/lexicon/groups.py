@@ -54,20 +54,52 @@ class Groups:
         return iter(self._all.values())
 
     def of(self, noun: str) -> tuple[Group, ...]:
-        """Return the groups of a thing: those of its kind, or of a longer known ending of its name."""
+        """Return the groups of a thing.
+
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        tuple of Group
+            The groups of its kind, or of a longer known ending of its name.
+        """
         kind, name = self.known_as(noun)
         if kind is None:
             return tuple(group for group in self if name in group.names)
         return tuple(group for group in self if not group.kinds.isdisjoint({*kind.broader, kind.iri}))
 
     def of_word(self, word: str) -> Group | None:
-        """Return the group that a word stands for."""
+        """Return the group that a word stands for.
+
+        Parameters
+        ----------
+        word
+            The word.
+
+        Returns
+        -------
+        Group or None
+            The group, or None for other words.
+        """
         return self._by_word.get(_singular(word))
 
     def known_as(self, noun: str) -> tuple[Kind | None, str]:
-        """Return the kind of a thing, or None and the ending of its name that a group lists.
+        """Return how the groups know a thing.
 
-        The longest ending counts: a *paper plate* is more than a plate. Without any, the name is empty.
+        The longest ending counts: a *paper plate* is more than a plate.
+
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        tuple
+            The kind, or None and the ending of the name that a group lists. Without any, the name is empty.
         """
         words = _singular(noun).split()
         for start in range(len(words)):
@@ -79,11 +111,33 @@ class Groups:
         return next(iter(self._kinds.head_noun(spaced(noun))[0]), None), ""
 
     def size(self, group: Group) -> int:
-        """Return the number of kinds and names in a group."""
+        """Return the number of kinds and names in a group.
+
+        Parameters
+        ----------
+        group
+            The group.
+
+        Returns
+        -------
+        int
+            The number.
+        """
         return self._sizes[group.label]
 
     def narrower(self, kind: Kind) -> int:
-        """Return the number of kinds that are a kind or narrower."""
+        """Return the number of kinds that are a kind or narrower.
+
+        Parameters
+        ----------
+        kind
+            The kind.
+
+        Returns
+        -------
+        int
+            The number, at least 1.
+        """
         return self._narrower.get(kind.iri, 1)
 
     @cached_property

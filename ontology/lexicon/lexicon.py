@@ -58,8 +58,20 @@ class Lexicon:
         self._colours = colours
 
     def knows(self, noun: str) -> bool:
-        """Return whether the noun, in the singular or the plural, is one of the lexicon, not only its head noun.
+        """Say whether a whole noun, in the singular or the plural, is one of the lexicon.
 
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        bool
+            False also where only its head noun is known.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> [default_ontology().lexicon.knows(noun) for noun in ("tea towels", "rice bowl")]
         [True, False]
@@ -69,6 +81,18 @@ class Lexicon:
     def singular(self, noun: str) -> str:
         """Return the singular of a noun; the lexicon decides where the spelling leaves it open.
 
+        Parameters
+        ----------
+        noun
+            A noun in the singular or the plural.
+
+        Returns
+        -------
+        str
+            The singular.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> [default_ontology().lexicon.singular(noun) for noun in ("cookies", "strawberries", "jeans", "shelves")]
         ['cookie', 'strawberry', 'jeans', 'shelf']
@@ -83,15 +107,37 @@ class Lexicon:
         return any(self._kinds.senses(" ".join(words[start:])) for start in range(len(words)))
 
     def senses(self, noun: str) -> tuple[Kind, ...]:
-        """Return all kinds that a noun may stand for, the usual one first; empty where the lexicon has none.
+        """Return all kinds that a noun may stand for.
 
         The longest known end of the noun counts, in the singular or the plural; before *of*, that of its first part.
+
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        tuple of Kind
+            The kinds, the usual one first; empty if the lexicon has none.
         """
         return self._kinds.head_noun(plain_name(noun))[0]
 
     def kind_of(self, noun: str) -> Kind | None:
         """Return the kind that a noun, or else its head noun, stands for.
 
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        Kind or None
+            The kind, or None if the lexicon has none.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> lexicon = default_ontology().lexicon
         >>> [lexicon.kind_of(noun).label for noun in ("trash can", "cup of tea", "pair of scissors")]
@@ -100,8 +146,20 @@ class Lexicon:
         return next(iter(self.senses(noun)), None)
 
     def size_of(self, noun: str) -> SizeRange:
-        """Return the usual size of what a noun stands for: of its kind, its head noun, its class, or of all things.
+        """Return the usual size of what a noun stands for.
 
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+
+        Returns
+        -------
+        SizeRange
+            The size of its kind, its head noun, its class, or else of all things, in metres.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> print(default_ontology().lexicon.size_of("grandmother's soup spoon"))
         15 to 20 cm long and 3 to 5.5 cm wide
@@ -110,8 +168,20 @@ class Lexicon:
         return self._sizes.of(kind.iri if kind else None)
 
     def adjective(self, word: str) -> Description | None:
-        """Return the meaning of an adjective in its plain degree, or None for other words.
+        """Return the meaning of an adjective in its plain degree.
 
+        Parameters
+        ----------
+        word
+            The adjective.
+
+        Returns
+        -------
+        Description or None
+            Dimension and value, or None for other words.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> lexicon = default_ontology().lexicon
         >>> lexicon.adjective("crimson"), lexicon.adjective("spoon")
@@ -121,8 +191,20 @@ class Lexicon:
         return Description("colour", colour.label) if colour else adjectives().get(spaced(word))
 
     def adjectives_of(self, dimension: str) -> tuple[str, ...]:
-        """Return all adjectives of one of :data:`~deixis.ontology.lexicon.adjectives.DIMENSIONS`.
+        """Return all adjectives of a dimension.
 
+        Parameters
+        ----------
+        dimension
+            One of :data:`~deixis.ontology.lexicon.adjectives.DIMENSIONS`.
+
+        Returns
+        -------
+        tuple of str
+            The adjectives.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> "wooden" in default_ontology().lexicon.adjectives_of("material")
         True
@@ -131,15 +213,42 @@ class Lexicon:
         return tuple(dict.fromkeys((*self._colours.words, *listed))) if dimension == "colour" else listed
 
     def relation(self, noun: str, label: str) -> Relatedness:
-        """Return how a noun is related to a label: ``BROADER`` says that the noun is a broader word than the label."""
+        """Return how a noun is related to a label.
+
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+        label
+            Label of a thing.
+
+        Returns
+        -------
+        Relatedness
+            The relation; ``BROADER`` says that the noun is broader than the label.
+        """
         return self._compared(noun, label)[0]
 
     def similarity(self, noun: str, label: str) -> float:
-        """Return how well a person's noun fits the label of a thing, in [0, 1]: graded evidence, no probability.
+        """Return how well a person's noun fits the label of a thing.
 
         The value is 1 for the same word, nearly 1 for synonyms, less by each step from a kind to a broader one, small
         for kinds with a specific broader kind in common (a stool and a bench), and 0 for unrelated words.
 
+        Parameters
+        ----------
+        noun
+            A noun phrase without its article.
+        label
+            Label of a thing.
+
+        Returns
+        -------
+        float
+            Graded evidence in [0, 1], which is not a probability.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> lexicon = default_ontology().lexicon
         >>> pairs = [("sofa", "sofas"), ("couch", "sofa"), ("chair", "office chair"), ("fork", "chair")]

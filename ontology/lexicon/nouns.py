@@ -59,6 +59,11 @@ def read_nouns(known: Mapping[str, Kind], text: str | None = None) -> Nouns:
     text
         Content of the file; the shipped one by default.
 
+    Returns
+    -------
+    Nouns
+        The nouns with their kinds, synonyms and sizes.
+
     Raises
     ------
     OntologyError
@@ -101,6 +106,18 @@ def read_nouns(known: Mapping[str, Kind], text: str | None = None) -> Nouns:
 def iri_of(label: str) -> str:
     """Return the IRI of the kind with a label.
 
+    Parameters
+    ----------
+    label
+        The label, in words.
+
+    Returns
+    -------
+    str
+        The IRI in the namespace of Deixis.
+
+    Examples
+    --------
     >>> iri_of("coffee table").rpartition("#")[2]
     'CoffeeTable'
     """

@@ -19,7 +19,18 @@ from deixis.ontology.vocabulary import DX, PROV, W3C
 
 
 def model_triples(model: RelationModel) -> Iterator[ox.Triple]:
-    """Yield the triples of a model, of its terms and of its provenance."""
+    """Yield the triples of a model, of its terms and of its provenance.
+
+    Parameters
+    ----------
+    model
+        The model.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
+    """
     about = Description(learned_iri("relation-model", model.name))
     about.say(W3C.RDF_TYPE, iri(DX.RELATION_MODEL))
     about.say(DX.MODEL_NAME, text(model.name))
@@ -60,7 +71,23 @@ def model_triples(model: RelationModel) -> Iterator[ox.Triple]:
 
 
 def models_from_triples(triples: Iterable[ox.Triple]) -> tuple[RelationModel, ...]:
-    """Return all models in the triples, sorted by name; raise OntologyError where one is incomplete."""
+    """Return all models in some triples.
+
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Returns
+    -------
+    tuple of RelationModel
+        The models, sorted by name.
+
+    Raises
+    ------
+    OntologyError
+        If a model is incomplete.
+    """
     index = TripleIndex(triples)
     models = []
     for subject in index.subjects(W3C.RDF_TYPE, DX.RELATION_MODEL):
@@ -74,7 +101,18 @@ def models_from_triples(triples: Iterable[ox.Triple]) -> tuple[RelationModel, ..
 
 
 def models_to_turtle(models: Iterable[RelationModel]) -> str:
-    """Return the models as Turtle."""
+    """Return the models as Turtle.
+
+    Parameters
+    ----------
+    models
+        The models.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     triples = list(dict.fromkeys(triple for model in models for triple in model_triples(model)))
     prefixes = {"dx": "https://w3id.org/deixis/onto#", "prov": "http://www.w3.org/ns/prov#"}
     written = ox.serialize(triples, format=ox.RdfFormat.TURTLE, prefixes=prefixes)
@@ -82,7 +120,23 @@ def models_to_turtle(models: Iterable[RelationModel]) -> str:
 
 
 def models_from_turtle(turtle: str) -> tuple[RelationModel, ...]:
-    """Return the models in a Turtle text; raise OntologyError if it is not valid Turtle or a model is incomplete."""
+    """Return the models in a Turtle text.
+
+    Parameters
+    ----------
+    turtle
+        The text.
+
+    Returns
+    -------
+    tuple of RelationModel
+        The models, sorted by name.
+
+    Raises
+    ------
+    OntologyError
+        If the text is not valid Turtle, or a model is incomplete.
+    """
     try:
         quads = list(ox.parse(turtle, format=ox.RdfFormat.TURTLE))
     except SyntaxError as error:

@@ -94,7 +94,18 @@ class RelationModel:
             raise OntologyError(f"the model '{self.name}' has two terms for one feature")
 
     def without(self, *features: str) -> RelationModel:
-        """Return the model without the terms of some features."""
+        """Return the model without the terms of some features.
+
+        Parameters
+        ----------
+        features
+            Names of the features.
+
+        Returns
+        -------
+        RelationModel
+            The model with the other terms.
+        """
         terms = tuple(term for term in self.terms if term.feature not in features)
         return RelationModel(self.name, terms, self.outliers, self.chance, self.provenance)
 
@@ -175,7 +186,23 @@ class RelationModels:
             raise UnknownTermError(f"there is no graded model '{name}'") from None
 
     def of(self, relation: Relation) -> RelationModel:
-        """Return the model of the word of a relation; raise UnknownTermError if the word has no model."""
+        """Return the model of the word of a relation.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        RelationModel
+            The model.
+
+        Raises
+        ------
+        UnknownTermError
+            If the word has no model.
+        """
         family = self.family(relation.word)
         if family not in self.models:
             raise UnknownTermError(f"the word '{relation.word}' has no graded model")
@@ -183,7 +210,23 @@ class RelationModels:
 
     @staticmethod
     def family(word: str) -> str:
-        """Return the name of the model of a word; raise UnknownTermError if the word has no model."""
+        """Return the name of the model of a word.
+
+        Parameters
+        ----------
+        word
+            The relation word.
+
+        Returns
+        -------
+        str
+            The name; a word and its inverse have one model.
+
+        Raises
+        ------
+        UnknownTermError
+            If the word has no model.
+        """
         if word not in MODEL_OF_WORD:
             hint = nearest(word, MODEL_OF_WORD)
             advice = f"; did you mean '{hint}'?" if hint else ""
@@ -191,5 +234,16 @@ class RelationModels:
         return MODEL_OF_WORD[word]
 
     def replaced(self, *models: RelationModel) -> RelationModels:
-        """Return a copy in which these models replace those of the same names."""
+        """Return a copy with other models.
+
+        Parameters
+        ----------
+        models
+            Models that replace those of the same names.
+
+        Returns
+        -------
+        RelationModels
+            The copy.
+        """
         return RelationModels({**self.models, **{model.name: model for model in models}})

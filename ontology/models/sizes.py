@@ -39,12 +39,38 @@ SIZE_PROPERTIES = (
 
 
 def size_iri(kind: str) -> str:
-    """Return the IRI of the size model of a kind, given by its class IRI."""
+    """Return the IRI of the size model of a kind.
+
+    Parameters
+    ----------
+    kind
+        Class IRI of the kind.
+
+    Returns
+    -------
+    str
+        The IRI of the model.
+    """
     return learned_iri("size-model", kind.removeprefix(BASE).removeprefix(LEARNED))
 
 
 def size_triples(kind: str, model: SizeModel, scenes: Iterable[str]) -> Iterator[ox.Triple]:
-    """Return the triples of the size model of a kind, given by its class IRI, and of the IRIs of its scenes."""
+    """Yield the triples of the size model of a kind.
+
+    Parameters
+    ----------
+    kind
+        Class IRI of the kind.
+    model
+        The model.
+    scenes
+        IRIs of the scenes that it was learned from.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
+    """
     about = Description(size_iri(kind))
     about.say(W3C.RDF_TYPE, iri(DX.SIZE_MODEL))
     about.say(DX.OF_KIND, iri(kind))
@@ -64,7 +90,23 @@ def _median(logarithm: float) -> float:
 
 
 def sizes_from_triples(triples: Iterable[ox.Triple]) -> dict[str, SizeModel]:
-    """Return all size models in the triples, by class IRI; raise OntologyError where one is incomplete."""
+    """Return all size models in some triples.
+
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Returns
+    -------
+    dict
+        Model by the class IRI of its kind.
+
+    Raises
+    ------
+    OntologyError
+        If a model is incomplete.
+    """
     index = TripleIndex(triples)
     sizes = {}
     for subject in index.subjects(W3C.RDF_TYPE, DX.SIZE_MODEL):

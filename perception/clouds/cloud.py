@@ -75,7 +75,18 @@ class PointCloud:
         return result
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.integer]) -> PointCloud:
-        """Return a cloud of the chosen points, with their colours, labels and normals; it is not organised."""
+        """Return a cloud of chosen points, with their colours, labels and normals.
+
+        Parameters
+        ----------
+        chosen
+            Mask of shape (n,), or indices of the points, shape (k,).
+
+        Returns
+        -------
+        PointCloud
+            A cloud of the k chosen points, which is not organised.
+        """
         return PointCloud(
             self.points[chosen],
             None if self.colours is None else self.colours[chosen],
@@ -86,8 +97,20 @@ class PointCloud:
 
     @classmethod
     def from_open3d(cls, cloud: Any) -> PointCloud:
-        """Return the points of an ``open3d.geometry.PointCloud``, with their colours and normals.
+        """Return the points of an Open3D cloud, with their colours and normals.
 
+        Parameters
+        ----------
+        cloud
+            An ``open3d.geometry.PointCloud`` of n points.
+
+        Returns
+        -------
+        PointCloud
+            A cloud of n points, which is not organised.
+
+        Examples
+        --------
         >>> PointCloud.from_open3d(PointCloud(np.array([[0, 0, 1]], np.float32)).to_open3d()).points.tolist()
         [[0.0, 0.0, 1.0]]
         """
@@ -99,8 +122,20 @@ class PointCloud:
         )
 
     def to_open3d(self) -> Any:
-        """Return the points that have a depth as an ``open3d.geometry.PointCloud``, with their colours and normals.
+        """Return the points that have a depth for Open3D, with their colours and normals.
 
+        Returns
+        -------
+        open3d.geometry.PointCloud
+            The points with finite coordinates.
+
+        Raises
+        ------
+        MissingExtraError
+            If Open3D is not installed.
+
+        Examples
+        --------
         >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32))
         >>> cloud.to_open3d()
         PointCloud with 1 points.

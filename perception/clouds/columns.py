@@ -29,8 +29,31 @@ def cloud_of_columns(
     organised: tuple[int, int] | None = None,
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> PointCloud:
-    """Return the cloud of columns of shape (n,) in their declared types; raise CloudError if a coordinate is missing.
+    """Return the cloud of columns in their declared types.
 
+    Parameters
+    ----------
+    columns
+        Arrays of shape (n,) by name: x, y, z and others.
+    file
+        Name of the file, for messages.
+    organised
+        Rows and columns of an organised cloud, or None.
+    origin
+        Position of the sensor, in metres.
+
+    Returns
+    -------
+    PointCloud
+        A cloud of n points.
+
+    Raises
+    ------
+    CloudError
+        If a coordinate is missing.
+
+    Examples
+    --------
     >>> one, four = np.ones(1), np.array([0x0000FF80], np.uint32)
     >>> cloud_of_columns({"x": one, "y": one, "z": one, "rgb": four}, "a.pcd").colours.tolist()
     [[0, 255, 128]]
@@ -50,7 +73,20 @@ def cloud_of_columns(
 
 
 def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32]:
-    """Return the named columns as one array of shape (n, columns), in single precision."""
+    """Return the named columns as one array of shape (n, columns), in single precision.
+
+    Parameters
+    ----------
+    columns
+        Arrays of shape (n,) by name.
+    names
+        Names of the wanted columns, in order.
+
+    Returns
+    -------
+    ndarray
+        Array of shape (n, columns).
+    """
     out = np.empty((len(columns[names[0]]), len(names)), np.float32)
     with np.errstate(over="ignore", invalid="ignore"):
         for place, name in enumerate(names):
@@ -59,13 +95,46 @@ def side_by_side(columns: Columns, names: tuple[str, ...]) -> NDArray[np.float32
 
 
 def single(values: NDArray[np.generic]) -> NDArray[np.float32]:
-    """Return numbers in single precision; numbers too large for it become infinite."""
+    """Return numbers in single precision; numbers too large for it become infinite.
+
+    Parameters
+    ----------
+    values
+        Numbers of any type.
+
+    Returns
+    -------
+    ndarray
+        Numbers of the same shape.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         return values.astype(np.float32)
 
 
 def declared(values: NDArray[np.float64], kind: np.dtype[np.generic], name: str, file: str) -> NDArray[np.generic]:
-    """Return numbers that were read as text in their declared type; raise CloudError if one does not fit it."""
+    """Return numbers that were read as text in their declared type.
+
+    Parameters
+    ----------
+    values
+        The numbers.
+    kind
+        Their declared type.
+    name
+        Name of the column, for messages.
+    file
+        Name of the file, for messages.
+
+    Returns
+    -------
+    ndarray
+        The numbers, of the same shape.
+
+    Raises
+    ------
+    CloudError
+        If a number does not fit the type.
+    """
     if kind.kind == "f":
         with np.errstate(over="ignore"):
             return values.astype(kind)
@@ -94,9 +163,26 @@ def _colours(columns: Columns, file: str) -> NDArray[np.uint8] | None:
 
 
 def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> NDArray[np.uint8]:
-    """Return colours of shape (n, 3) as bytes.
+    """Return colours as bytes.
 
-    Integers, and floats if ``whole`` is true, range from 0 to 255; other floats range from 0 to 1.
+    Parameters
+    ----------
+    colours
+        Colours of shape (n, 3): integers from 0 to 255, or floats from 0 to 1.
+    file
+        Name of the file, for messages.
+    whole
+        True if floats range from 0 to 255, too.
+
+    Returns
+    -------
+    ndarray
+        Colours of shape (n, 3).
+
+    Raises
+    ------
+    CloudError
+        If a colour is out of range.
     """
     if colours.dtype == np.uint8:
         return colours.astype(np.uint8, copy=False)
@@ -112,7 +198,25 @@ def as_bytes(colours: NDArray[np.generic], file: str, whole: bool = False) -> ND
 
 
 def labels_of(column: NDArray[np.generic], file: str) -> NDArray[np.int32]:
-    """Return labels in 32 bits; an unsigned 4294967295, which means "no label" in some files, becomes -1."""
+    """Return labels in 32 bits; an unsigned 4294967295, which means "no label" in some files, becomes -1.
+
+    Parameters
+    ----------
+    column
+        Labels of shape (n,).
+    file
+        Name of the file, for messages.
+
+    Returns
+    -------
+    ndarray
+        Labels of shape (n,).
+
+    Raises
+    ------
+    CloudError
+        If a label does not fit 32 bits.
+    """
     if column.dtype.kind in "iu" and column.dtype.itemsize <= 4:
         return column.astype(np.int32)
     values = column.astype(np.float64)

@@ -32,13 +32,32 @@ class Content:
         return len(self.data)
 
     def line_of(self, at: int) -> int:
-        """Return the number of the line that contains byte ``at``; lines are counted from 1."""
+        """Return the number of the line that contains a byte.
+
+        Parameters
+        ----------
+        at
+            Position of the byte.
+
+        Returns
+        -------
+        int
+            The number of the line, from 1.
+        """
         return int(np.count_nonzero(self.data[:at] == ord("\n"))) + 1
 
     def header_lines(self) -> Iterator[tuple[int, str, int]]:
-        """Yield the number, the stripped text and the end in bytes of each line of a header.
+        """Yield the lines of a header.
 
-        Raises CloudError if a line or the header is too long, or if the file ends before the caller stops.
+        Yields
+        ------
+        tuple
+            Number of the line, its stripped text, and its end in bytes.
+
+        Raises
+        ------
+        CloudError
+            If a line or the header is too long, or if the file ends before the caller stops.
         """
         at = number = 0
         while True:
@@ -58,9 +77,19 @@ class Content:
             yield number, line.decode("latin-1").strip(), at
 
     def refuse_rest(self, at: int) -> None:
-        """Raise CloudError if anything but padding (zeros or white space) follows from byte ``at`` on.
+        """Raise CloudError if anything but padding (zeros or white space) follows.
 
         PCL pads binary files with zeros to a whole page.
+
+        Parameters
+        ----------
+        at
+            Byte at which the padding may begin.
+
+        Raises
+        ------
+        CloudError
+            If anything else follows.
         """
         more = len(self.data[at:].tobytes().lstrip(b"\0 \t\r\n\v\f"))
         if more:
@@ -70,7 +99,23 @@ class Content:
 
 
 def content_of(path: str | Path) -> Content:
-    """Read a file; raise CloudError if it cannot be read, is not a regular file or is too large."""
+    """Read a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Content
+        Its bytes and its name.
+
+    Raises
+    ------
+    CloudError
+        If the file cannot be read, is not a regular file or is too large.
+    """
     name = str(path)
     try:
         with open(path, "rb", opener=_without_waiting) as file:  # Path.open takes no opener

@@ -72,7 +72,22 @@ def read_intrinsics(path: str | Path) -> Intrinsics:
     """Read the intrinsics of a camera from a JSON file.
 
     The file holds an object ``{"width": 640, "height": 480, "fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5}``,
-    optionally with ``depth_scale``. Raises CloudError, with the file and the key, if a value is missing or wrong.
+    optionally with ``depth_scale``.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Intrinsics
+        Size, focal lengths and centre, in pixels.
+
+    Raises
+    ------
+    CloudError
+        If a value is missing or wrong; the message names the file and the key.
     """
     content = content_of(path)
     if len(content) > _MAX_JSON:
@@ -110,7 +125,22 @@ def _number(data: dict[str, Any], key: str, file: str, whole: bool = False) -> f
 def read_depth(content: Content, camera: Intrinsics) -> PointCloud:
     """Return the organised cloud of a depth image.
 
-    Raises CloudError if the image is malformed, or its size is not that of the camera.
+    Parameters
+    ----------
+    content
+        The file of the image.
+    camera
+        Intrinsics of the camera.
+
+    Returns
+    -------
+    PointCloud
+        The cloud in the frame of the camera, in metres.
+
+    Raises
+    ------
+    CloudError
+        If the image is malformed, or its size is not that of the camera.
     """
     depth = depth_image(content)
     if depth.shape != (camera.height, camera.width):
@@ -123,9 +153,21 @@ def read_depth(content: Content, camera: Intrinsics) -> PointCloud:
 
 
 def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[np.float32]:
-    """Return the points, shape (rows * columns, 3), of a depth image of shape (rows, columns), all in metres.
+    """Return the points of a depth image.
 
     A pixel of depth z is the point ((column - cx) z / fx, (row - cy) z / fy, z).
+
+    Parameters
+    ----------
+    depth
+        Depths in metres, shape (rows, columns).
+    camera
+        Intrinsics of the camera.
+
+    Returns
+    -------
+    ndarray
+        Points in metres, shape (rows * columns, 3).
     """
     z = np.where(np.isfinite(depth) & (depth > 0), depth, np.nan)
     x = (np.arange(camera.width) - camera.cx) * z / camera.fx
@@ -134,7 +176,23 @@ def back_projected(depth: NDArray[np.floating], camera: Intrinsics) -> NDArray[n
 
 
 def depth_image(content: Content) -> NDArray[np.generic]:
-    """Return the values of a depth image, shape (rows, columns), in the units of the file."""
+    """Return the values of a depth image.
+
+    Parameters
+    ----------
+    content
+        The file of the image.
+
+    Returns
+    -------
+    ndarray
+        Values in the unit of the file, shape (rows, columns).
+
+    Raises
+    ------
+    CloudError
+        If the image is malformed.
+    """
     head = content.data[:8].tobytes()
     if head == PNG:
         return _png(content)

@@ -43,7 +43,23 @@ class Mesh:
             raise CloudError("`part` must hold the index of a name for each face")
 
     def part_named(self, name: str) -> Mesh:
-        """Return the faces of one part with their vertices only; raise CloudError if there is no such part."""
+        """Return the faces of one part with their vertices only.
+
+        Parameters
+        ----------
+        name
+            Name of the part.
+
+        Returns
+        -------
+        Mesh
+            The mesh of the part.
+
+        Raises
+        ------
+        CloudError
+            If there is no such part.
+        """
         if self.part is None or name not in self.names:
             known = ", ".join(self.names) or "none"
             raise CloudError(f"the mesh has no part '{name}'; its parts are: {known}")

@@ -36,10 +36,24 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("at
 
 
 def read_mesh(path: str | Path) -> Mesh:
-    """Read a mesh from a PLY, OBJ or STL file, in the unit and frame of the file.
+    """Read a mesh from a PLY, OBJ or STL file.
 
-    Polygons become fans of triangles. Raises CloudError, with the file and the place in it, if the file is not a mesh
-    or is damaged.
+    Polygons become fans of triangles.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Mesh
+        The mesh in the unit and frame of the file.
+
+    Raises
+    ------
+    CloudError
+        If the file is not a mesh or is damaged; the message names the place in it.
     """
     content, suffix = content_of(path), Path(path).suffix.lower()
     if content.data[:4].tobytes() in (b"ply\n", b"ply\r") or suffix == ".ply":
@@ -69,10 +83,25 @@ class _ObjLines:
 
 
 def read_obj(content: Content) -> Mesh:
-    """Return the mesh of an OBJ file; raise CloudError, with the line, if it is malformed or has no face.
+    """Return the mesh of an OBJ file.
 
     The last ``o`` or ``g`` before a face names its part; faces before the first one belong to the part ''. Parts
     without faces are left out.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    Mesh
+        The mesh with its parts.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed or has no face; the message has the line.
     """
     parsed = _ObjLines()
     for number, line in enumerate(io.BytesIO(content.data.data), start=1):
@@ -130,7 +159,20 @@ def _corner(word: str, vertices: int, where: str) -> int:
 def read_stl(content: Content) -> Mesh:
     """Return the mesh of an STL file.
 
-    Raises CloudError, with the line or byte, if the file is malformed or has no triangle.
+    Parameters
+    ----------
+    content
+        The file, text or binary.
+
+    Returns
+    -------
+    Mesh
+        The mesh.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed or has no triangle; the message has the line or byte.
     """
     # A binary file may begin with 'solid' too, so the length that its count implies decides.
     declared = int(content.data[80:_STL_HEADER].view("<u4")[0]) if len(content) >= _STL_HEADER else 0

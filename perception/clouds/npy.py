@@ -36,7 +36,25 @@ CLOUD_ARRAYS = ("points", "colours", "colors", "labels", "normals", "origin")
 
 
 def read_npy(data: bytes, where: str) -> NDArray[np.generic]:
-    """Return the array of a .npy file; raise CloudError if it does not hold plain numbers or is truncated."""
+    """Return the array of a .npy file.
+
+    Parameters
+    ----------
+    data
+        Bytes of the file.
+    where
+        Its name, for messages.
+
+    Returns
+    -------
+    ndarray
+        The array.
+
+    Raises
+    ------
+    CloudError
+        If the file does not hold plain numbers or is truncated.
+    """
     file = io.BytesIO(data)
     try:
         version = npy_format.read_magic(file)
@@ -55,7 +73,25 @@ def read_npy(data: bytes, where: str) -> NDArray[np.generic]:
 
 
 def read_npz(content: Content, names: Iterable[str]) -> dict[str, NDArray[np.generic]]:
-    """Return the named arrays that a .npz file contains; raise CloudError if the file or one of them is damaged."""
+    """Return some arrays of a .npz file.
+
+    Parameters
+    ----------
+    content
+        The file.
+    names
+        Names of the wanted arrays; those that the file does not have are left out.
+
+    Returns
+    -------
+    dict
+        Array by name.
+
+    Raises
+    ------
+    CloudError
+        If the file or one of the arrays is damaged.
+    """
     found = {}
     try:
         with zipfile.ZipFile(io.BytesIO(content.data.data)) as archive:
@@ -84,7 +120,23 @@ def _unpacked(archive: zipfile.ZipFile, info: zipfile.ZipInfo, where: str) -> by
 
 
 def read_npz_cloud(content: Content) -> PointCloud:
-    """Return the cloud of a .npz file; raise CloudError, with the array, if it is malformed."""
+    """Return the cloud of a .npz file.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PointCloud
+        The cloud.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed; the message names the array.
+    """
     arrays = read_npz(content, CLOUD_ARRAYS)
     if "points" not in arrays:
         raise CloudError(f"{content.name}: there is no array 'points'; save it with numpy.savez(file, points=…)")

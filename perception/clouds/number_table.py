@@ -60,6 +60,11 @@ def read_table(
     kept
         The one of ``lists`` whose values are returned, or -1.
 
+    Returns
+    -------
+    TextTable
+        The columns and the kept lists.
+
     Raises
     ------
     CloudError

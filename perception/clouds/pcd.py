@@ -91,7 +91,23 @@ class _Entry:
 
 
 def read_header(content: Content) -> PcdHeader:
-    """Return the header of a PCD file; raise CloudError, with the line, if it is malformed."""
+    """Return the header of a PCD file.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PcdHeader
+        The columns, the number of points and the encoding.
+
+    Raises
+    ------
+    CloudError
+        If the header is malformed; the message has the line.
+    """
     entries, end = _entries(content)
     encoding = entries["DATA"].single().lower()
     if encoding not in ENCODINGS:
@@ -209,7 +225,23 @@ _Columns = dict[str, NDArray[np.generic]]
 
 
 def read_pcd(content: Content) -> PointCloud:
-    """Return the cloud of a PCD file; raise CloudError, with the line or byte, if it is malformed."""
+    """Return the cloud of a PCD file.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PointCloud
+        The cloud.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed; the message has the line or byte.
+    """
     header = read_header(content)
     columns = {"ascii": _ascii, "binary": _binary, "binary_compressed": _compressed}[header.encoding](content, header)
     return cloud_of_columns(columns, content.name, header.organised, header.origin)

@@ -39,7 +39,7 @@ class Property:
     """Number in every row of an element; or a list, if ``length`` gives the type of the length before its values."""
 
     name: str
-    dtype: np.dtype[np.generic]
+    dtype: np.dtype[np.number]
     length: np.dtype[np.generic] | None = None
 
     @property
@@ -72,7 +72,23 @@ class PlyHeader:
 
 
 def read_header(content: Content) -> PlyHeader:
-    """Return the header of a PLY file; raise CloudError, with the line, if it is malformed."""
+    """Return the header of a PLY file.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PlyHeader
+        The elements with their properties, and the encoding.
+
+    Raises
+    ------
+    CloudError
+        If the header is malformed; the message has the line.
+    """
     encoding = ""
     elements: list[Element] = []
     for number, line, end in content.header_lines():
@@ -155,7 +171,29 @@ class ElementTable:
 
 
 def text_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """Return an ascii element, one row per line; raise CloudError, with the line, if it is malformed."""
+    """Read an ascii element, one row per line.
+
+    Parameters
+    ----------
+    content
+        The file.
+    at
+        Byte at which the element begins.
+    element
+        Its properties and its number of rows.
+    wanted
+        Names of the properties to read.
+
+    Returns
+    -------
+    ElementTable
+        The properties, and the end of the element in bytes.
+
+    Raises
+    ------
+    CloudError
+        If the element is malformed; the message has the line.
+    """
     properties = list(enumerate(element.properties))
     lists = [place for place, column in properties if column.length is not None]
     kept = next((place for place in lists if element.properties[place].name in wanted), -1)
@@ -165,11 +203,35 @@ def text_table(content: Content, at: int, element: Element, wanted: Set[str]) ->
     for slot, place in enumerate(scalars):
         column = element.properties[place]
         columns[column.name] = declared(read.columns[:, slot], column.dtype, column.name, content.name)
-    return ElementTable(read.end, columns, *((read.lengths, read.values) if kept >= 0 else ()))
+    if kept < 0:
+        return ElementTable(read.end, columns)
+    return ElementTable(read.end, columns, read.lengths, read.values)
 
 
 def binary_table(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    """Return a binary element; raise CloudError, with the byte, if the file is too short for it."""
+    """Read a binary element.
+
+    Parameters
+    ----------
+    content
+        The file.
+    at
+        Byte at which the element begins.
+    element
+        Its properties and its number of rows.
+    wanted
+        Names of the properties to read.
+
+    Returns
+    -------
+    ElementTable
+        The properties, and the end of the element in bytes.
+
+    Raises
+    ------
+    CloudError
+        If the file is too short for it; the message has the byte.
+    """
     least = element.rows * sum(column.least_bytes for column in element.properties)
     if at + least > len(content):
         raise _too_short(content, at, element, least)
@@ -218,7 +280,7 @@ def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str])
 
 
 def _gathered(
-    data: NDArray[np.uint8], starts: NDArray[np.int64], lengths: NDArray[np.int64], dtype: np.dtype[np.generic]
+    data: NDArray[np.uint8], starts: NDArray[np.int64], lengths: NDArray[np.int64], dtype: np.dtype[np.number]
 ) -> NDArray[np.number]:
     """Return the values of all lists, concatenated; list i begins at byte ``starts[i]``."""
     size = dtype.itemsize
@@ -240,13 +302,45 @@ CORNERS = frozenset({"vertex_indices", "vertex_index"})
 
 
 def read_ply(content: Content) -> PointCloud:
-    """Return the vertices as a cloud; raise CloudError, with the line or byte, if the file is malformed."""
+    """Return the vertices of a PLY file as a cloud.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PointCloud
+        The cloud.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed; the message has the line or byte.
+    """
     columns, _, _ = _body(content)
     return cloud_of_columns(columns, content.name)
 
 
 def read_ply_mesh(content: Content) -> Mesh:
-    """Return vertices and faces as a mesh; raise CloudError if the file has no faces or is malformed."""
+    """Return the vertices and faces of a PLY file as a mesh.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    Mesh
+        The mesh.
+
+    Raises
+    ------
+    CloudError
+        If the file has no faces or is malformed.
+    """
     columns, lengths, corners = _body(content)
     missing = [name for name in POINT if name not in columns]
     if missing:

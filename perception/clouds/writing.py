@@ -20,6 +20,18 @@ def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
     """Yield a PCD file, version 0.7, piece by piece.
 
     The origin becomes its viewpoint; an organised cloud keeps its rows and columns.
+
+    Parameters
+    ----------
+    cloud
+        The cloud.
+    encoding
+        ``ascii``, ``binary`` or ``binary_compressed``.
+
+    Yields
+    ------
+    bytes
+        A piece of the file.
     """
     _check(encoding, PCD_ENCODINGS, "PCD")
     columns = _coordinates(cloud)
@@ -46,7 +58,20 @@ def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
 
 
 def ply_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
-    """Yield a PLY file piece by piece; ``binary`` is little-endian. PLY cannot store the origin, rows and columns."""
+    """Yield a PLY file piece by piece; ``binary`` is little-endian. PLY cannot store the origin, rows and columns.
+
+    Parameters
+    ----------
+    cloud
+        The cloud.
+    encoding
+        ``ascii`` or ``binary``.
+
+    Yields
+    ------
+    bytes
+        A piece of the file.
+    """
     _check(encoding, PLY_ENCODINGS, "PLY")
     columns = _coordinates(cloud)
     if cloud.colours is not None:

@@ -23,7 +23,23 @@ _SEPARATORS = b",;"
 
 
 def read_xyz(content: Content) -> PointCloud:
-    """Return the cloud of a text file; raise CloudError, with the line, if it is malformed or has no point."""
+    """Return the cloud of a text file.
+
+    Parameters
+    ----------
+    content
+        The file.
+
+    Returns
+    -------
+    PointCloud
+        The cloud.
+
+    Raises
+    ------
+    CloudError
+        If the file is malformed or has no point; the message has the line.
+    """
     from deixis.perception.clouds.table_kernels import row_start
 
     blank = content.data.copy()

@@ -20,10 +20,24 @@ BLOCKS_PER_THREAD = 4
 
 
 def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None = None) -> None:
-    """Call ``job(start, stop)`` until the range from 0 to ``count`` is covered.
+    """Call a function for consecutive ranges, in several threads, until all are covered.
 
-    ``threads`` is the number of threads; None means one for each processor that the process may use.
+    Parameters
+    ----------
+    job
+        Function of the start and the stop of a range.
+    count
+        End of the whole range, which starts at 0.
+    threads
+        Number of threads; None means one for each processor that the process may use.
 
+    Raises
+    ------
+    CloudError
+        If ``threads`` is below 1.
+
+    Examples
+    --------
     >>> covered = []
     >>> in_blocks(lambda start, stop: covered.append((start, stop)), 40, threads=1)
     >>> covered
@@ -46,5 +60,11 @@ def in_blocks(job: Callable[[int, int], object], count: int, threads: int | None
 
 
 def available() -> int:
-    """Return the number of processors that this process may run on."""
+    """Return the number of processors that this process may run on.
+
+    Returns
+    -------
+    int
+        The number, at least 1.
+    """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

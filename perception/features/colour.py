@@ -48,8 +48,20 @@ class ColourDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptor (1, size), rows by red over green; (0, size) for a cloud without colours or points.
+        """Compute the colour histogram of a cloud, rows by red over green.
 
+        Parameters
+        ----------
+        cloud
+            The points of one object, with colours.
+
+        Returns
+        -------
+        ndarray
+            Descriptor of shape (1, size); (0, size) for a cloud without colours or points.
+
+        Examples
+        --------
         >>> red = np.full((9, 3), (200, 20, 20), np.uint8)
         >>> bright, dim = (PointCloud(np.zeros((9, 3), np.float32), each) for each in (red, red // 2))
         >>> between = ColourDescriber().describe(bright) - ColourDescriber().describe(dim)

@@ -47,7 +47,18 @@ class D2ExtentsDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptor (1, size)."""
+        """Compute the histogram of distances of pairs of points, with the extents.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object, in metres.
+
+        Returns
+        -------
+        ndarray
+            Descriptor of shape (1, size); (0, size) for a cloud without points.
+        """
         points = finite_points(cloud)
         points = points[voxel_keypoints(points, self.voxel)]
         if len(points) < 2:

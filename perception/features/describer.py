@@ -31,33 +31,95 @@ class Describer(Protocol):
         ...
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return descriptors (k, size) of a single object's cloud: one for each keypoint, or k = 1.
+        """Describe the cloud of a single object by one descriptor for each keypoint, or by one.
 
-        Points without depth are ignored. A view without a finite point, or without what the descriptor needs, gives
-        an array of shape (0, size).
+        Points without depth are ignored.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object, in metres.
+
+        Returns
+        -------
+        ndarray
+            Descriptors of shape (k, size). A view without a finite point, or without what the descriptor needs, gives k
+            = 0.
         """
         ...
 
 
 def finite_points(cloud: PointCloud) -> NDArray[np.float64]:
-    """Return the points with a depth, shape (m, 3)."""
+    """Return the points with a depth, shape (m, 3).
+
+    Parameters
+    ----------
+    cloud
+        A cloud of n points.
+
+    Returns
+    -------
+    ndarray
+        The m ≤ n points with finite coordinates, shape (m, 3).
+    """
     return cloud.points[cloud.finite].astype(np.float64)
 
 
 def require_points(points: NDArray[np.floating], name: str = "points") -> None:
-    """Raise CloudError unless the points have shape (n, 3)."""
+    """Raise CloudError unless the points have shape (n, 3).
+
+    Parameters
+    ----------
+    points
+        The points.
+    name
+        Name of the argument in the message.
+
+    Raises
+    ------
+    CloudError
+        If they have another shape.
+    """
     if points.ndim != 2 or points.shape[1] != 3:
         raise CloudError(f"{name} must have shape (n, 3), got {points.shape}")
 
 
 def require_length(value: float, name: str) -> None:
-    """Raise CloudError unless the length is a positive, finite number of metres."""
+    """Raise CloudError unless a length is a positive, finite number of metres.
+
+    Parameters
+    ----------
+    value
+        The length in metres.
+    name
+        Name of the argument in the message.
+
+    Raises
+    ------
+    CloudError
+        If it is not.
+    """
     if not (math.isfinite(value) and value > 0):
         raise CloudError(f"{name} must be a length above 0 in metres, got {value:g}")
 
 
 def require_indices(indices: NDArray[np.integer], points: NDArray[np.floating], name: str) -> None:
-    """Raise CloudError if one of the indices (k,) is out of range, or the index of a point that is not finite."""
+    """Raise CloudError unless all indices name finite points.
+
+    Parameters
+    ----------
+    indices
+        Indices of points, shape (k,).
+    points
+        The points, shape (n, 3).
+    name
+        Name of the argument in the message.
+
+    Raises
+    ------
+    CloudError
+        If an index is out of range, or that of a point that is not finite.
+    """
     if indices.ndim != 1 or not (indices.dtype.kind in "iu" or indices.size == 0):
         raise CloudError(f"{name} must be whole numbers of shape (k,), got {indices.dtype} of shape {indices.shape}")
     if indices.size and (indices.min() < 0 or indices.max() >= len(points)):

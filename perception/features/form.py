@@ -294,7 +294,18 @@ class FormDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptor (1, size), in the order of :data:`PARTS`."""
+        """Compute the overall form of a cloud.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object in the table's frame, in metres.
+
+        Returns
+        -------
+        ndarray
+            Descriptor of shape (1, size), in the order of :data:`PARTS`; (0, size) for a cloud without points.
+        """
         found = form_parts(cloud)
         if found is None:
             return np.empty((0, self.size), np.float32)

@@ -49,7 +49,18 @@ class FpfhDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return histograms (k, 33), in the order of voxels."""
+        """Compute fast point feature histograms at the voxel keypoints of a cloud.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object, in metres.
+
+        Returns
+        -------
+        ndarray
+            Histograms of shape (k, 33), in the order of voxels.
+        """
         points = finite_points(cloud)
         points = points[voxel_keypoints(points, self.spacing)]
         normals = estimate_normals(points, radius=self.normal_radius, origin=cloud.origin)

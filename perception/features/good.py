@@ -49,7 +49,18 @@ class GoodDescriber:
         return False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptor (1, size)."""
+        """Compute the global orthographic object descriptor of a cloud.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object, in metres.
+
+        Returns
+        -------
+        ndarray
+            Descriptor of shape (1, size); (0, size) for a cloud without points.
+        """
         points = finite_points(cloud)
         if len(points) < 3 or not np.ptp(points, axis=0).any():
             return np.empty((0, self.size), np.float32)

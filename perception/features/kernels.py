@@ -40,8 +40,22 @@ class CellGrid(NamedTuple):
 
 
 def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
-    """Return the grid of points (n, 3), n > 0 and all finite, with cells of the given edge, or larger if too many.
+    """Sort points into the cells of a grid.
 
+    Parameters
+    ----------
+    points
+        Finite points, shape (n, 3), n > 0.
+    cell
+        Edge of a cell; cells are larger if they would be too many.
+
+    Returns
+    -------
+    CellGrid
+        The grid, with the points in the order of its cells.
+
+    Examples
+    --------
     >>> grid = cell_grid(np.array([[0.0, 0, 9], [5, 0, 0], [0, 0, 0]]), 1.0)
     >>> grid.shape.tolist(), grid.order.tolist(), grid.axes.tolist()
     ([1, 6, 10], [2, 0, 1], [1, 0, 2])
@@ -61,7 +75,20 @@ def cell_grid(points: NDArray[np.floating], cell: float) -> CellGrid:
 
 
 def in_axes_of(grid: CellGrid, vectors: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Return vectors (m, 3) in the permuted axes of the grid, as the kernels need them."""
+    """Permute the axes of vectors as the kernels need them.
+
+    Parameters
+    ----------
+    grid
+        The grid.
+    vectors
+        Vectors of shape (m, 3).
+
+    Returns
+    -------
+    ndarray
+        The vectors in the axes of the grid, shape (m, 3).
+    """
     return np.ascontiguousarray(vectors[:, grid.axes], dtype=np.float64)
 
 

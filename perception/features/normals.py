@@ -98,9 +98,32 @@ def neighbourhoods(
     neighbours: int | None,
     threads: int | None,
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return the numbers (m,) of points (n, 3) around m places (m, 3), and their covariances (m, 3, 3).
+    """Count the points around some places, and compute their covariances.
 
-    A neighbourhood holds the points within ``radius`` metres, or the ``neighbours`` nearest ones; give one of the two.
+    A neighbourhood holds the points within a radius, or the nearest ones; give one of the two.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    places
+        Centres of the neighbourhoods, shape (m, 3), in metres.
+    radius
+        Radius in metres, or None.
+    neighbours
+        Number of nearest points, at least 3, or None.
+    threads
+        Number of threads; None means one for each processor.
+
+    Returns
+    -------
+    tuple
+        Numbers of points, shape (m,), and covariances, shape (m, 3, 3).
+
+    Raises
+    ------
+    CloudError
+        If an argument has another shape or range.
     """
     if (radius is None) == (neighbours is None):
         raise CloudError("normals need exactly one of `radius` and `neighbours`")

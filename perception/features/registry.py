@@ -28,8 +28,25 @@ DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
 
 
 def describer_named(name: str) -> Describer:
-    """Return the describer of a name, with its default settings; raise UnknownTermError for an unknown name.
+    """Return a describer with its default settings.
 
+    Parameters
+    ----------
+    name
+        Name of the descriptor, such as ``spin_images``.
+
+    Returns
+    -------
+    Describer
+        The describer.
+
+    Raises
+    ------
+    UnknownTermError
+        If no describer has that name.
+
+    Examples
+    --------
     >>> describer_named("spin_images").size
     153
     """

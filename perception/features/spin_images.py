@@ -30,6 +30,18 @@ UNIT_TOLERANCE = 1e-3
 def image_size(width: int) -> int:
     """Return the number of bins: width + 1 rows of distance from the axis, times 2 width + 1 columns along it.
 
+    Parameters
+    ----------
+    width
+        Number of bins from the keypoint to the end of the support.
+
+    Returns
+    -------
+    int
+        The number of bins.
+
+    Examples
+    --------
     >>> image_size(8)
     153
     """
@@ -191,7 +203,18 @@ class SpinImageDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return spin images (k, size), in the order of voxels."""
+        """Compute spin images at the voxel keypoints of a cloud.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object, in metres.
+
+        Returns
+        -------
+        ndarray
+            Spin images of shape (k, size), in the order of voxels.
+        """
         everywhere = self.angular or self.support_angle_cos > 0
         keypoints, normals = keypoints_and_normals(cloud, self.voxel, self.normal_radius, everywhere, self.threads)
         return spin_images(
@@ -210,10 +233,27 @@ class SpinImageDescriber:
 def keypoints_and_normals(
     cloud: PointCloud, voxel: float, radius: float, everywhere: bool = False, threads: int | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
-    """Return the indices (k,) of the voxel keypoints that have a normal, and normals (n, 3).
+    """Return the voxel keypoints that have a normal, and the normals.
 
-    The normals are those of the cloud, or estimated if it has none: at all points if ``everywhere`` is True, or else at
-    keypoints only, with nan at the other points. ``voxel`` and ``radius`` are in metres.
+    The normals are those of the cloud, or estimated if it has none.
+
+    Parameters
+    ----------
+    cloud
+        A cloud of n points, in metres.
+    voxel
+        Edge of a voxel in metres.
+    radius
+        Radius in metres of the neighbourhood that a normal is estimated from.
+    everywhere
+        True to estimate normals at all points, False at keypoints only.
+    threads
+        Number of threads; None means one for each processor.
+
+    Returns
+    -------
+    tuple
+        Indices of the keypoints, shape (k,), and normals, shape (n, 3), with nan where there is none.
     """
     keypoints = voxel_keypoints(cloud.points, voxel)
     if cloud.normals is not None:

@@ -49,12 +49,24 @@ class UprightShape(NamedTuple):
 
 
 def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
-    """Compute the overall shape of finite points (n, 3) in metres in the table's frame, z up and 0 on the table.
+    """Compute the overall shape of an object in the table's frame.
 
-    Returns None for no points. The height is that of the top above the table, also for a thing that stands on another
-    one. If a thing reaches below 0, so that the frame is not the table's, its height is measured from its own foot.
-    Length and width are the sides of the smallest rectangle around it in plan.
+    The height is that of the top above the table, also for a thing that stands on another one. If a thing reaches below
+    0, so that the frame is not the table's, its height is measured from its own foot. Length and width are the sides of
+    the smallest rectangle around it in plan.
 
+    Parameters
+    ----------
+    points
+        Finite points, shape (n, 3), in metres, with z up and 0 on the table.
+
+    Returns
+    -------
+    UprightShape or None
+        The shape, or None for no points.
+
+    Examples
+    --------
     >>> rod = np.linspace([0, 0, 0], [0, 0.3, 0], 100)
     >>> (np.exp(upright_shape(rod).extents) - EXTENT_OFFSET).round(3).tolist()
     [0.005, 0.3, 0.0]
@@ -74,7 +86,18 @@ def upright_shape(points: NDArray[np.floating]) -> UprightShape | None:
 
 
 def in_smallest_rectangle(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (n, 2) in the frame of the smallest rectangle around them, with its centre as origin."""
+    """Return points (n, 2) in the frame of the smallest rectangle around them, with its centre as origin.
+
+    Parameters
+    ----------
+    plan
+        Points seen from above, shape (n, 2), in metres.
+
+    Returns
+    -------
+    ndarray
+        The points in the frame of the rectangle, shape (n, 2).
+    """
     angles = np.arange(PLAN_DIRECTIONS) * np.pi / 2 / PLAN_DIRECTIONS
     along = plan @ np.stack([np.cos(angles), np.sin(angles)])  # (n, turns)
     across = plan @ np.stack([-np.sin(angles), np.cos(angles)])
@@ -119,7 +142,18 @@ class UprightDescriber:
         return True
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return descriptors (k, size), in the order of voxels."""
+        """Compute spin images at the voxel keypoints of a cloud, with the object's profile and extents.
+
+        Parameters
+        ----------
+        cloud
+            The points of one object in the table's frame, in metres.
+
+        Returns
+        -------
+        ndarray
+            Descriptors of shape (k, size), in the order of voxels.
+        """
         shape = upright_shape(finite_points(cloud))
         if shape is None:
             return np.empty((0, self.size), np.float32)

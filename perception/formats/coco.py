@@ -36,7 +36,18 @@ class _Image:
 
 
 def is_coco(data: Any) -> bool:
-    """Return True if parsed JSON has the keys of COCO annotations."""
+    """Say whether parsed JSON has the keys of COCO annotations.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+
+    Returns
+    -------
+    bool
+        True for COCO annotations.
+    """
     return isinstance(data, Mapping) and "images" in data and "annotations" in data and "objects" not in data
 
 
@@ -51,6 +62,11 @@ def coco_scene(data: Mapping[str, Any], file: str, image: str | int | None = Non
         Name of the file for error messages.
     image
         File name or id of the image; None if the file has only one.
+
+    Returns
+    -------
+    Scene
+        The annotated boxes, in pixels.
 
     Raises
     ------

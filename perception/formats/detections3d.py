@@ -32,6 +32,8 @@ def scene_from_detections3d(message: Any, *, viewpoint: str = "chair", file: str
         position: ``d1``.
     viewpoint
         The side from which left and right are seen: x to its right, y away from it.
+    file
+        Name of the message in errors.
 
     Returns
     -------
@@ -151,6 +153,16 @@ def scene_to_detections3d(scene: Scene) -> dict[str, Any]:
     """Return the fields of a ``Detection3DArray`` for a scene, as dictionaries and lists.
 
     Boxes without heights have height 0 at z = 0. The header has no time stamp, because a scene has no time.
+
+    Parameters
+    ----------
+    scene
+        A scene in metres.
+
+    Returns
+    -------
+    dict
+        The fields.
 
     Raises
     ------

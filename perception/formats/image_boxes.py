@@ -22,7 +22,18 @@ class ImageBox:
     confidence: float = 1.0
 
     def joined(self, other: ImageBox) -> ImageBox:
-        """Return the box around both boxes, with the label and confidence of this one."""
+        """Return the box around both boxes, with the label and confidence of this one.
+
+        Parameters
+        ----------
+        other
+            The other box.
+
+        Returns
+        -------
+        ImageBox
+            The box around both, with the label and the confidence of this one.
+        """
         return ImageBox(
             min(self.left, other.left),
             min(self.top, other.top),
@@ -36,10 +47,31 @@ class ImageBox:
 def box_around(
     points: Iterable[Sequence[float]], where: str, label: str | None = None, confidence: float = 1.0
 ) -> ImageBox:
-    """Return the bounding box of points (x, y).
+    """Return the bounding box of points.
 
-    Raises SceneError if a coordinate is not finite, or the width or the height is 0.
+    Parameters
+    ----------
+    points
+        Points (x, y) in pixels.
+    where
+        Their place in the file, for the message.
+    label
+        Label of the box.
+    confidence
+        Probability that the label is right.
 
+    Returns
+    -------
+    ImageBox
+        The box.
+
+    Raises
+    ------
+    SceneError
+        If a coordinate is not finite, or the width or the height is 0.
+
+    Examples
+    --------
     >>> box_around([(0, 4), (2, 0), (3, 1)], "polygon")
     ImageBox(left=0, top=0, right=3, bottom=4, label=None, confidence=1.0)
     """
@@ -56,10 +88,25 @@ def box_around(
 def image_scene(boxes: Sequence[ImageBox], height: float | None, file: str) -> Scene:
     """Return the scene of an image, with y upwards: an object higher in the image is farther away.
 
-    The origin is the bottom left corner of the image if its ``height`` is known; otherwise the lowest box has y = 0.
     The unit is px, the frame ``image``, and the viewpoint the chair, as in Figure 3 of the paper. The objects are named
     o1, o2, … in the given order.
 
+    Parameters
+    ----------
+    boxes
+        Boxes in pixels, with y downwards.
+    height
+        Height of the image; the origin is its bottom left corner. None makes the lowest box have y = 0.
+    file
+        Name of the file, for messages.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Examples
+    --------
     >>> scene = image_scene([ImageBox(10, 20, 30, 60, "fork")], 100, "table.json")
     >>> scene["o1"].minimum, scene["o1"].maximum
     ((10, 40), (30, 80))

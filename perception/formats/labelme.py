@@ -40,16 +40,45 @@ _MARKS = {"version", "flags", "imagePath", "imageData", "imageHeight", "imageWid
 
 
 def is_labelme(data: Any) -> bool:
-    """Return True if parsed JSON has the keys of LabelMe annotations."""
+    """Say whether parsed JSON has the keys of LabelMe annotations.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+
+    Returns
+    -------
+    bool
+        True for LabelMe annotations.
+    """
     return isinstance(data, Mapping) and "shapes" in data and "objects" not in data and not _MARKS.isdisjoint(data)
 
 
 def labelme_scene(data: Mapping[str, Any], file: str, image: str | int | None = None) -> Scene:
     """Return the scene of parsed LabelMe annotations, which describe one image.
 
-    ``image`` must be None or the image of the file (``imagePath``). Raises SceneError, with the place, if it is another
-    one or the file is malformed.
+    Parameters
+    ----------
+    data
+        Parsed JSON of the annotations.
+    file
+        Name of the file, for messages.
+    image
+        None, or the image of the file (``imagePath``).
 
+    Returns
+    -------
+    Scene
+        The annotated boxes, in pixels.
+
+    Raises
+    ------
+    SceneError
+        If the file is malformed or is about another image; the message names the place.
+
+    Examples
+    --------
     >>> found = labelme_scene({"version": "5.4.1", "imageHeight": 100, "shapes": [
     ...     {"label": "plate", "points": [[50, 40], [50, 70]], "shape_type": "circle"}]}, "table.json")
     >>> found["o1"].label, found["o1"].minimum, found["o1"].maximum

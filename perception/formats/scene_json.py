@@ -30,8 +30,20 @@ FORMATS: tuple[tuple[Callable[[Any], bool], Reader], ...] = ((is_coco, coco_scen
 
 
 def annotation_reader(data: Any) -> Reader | None:
-    """Return the reader of the annotation format of parsed JSON, or None if it is in none of the formats.
+    """Return the reader of the annotation format of parsed JSON.
 
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+
+    Returns
+    -------
+    Reader or None
+        The function that makes the scene, or None for other formats.
+
+    Examples
+    --------
     >>> annotation_reader({"images": [], "annotations": [], "categories": []}).__name__
     'coco_scene'
     >>> annotation_reader({"objects": []}) is None
@@ -58,6 +70,11 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
         File, or parsed JSON of one.
     image
         File name or id of the image, in a COCO file with several images.
+
+    Returns
+    -------
+    Scene
+        The scene, in metres or pixels.
 
     Raises
     ------
@@ -100,8 +117,26 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
 def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Scene:
     """Return the scene of parsed JSON in any of the formats.
 
-    ``image`` has the same meaning as in :func:`read_scene`. Unknown keys of a ``.scene.json`` are errors, so that a
-    misspelt key is not ignored.
+    Unknown keys of a ``.scene.json`` are errors, so that a misspelt key is not ignored.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+    file
+        Name of the file, for messages.
+    image
+        File name or id of the image, in a COCO file with several images.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        If the data is not a scene; the message names the place.
     """
     reader = annotation_reader(data)
     if reader is not None:
@@ -221,7 +256,18 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
 
 
 def scene_to_dict(scene: Scene) -> dict[str, Any]:
-    """Return the scene as a dictionary for :func:`read_scene`, in metres or pixels, without points in memory."""
+    """Return the scene as a dictionary for :func:`read_scene`, in metres or pixels, without points in memory.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    dict
+        Data for :func:`read_scene`, in metres or pixels, without points in memory.
+    """
     objects = []
     for thing in scene.objects:
         entry: dict[str, Any] = {"id": thing.id, "min": list(thing.minimum), "max": list(thing.maximum)}
@@ -244,7 +290,18 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
 
 
 def scene_text(scene: Scene) -> str:
-    """Return the text of a ``.scene.json``, one object per line."""
+    """Return the text of a ``.scene.json``, one object per line.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    str
+        The text, with a line end at its end.
+    """
     data = scene_to_dict(scene)
     lines = ",\n".join("    " + json.dumps(entry, ensure_ascii=False) for entry in data.pop("objects"))
     head = "".join(f'  "{key}": {json.dumps(value, ensure_ascii=False)},\n' for key, value in data.items())

@@ -166,7 +166,7 @@ class InvertedFile:
 
 def _squares(reduced: NDArray[np.float32], centres: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return squared distances (n, l) to the centres, minus the squared lengths of the descriptors."""
-    squares: NDArray[np.float32] = reduced[:, :-1] @ (-2.0 * centres.T)
+    squares: NDArray[np.float32] = reduced[:, :-1] @ np.multiply(centres.T, -2.0, dtype=np.float32)
     squares += np.square(centres).sum(axis=1)
     return squares
 

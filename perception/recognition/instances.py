@@ -123,7 +123,9 @@ def _distances(seen: PackedViews, views: PackedViews) -> NDArray[np.float64]:
     if seen is not views or len(rows) < len(seen):  # also checks that the descriptors of other views fit
         for i in range(len(seen)):
             distances[i] = view_distances(seen[i], views)
-    single = (one.descriptors[one.starts[at]].astype(np.float64) for one, at in ((seen, rows), (views, columns)))
     if len(rows) and len(columns):
-        distances[np.ix_(rows, columns)] = cdist(*single)
+        single, others = (
+            one.descriptors[one.starts[at]].astype(np.float64) for one, at in ((seen, rows), (views, columns))
+        )
+        distances[np.ix_(rows, columns)] = cdist(single, others)
     return distances

@@ -107,7 +107,18 @@ class TableCheck:
     claims: tuple[ClaimOutcome, ...] = ()
 
     def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
-        """Return the roles with a verdict."""
+        """Return the roles with a verdict.
+
+        Parameters
+        ----------
+        verdict
+            The verdict.
+
+        Returns
+        -------
+        tuple of RoleCheck
+            The roles, in the order of the layout.
+        """
         return tuple(check for check in self.roles if check.verdict is verdict)
 
     @property
@@ -146,6 +157,11 @@ def check_table(
         Colours of the n2 objects in sRGB, shape (n2, 3), NaN where not known.
     colours
         The known colour terms.
+
+    Returns
+    -------
+    TableCheck
+        The verdicts, with the extra objects and the violated facts.
     """
     layout = evidence.description
     sure = sure_roles(layout, labels, kinds)
@@ -293,7 +309,22 @@ def _ends(evidence: Evidence, chosen: NDArray[np.bool_], assignment: NDArray[np.
 
 
 def sure_roles(layout: RelationGraph, labels: Mapping[str, Label | None], kinds: Kinds) -> dict[str, frozenset[str]]:
-    """Return for each object the roles that it fills by a confident label: those that fit, or the one that it names."""
+    """Return the roles that each object fills by a confident label: those that fit, or the one that it names.
+
+    Parameters
+    ----------
+    layout
+        The relation graph of the layout.
+    labels
+        Label of each object of the scene, or None.
+    kinds
+        The known kinds, which labels are compared by.
+
+    Returns
+    -------
+    dict
+        Roles by the id of the object; objects without a confident label are left out.
+    """
     known = naming(layout, list(labels.values()), kinds)
     roles = {}
     for column, (thing, label) in enumerate(labels.items()):
@@ -383,6 +414,11 @@ def checked_table(
         Colours of the n2 objects in sRGB, shape (n2, 3), NaN where not known.
     colours
         The known colour terms.
+
+    Returns
+    -------
+    TableCheck
+        The verdicts of the last grounding.
     """
     deadline = Deadline.after(time_limit)
     sure = sure_roles(evidence.description, labels, kinds)

@@ -71,6 +71,11 @@ def usual_sizes(
     metric
         Whether boxes are in metres. If they are in pixels, sizes in metres are compared relative to each other, seen
         from above or from the side, whichever fits better. A kind without a known size fits every box.
+
+    Returns
+    -------
+    dict
+        Degrees in [0, 1] by kind, shape (n,) each.
     """
     if metric:
         extents = np.sort(boxes[:, 1, :2] - boxes[:, 0, :2], axis=1)[:, ::-1]
@@ -224,7 +229,22 @@ class Seen:
 
 
 def seen(name: str, scene: SceneRelations, metric: bool = True) -> Seen:
-    """Prepare a scene for comparison; ``scene.kinds`` are the classes of its labels."""
+    """Prepare a scene for comparison.
+
+    Parameters
+    ----------
+    name
+        Name of the scene.
+    scene
+        Its relations; ``scene.kinds`` are the classes of its labels.
+    metric
+        True for a scene in metres, False in pixels.
+
+    Returns
+    -------
+    Seen
+        The scene with the numbers that comparisons need.
+    """
     kinds = scene.kinds or (None,) * len(scene.nodes)
     return Seen(name, scene.nodes, scene.names, kinds, scene.boxes, metric)
 
@@ -270,7 +290,22 @@ class Comparison:
         self._of_kinds: dict[tuple[str, str], float] = {}
 
     def likeness(self, layout: Described, scene: Seen, deadline: Deadline = Deadline.never()) -> Likeness:
-        """Return the similarity by the best grounding found until ``deadline``."""
+        """Return the similarity of a layout and a scene by the best grounding found.
+
+        Parameters
+        ----------
+        layout
+            The layout.
+        scene
+            The scene.
+        deadline
+            Time limit; the similarity is then a lower bound.
+
+        Returns
+        -------
+        Likeness
+            Similarity, matches, and whether it is proved.
+        """
         from deixis.reasoning.grounding.matching.exact import exact
 
         problem = self.problem(layout, scene)
@@ -293,7 +328,20 @@ class Comparison:
         )
 
     def problem(self, layout: Described, scene: Seen) -> Problem:
-        """Return the matching problem in which the value of a map is the similarity that it gives."""
+        """Return the matching problem in which the value of a map is the similarity that it gives.
+
+        Parameters
+        ----------
+        layout
+            The layout.
+        scene
+            The scene.
+
+        Returns
+        -------
+        Problem
+            The matching problem.
+        """
         shares, n2 = self.shares(layout, scene), len(scene.names)
         graph = layout.graph
         edges = layout.edges
@@ -312,7 +360,20 @@ class Comparison:
         return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
 
     def objects(self, layout: Described, scene: Seen) -> Array:
-        """Return the degree to which each object corresponds to each thing, shape (n1, n2), in [0, 1]."""
+        """Return the degree to which each object corresponds to each thing, shape (n1, n2), in [0, 1].
+
+        Parameters
+        ----------
+        layout
+            A layout of n1 objects.
+        scene
+            A scene of n2 things.
+
+        Returns
+        -------
+        Array
+            Degrees in [0, 1], shape (n1, n2).
+        """
         said = layout.said
         sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
         usual: Mapping[str, Array] = {}
@@ -342,7 +403,20 @@ class Comparison:
         return self._of_kinds[a, b]
 
     def shares(self, layout: Described, scene: Seen) -> Shares:
-        """Return the weights of both parts, and the number of objects and the weight of facts on both sides."""
+        """Return the weights of both parts, and the number of objects and the weight of facts on both sides.
+
+        Parameters
+        ----------
+        layout
+            The layout.
+        scene
+            The scene.
+
+        Returns
+        -------
+        Shares
+            Both weights with the counts.
+        """
         n1, n2 = len(layout.graph.nodes), len(scene.names)
         if not layout.total:
             return Shares(1.0, 0.0, n1 + n2, 1.0)

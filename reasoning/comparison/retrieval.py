@@ -28,7 +28,31 @@ def rank_layouts(
     top: int = 10,
     deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
-    """Return the ``top`` layouts most similar to a scene, best first, equal ones by name; see :func:`rank_scenes`."""
+    """Rank layouts by their similarity to a scene.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    layouts
+        The layouts to rank.
+    comparison
+        The similarity.
+    top
+        Maximum number of results, at least 1.
+    deadline
+        Time at which each comparison returns its best grounding so far, not proved to be the best.
+
+    Returns
+    -------
+    list of Likeness
+        The most similar layouts, best first, equal ones by name.
+
+    Raises
+    ------
+    SettingError
+        If ``top`` is less than 1.
+    """
     return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline)
 
 
@@ -39,7 +63,7 @@ def rank_scenes(
     top: int = 10,
     deadline: Deadline = Deadline.never(),
 ) -> list[Likeness]:
-    """Return the ``top`` scenes most similar to a layout, best first, equal ones by name.
+    """Rank scenes by their similarity to a layout.
 
     Parameters
     ----------
@@ -53,6 +77,11 @@ def rank_scenes(
         Maximum number of results, at least 1.
     deadline
         Time at which each comparison returns its best grounding so far, not proved to be the best.
+
+    Returns
+    -------
+    list of Likeness
+        The most similar scenes, best first, equal ones by name.
 
     Raises
     ------
@@ -84,7 +113,22 @@ def _ranked(
 
 
 def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
-    """Return an upper bound of the similarity from counts alone: of equal kinds, and of pairs with each relation."""
+    """Return an upper bound of the similarity from counts alone: of equal kinds, and of pairs with each relation.
+
+    Parameters
+    ----------
+    comparison
+        The similarity.
+    layout
+        The layout.
+    scene
+        The scene.
+
+    Returns
+    -------
+    float
+        The bound, in [0, 1].
+    """
     shares, alike = comparison.shares(layout, scene), comparison.objects(layout, scene)
     objects = min(alike.max(axis=1, initial=0.0).sum(), alike.max(axis=0, initial=0.0).sum())
     bound = 2 * shares.objects * float(objects) / max(shares.things, 1)
@@ -108,6 +152,22 @@ def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float
 def assignment_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
     """Return an upper bound of the similarity: the best assignment if each fact chooses its other end freely.
 
+    Parameters
+    ----------
+    comparison
+        The similarity.
+    layout
+        The layout.
+    scene
+        The scene.
+
+    Returns
+    -------
+    float
+        The bound, in [0, 1].
+
+    Notes
+    -----
     Each object counts half of every fact about it (Gilmore 1962, Lawler 1963).
     """
     from scipy.optimize import linear_sum_assignment

@@ -43,19 +43,47 @@ class Difference(NamedTuple):
     code: int
 
     def denied(self) -> Difference:
-        """Return the negation: ``x[tail] - x[head]`` is less than, or at most, the negated bound."""
+        """Return the negation: ``x[tail] - x[head]`` is less than, or at most, the negated bound.
+
+        Returns
+        -------
+        Difference
+            The negation.
+        """
         return Difference(self.axis, self.head, self.tail, 1 - self.code)
 
 
 def add(a: int, b: int) -> int:
-    """Return the code of a sum of bounds: *x <= a* and *y < b* give *x + y < a + b*."""
+    """Return the code of a sum of bounds: *x <= a* and *y < b* give *x + y < a + b*.
+
+    Parameters
+    ----------
+    a, b
+        Codes of bounds.
+
+    Returns
+    -------
+    int
+        The code of the sum.
+    """
     if a >= UNBOUNDED or b >= UNBOUNDED:
         return UNBOUNDED
     return (a & ~1) + (b & ~1) | (a & b & 1)
 
 
 def add_arrays(a: NDArray[np.int64], b: NDArray[np.int64] | int) -> NDArray[np.int64]:
-    """Return the codes of sums of bounds, for two arrays of codes, which broadcast."""
+    """Return the codes of sums of bounds.
+
+    Parameters
+    ----------
+    a, b
+        Codes of bounds, arrays that broadcast.
+
+    Returns
+    -------
+    ndarray
+        Codes of the broadcast shape.
+    """
     b = np.asarray(b, dtype=np.int64)
     total = (a & ~1) + (b & ~1) | (a & b & 1)
     return np.where((a >= UNBOUNDED) | (b >= UNBOUNDED), UNBOUNDED, total)
@@ -120,13 +148,35 @@ class DifferenceNetwork:
         self.keep()
 
     def admits(self, difference: Difference) -> bool:
-        """Return whether a constraint closes no negative cycle."""
+        """Say whether a constraint closes no negative cycle.
+
+        Parameters
+        ----------
+        difference
+            The constraint.
+
+        Returns
+        -------
+        bool
+            True if it can be added.
+        """
         axis, tail, head, code = difference
         against = int(self.matrices[axis, head, tail])
         return against >= self.free or add(against, code) >= ZERO
 
     def add(self, difference: Difference) -> bool:
-        """Add a constraint and return True; return False and change nothing if it closes a negative cycle."""
+        """Add a constraint unless it closes a negative cycle.
+
+        Parameters
+        ----------
+        difference
+            The constraint.
+
+        Returns
+        -------
+        bool
+            True if it was added; False if nothing was changed.
+        """
         if not self.admits(difference):
             return False
         from deixis.reasoning.constraints.kernels import tighten
@@ -144,9 +194,17 @@ class DifferenceNetwork:
         return True
 
     def add_all(self, differences: NDArray[np.int64]) -> bool:
-        """Add constraints (k, 4) in one compiled loop; they cannot be taken back.
+        """Add constraints in one compiled loop; they cannot be taken back.
 
-        Returns False if they close a negative cycle; the network must not be used after that.
+        Parameters
+        ----------
+        differences
+            The constraints, shape (k, 4).
+
+        Returns
+        -------
+        bool
+            False if they close a negative cycle; the network must not be used after that.
         """
         from deixis.reasoning.constraints.kernels import tighten_all
 
@@ -156,7 +214,13 @@ class DifferenceNetwork:
         return bool(tighten_all(self.matrices, self._points, differences, self.free))
 
     def back(self, length: int) -> None:
-        """Take back the constraints added last, until ``length`` are left."""
+        """Take back the constraints added last.
+
+        Parameters
+        ----------
+        length
+            Number of constraints to leave.
+        """
         flat = self.matrices.reshape(-1)
         while len(self._changes) > length:
             change = self._changes.pop()
@@ -169,7 +233,13 @@ class DifferenceNetwork:
         self._kept = len(self._changes)
 
     def replace(self, differences: Sequence[Difference]) -> None:
-        """Replace all constraints by others, which must have a solution."""
+        """Replace all constraints by others.
+
+        Parameters
+        ----------
+        differences
+            The constraints, which must have a solution.
+        """
         self._table, self._changes, self._kept = self._table[:0], [], 0
         self.matrices.fill(self.free)
         capacity = np.arange(self.matrices.shape[1])
@@ -177,29 +247,67 @@ class DifferenceNetwork:
         self.add_all(np.array(differences, np.int64).reshape(-1, 4))
 
     def copy(self) -> DifferenceNetwork:
-        """Return a network of the same points and constraints, which cannot be taken back there."""
+        """Return a network of the same points and constraints, which cannot be taken back there.
+
+        Returns
+        -------
+        DifferenceNetwork
+            The network.
+        """
         other = DifferenceNetwork(0)
         other.free, other._points = self.free, self._points
         other.matrices, other._table = self.matrices.copy(), self._table.copy()
-        other._changes, other._kept = [None] * len(self), len(self)
+        other._changes = [None] * len(self)
+        other._kept = len(self)
         return other
 
     def path(self, axis: int, tail: int, head: int) -> list[int]:
-        """Return the numbers of the fewest constraints that add up to the distance from ``tail`` to ``head``."""
+        """Return the fewest constraints that add up to the distance between two points.
+
+        Parameters
+        ----------
+        axis
+            The axis.
+        tail, head
+            The points.
+
+        Returns
+        -------
+        list of int
+            Numbers of the constraints, counted in the order of adding.
+        """
         from deixis.reasoning.constraints.path_kernels import tight_path
 
         found = tight_path(self.matrices[axis], self._points, self.constraints, axis, tail, head)
         return [int(number) for number in found]
 
     def cycle(self, difference: Difference) -> list[int]:
-        """Return the numbers of the fewest constraints that close a negative cycle with a refused one."""
+        """Return the fewest constraints that close a negative cycle with a refused one.
+
+        Parameters
+        ----------
+        difference
+            The refused constraint.
+
+        Returns
+        -------
+        list of int
+            Numbers of the constraints, counted in the order of adding.
+        """
         return self.path(difference.axis, difference.head, difference.tail)
 
     def nearest(self, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return a solution in whole numbers near the wanted ones (axes, points); equal to them if they are one.
+        """Return a solution in whole numbers near the wanted ones.
 
-        Each number is lowered as far as the constraints require, so the result is the greatest solution below
-        ``wanted``. No constraint may be strict.
+        Parameters
+        ----------
+        wanted
+            The wanted numbers, shape (axes, points).
+
+        Returns
+        -------
+        ndarray
+            The solution, shape (axes, points), equal to the wanted numbers if they are one.
         """
         return np.stack(
             [(row[:, None] + (matrix >> 1)).min(axis=0) for row, matrix in zip(wanted, self.distances, strict=True)]

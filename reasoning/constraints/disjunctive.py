@@ -50,14 +50,40 @@ class Clauses(Sequence[Clause]):
         return self._clauses[position]
 
     def next(self, network: DifferenceNetwork, taken: NDArray[np.int64]) -> tuple[int, int]:
-        """Return the open clause with the fewest pieces that the network admits, and their number; -1 if all hold."""
+        """Return the open clause with the fewest pieces that the network admits.
+
+        Parameters
+        ----------
+        network
+            The network.
+        taken
+            Piece taken of each clause, -1 for none.
+
+        Returns
+        -------
+        tuple
+            Position of the clause, or -1 if all hold, and the number of its admitted pieces.
+        """
         from deixis.reasoning.constraints.kernels import next_clause
 
         clause, left = next_clause(network.matrices, *self._arrays, taken, network.free)
         return int(clause), int(left)
 
     def admitted(self, network: DifferenceNetwork, clause: int) -> list[bool]:
-        """Return for each piece of a clause whether it can be added to a network."""
+        """Say for each piece of a clause whether it can be added to a network.
+
+        Parameters
+        ----------
+        network
+            The network.
+        clause
+            Position of the clause.
+
+        Returns
+        -------
+        list of bool
+            True for each piece that can be added.
+        """
         from deixis.reasoning.constraints.kernels import standing
 
         _, first_bound, bounds = self._arrays
@@ -66,7 +92,20 @@ class Clauses(Sequence[Clause]):
         return [standing(network.matrices, bounds, *end, network.free) >= 0 for end in ends]
 
     def dive(self, network: DifferenceNetwork, last: NDArray[np.int64]) -> tuple[int, NDArray[Any]]:
-        """Decide all clauses without backtracking; return 1, -1 or 0 for solved, refuted or neither, and distances."""
+        """Decide all clauses without backtracking.
+
+        Parameters
+        ----------
+        network
+            The network, which is not changed.
+        last
+            Piece of each clause to try first, -1 for none; changed to the pieces taken.
+
+        Returns
+        -------
+        tuple
+            1, -1 or 0 for solved, refuted or neither, and the distances.
+        """
         from deixis.reasoning.constraints.kernels import dive
 
         distances = np.ascontiguousarray(network.distances).copy()
@@ -112,11 +151,23 @@ class Search:
         self._solved = False
 
     def propagate(self) -> SearchOutcome:
-        """Take pieces that are the only possible ones, until a choice is needed; SOLVED means no contradiction."""
+        """Take pieces that are the only possible ones, until a choice is needed.
+
+        Returns
+        -------
+        SearchOutcome
+            The outcome; SOLVED means no contradiction.
+        """
         return self._run(only_forced=True)
 
     def advance(self) -> SearchOutcome:
-        """Go to the first or next solution; earlier pieces of a clause are preferred."""
+        """Go to the first or next solution; earlier pieces of a clause are preferred.
+
+        Returns
+        -------
+        SearchOutcome
+            Whether there is a solution, or a limit was reached.
+        """
         if self._solved:
             self._solved = False
             for level in self.levels:
@@ -132,7 +183,13 @@ class Search:
         return self.outcome
 
     def open(self) -> list[int]:
-        """Return the clauses that are neither decided nor implied."""
+        """Return the clauses that are neither decided nor implied.
+
+        Returns
+        -------
+        list of int
+            Positions of the clauses.
+        """
         taken, found = self.taken.copy(), list[int]()
         while (clause := self.clauses.next(self.network, taken)[0]) >= 0:
             found.append(clause)
@@ -215,7 +272,24 @@ class Search:
 
 
 def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline) -> Search:
-    """Return a search that has solved clauses over points on some axes, refuted them, or run out of time."""
+    """Search for a solution of clauses.
+
+    Parameters
+    ----------
+    points
+        Number of points.
+    axes
+        Number of axes.
+    clauses
+        The clauses.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Search
+        The search: solved, refuted, or out of time.
+    """
     search = Search(DifferenceNetwork(points, axes), Clauses(clauses), deadline, keep=True)
     search.advance()
     return search
@@ -224,10 +298,30 @@ def solve(points: int, axes: int, clauses: Iterable[Clause], deadline: Deadline)
 def solution(
     network: DifferenceNetwork, clauses: Clauses, last: NDArray[np.int64], deadline: Deadline
 ) -> NDArray[Any] | None:
-    """Return the distances in a solution of clauses over a network, or None without a solution.
+    """Return the distances in a solution of clauses over a network.
 
-    The network is not changed. A single dive comes first, since it finds most solutions. It takes the pieces in
-    ``last`` (clauses,), -1 for none, and writes the pieces it took there. Raises OutOfTimeError at the deadline.
+    The network is not changed. A single dive comes first, since it finds most solutions.
+
+    Parameters
+    ----------
+    network
+        The network.
+    clauses
+        The clauses.
+    last
+        Piece of each clause to try first, -1 for none; changed to the pieces taken.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    ndarray or None
+        The distances, or None without a solution.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes first.
     """
     if deadline.passed:
         raise OutOfTimeError("time limit reached before every choice in the facts was considered")

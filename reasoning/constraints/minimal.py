@@ -52,6 +52,11 @@ def minimal_subset(
     keep_last
         Prefer the last items to the first ones.
 
+    Returns
+    -------
+    Minimal[Item]
+        The subset, and whether it is proved to be minimal.
+
     Examples
     --------
     >>> minimal_subset([3, 5, 8, 1], lambda chosen: chosen if sum(chosen) >= 9 else None)
@@ -73,10 +78,23 @@ def minimal_subset(
 
 
 def minimal_by(items: Sequence[Item], first_of: FirstOf[Item], width: int = 1) -> Minimal[Item]:
-    """Return a minimal subset by a test of about ``width`` candidates in one run.
+    """Return a minimal subset by a test of several candidates in one run.
 
-    This suits tests that are slow to start, such as a reasoner in its own process. If a test raises LimitError, the
-    result has the items left so far, not proved to be minimal.
+    This suits tests that are slow to start, such as a reasoner in its own process.
+
+    Parameters
+    ----------
+    items
+        Items that have the property.
+    first_of
+        Function from candidates to the position of one that has the property, with the items it rests on, or None.
+    width
+        About the number of candidates of one run.
+
+    Returns
+    -------
+    Minimal[Item]
+        The subset. If a test raises LimitError, it has the items left so far, not proved to be minimal.
     """
     rest, needed = list(items), list[Item]()
     bracketing = width > 1 and len(items) > FEW  # bracketing needs one run per needed item, deletion one per other item

@@ -35,7 +35,24 @@ class OrderGraph:
         strict: NDArray[np.bool_],
         premise: NDArray[np.int64],
     ) -> OrderGraph:
-        """Return the graph of edges in any order."""
+        """Return the graph of edges in any order.
+
+        Parameters
+        ----------
+        points
+            Number of points.
+        tails, heads
+            Points of each edge, shape (k,).
+        strict
+            True for strict orders, shape (k,).
+        premise
+            Number of the premise of each edge, shape (k,).
+
+        Returns
+        -------
+        OrderGraph
+            The graph.
+        """
         from deixis.reasoning.constraints.path_kernels import rows_of
 
         first, order = rows_of(tails, points)
@@ -69,11 +86,23 @@ class OrderGraph:
         return len(large) == 1 and int(inside.sum()) == int((part == large[0]).sum())
 
     def reversed(self) -> OrderGraph:
-        """Return the graph with every edge reversed."""
+        """Return the graph with every edge reversed.
+
+        Returns
+        -------
+        OrderGraph
+            The graph.
+        """
         return OrderGraph.of(len(self.first) - 1, self.heads, self._tails, self.strict, self.premise)
 
     def shortest_cycle(self) -> tuple[int, ...] | None:
-        """Return the premises of the contradiction with the fewest premises, or None if the orders are consistent."""
+        """Return the premises of the contradiction with the fewest premises, or None if the orders are consistent.
+
+        Returns
+        -------
+        tuple of int or None
+            The premises, or None if the orders are consistent.
+        """
         from deixis.reasoning.constraints.path_kernels import shortest_strict_cycle
 
         if not self.contradictory:
@@ -130,11 +159,45 @@ class ShortestPaths:
         return self.graph.reversed()
 
     def path(self, root: int, target: int, strict: bool, backwards: bool = False) -> tuple[int, ...] | None:
-        """Return the fewest premises for the target being not before the root, or after it; None if not implied."""
+        """Return the fewest premises for the order of two points.
+
+        Parameters
+        ----------
+        root
+            The first point.
+        target
+            The second point, which is not before the first.
+        strict
+            True if it is after the first.
+        backwards
+            True to exchange the two.
+
+        Returns
+        -------
+        tuple of int or None
+            The premises, or None if the order is not implied.
+        """
         return self._tree(root, backwards).way(target, strict)
 
     def costs(self, root: int, targets: NDArray[np.int64], strict: bool, backwards: bool = False) -> NDArray[np.int64]:
-        """Return the number of premises of the paths to some points, ``FAR`` for points without a path."""
+        """Return the number of premises of the paths to some points.
+
+        Parameters
+        ----------
+        root
+            Start of the paths.
+        targets
+            Their ends, shape (k,).
+        strict
+            True for paths with a strict edge.
+        backwards
+            True to follow edges from head to tail.
+
+        Returns
+        -------
+        ndarray
+            Numbers of shape (k,); ``FAR`` for points without a path.
+        """
         from deixis.reasoning.constraints.path_kernels import FAR
 
         tree = self._tree(root, backwards)

@@ -59,19 +59,48 @@ class Proof(Generic[Claim]):
     source: Source | str | None = None
 
     def leaves(self) -> tuple[Proof[Claim], ...]:
-        """Return the stated leaves, without repetition, in the order of use."""
+        """Return the stated leaves, without repetition, in the order of use.
+
+        Returns
+        -------
+        tuple of Proof[Claim]
+            The leaves.
+        """
         return tuple(dict.fromkeys(proof for proof, _, _ in self._walk() if proof.rule is Rule.STATED))
 
     def stated(self) -> tuple[Claim, ...]:
-        """Return the claims of the stated leaves, without repetition, in the order of use."""
+        """Return the claims of the stated leaves, without repetition, in the order of use.
+
+        Returns
+        -------
+        tuple of Claim
+            The claims.
+        """
         return tuple(dict.fromkeys(leaf.claim for leaf in self.leaves()))
 
     def size(self) -> int:
-        """Return the number of leaves of the tree with shared parts written out each time."""
+        """Return the number of leaves of the tree with shared parts written out each time.
+
+        Returns
+        -------
+        int
+            The number.
+        """
         return sum(premise.size() for premise in self.premises) or 1
 
     def lines(self, indent: str = "") -> Iterator[str]:
-        """Yield the proof as indented text, conclusion first; a repeated part refers to its first occurrence."""
+        """Yield the proof as indented text, conclusion first; a repeated part refers to its first occurrence.
+
+        Parameters
+        ----------
+        indent
+            Blanks before each line.
+
+        Yields
+        ------
+        str
+            A line.
+        """
         for proof, depth, again in self._walk():
             place = f"   [{proof.source}]" if proof.source else ""
             above = ", as above" if again and proof.premises else ""

@@ -43,15 +43,40 @@ class Bound:
     strict: bool
 
     def denied(self) -> Bound:
-        """Return the negation of the bound."""
+        """Return the negation of the bound.
+
+        Returns
+        -------
+        Bound
+            The opposite bound: strict if this one is not, and not strict if this one is.
+        """
         return Bound(self.axis, self.head, self.head_side, self.tail, self.tail_side, not self.strict)
 
     def reversed(self) -> Bound:
-        """Return the bound with subject and object exchanged."""
+        """Return the bound with subject and object exchanged.
+
+        Returns
+        -------
+        Bound
+            The bound.
+        """
         return Bound(self.axis, 1 - self.tail, self.tail_side, 1 - self.head, self.head_side, self.strict)
 
     def points(self, subject: int, obj: int, n: int) -> tuple[int, int]:
-        """Return the two points of the bound for given objects, of n."""
+        """Return the two points of the bound.
+
+        Parameters
+        ----------
+        subject, obj
+            Positions of the two objects.
+        n
+            Number of objects.
+
+        Returns
+        -------
+        tuple
+            Tail and head, among the points of all axes.
+        """
         ends = (subject, obj)
         return (
             (2 * self.axis + self.tail_side) * n + ends[self.tail],
@@ -59,7 +84,22 @@ class Bound:
         )
 
     def difference(self, subject: int, obj: int, n: int) -> Difference:
-        """Return the difference constraint; on each axis, object k of n has the points k (low) and n + k (high)."""
+        """Return the difference constraint of the bound.
+
+        On each axis, object k of n has the points k (low) and n + k (high).
+
+        Parameters
+        ----------
+        subject, obj
+            Positions of the two objects.
+        n
+            Number of objects.
+
+        Returns
+        -------
+        Difference
+            The constraint.
+        """
         ends = (subject, obj)
         code = STRICT if self.strict else ZERO
         return Difference(self.axis, self.head_side * n + ends[self.head], self.tail_side * n + ends[self.tail], code)
@@ -102,12 +142,34 @@ class EndpointBounds:
         return len(self.tail)
 
     def of_premises(self, chosen: NDArray[np.bool_]) -> EndpointBounds:
-        """Return the bounds of the chosen premises, a mask over them."""
+        """Return the bounds of some premises.
+
+        Parameters
+        ----------
+        chosen
+            Mask over the premises.
+
+        Returns
+        -------
+        EndpointBounds
+            The bounds.
+        """
         keep = chosen[self.premise]
         return EndpointBounds(self.tail[keep], self.head[keep], self.strict[keep], self.premise[keep])
 
     def joined(self, other: EndpointBounds) -> EndpointBounds:
-        """Return these bounds and others."""
+        """Return these bounds and others.
+
+        Parameters
+        ----------
+        other
+            The others.
+
+        Returns
+        -------
+        EndpointBounds
+            The bounds, these first.
+        """
         return EndpointBounds(
             np.concatenate([self.tail, other.tail]),
             np.concatenate([self.head, other.head]),
@@ -117,7 +179,18 @@ class EndpointBounds:
 
 
 def bounds_of(rows: list[tuple[int, int, bool, int]]) -> EndpointBounds:
-    """Return bounds from rows of tail, head, strict and premise."""
+    """Return bounds from rows of tail, head, strict and premise.
+
+    Parameters
+    ----------
+    rows
+        The rows; an empty list gives no bounds.
+
+    Returns
+    -------
+    EndpointBounds
+        The bounds.
+    """
     tail, head, strict, premise = zip(*rows, strict=True) if rows else ((), (), (), ())
     return EndpointBounds(
         np.array(tail, np.int64), np.array(head, np.int64), np.array(strict, np.bool_), np.array(premise, np.int64)
@@ -127,7 +200,22 @@ def bounds_of(rows: list[tuple[int, int, bool, int]]) -> EndpointBounds:
 def order_differences(
     tail: NDArray[np.int64], head: NDArray[np.int64], strict: NDArray[np.bool_], n: int
 ) -> NDArray[np.int64]:
-    """Return bounds between points of n objects as difference constraints (k, 4); see :meth:`Bound.difference`."""
+    """Return bounds between points of objects as difference constraints; see :meth:`Bound.difference`.
+
+    Parameters
+    ----------
+    tail, head
+        Points of each bound, shape (k,).
+    strict
+        True for strict bounds, shape (k,).
+    n
+        Number of objects.
+
+    Returns
+    -------
+    ndarray
+        The constraints, shape (k, 4).
+    """
     codes = np.where(strict, STRICT, ZERO)
     return np.stack([tail // (2 * n), head % (2 * n), tail % (2 * n), codes], axis=1).astype(np.int64)
 
@@ -177,6 +265,16 @@ def claims(fact: Fact) -> tuple[Alternatives, ...]:
     """Return the demands of a fact, all of which must hold: one demand, or one for every relation that it denies.
 
     The denial of a graded word demands nothing, because its bounds are necessary for it, not sufficient.
+
+    Parameters
+    ----------
+    fact
+        The fact.
+
+    Returns
+    -------
+    tuple of Alternatives
+        The demands, each a list of alternatives.
     """
     if not fact.positive:
         return tuple(denial(relation) for relation in fact.relations if relation.reading is not Reading.GRADED)

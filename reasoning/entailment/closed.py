@@ -51,12 +51,41 @@ class Groups:
         return np.concatenate([[0], np.cumsum(self.sizes * self.words)])
 
     def members(self, group: int) -> NDArray[np.int64]:
-        """Return the objects of a group."""
+        """Return the objects of a group.
+
+        Parameters
+        ----------
+        group
+            Number of the group.
+
+        Returns
+        -------
+        ndarray
+            Positions of its objects, sorted.
+        """
         return self.nodes[self.start[group] : self.start[group + 1]]
 
 
 def groups_of(subjects: NDArray[np.integer], objects: NDArray[np.integer], n: int) -> Groups:
-    """Return the connected groups of n objects; raise LimitError if one has more than ``MAX_CONNECTED``."""
+    """Return the connected groups of objects.
+
+    Parameters
+    ----------
+    subjects, objects
+        Positions of the ends of each edge, shape (k,).
+    n
+        Number of objects.
+
+    Returns
+    -------
+    Groups
+        The groups.
+
+    Raises
+    ------
+    LimitError
+        If a group has more than ``MAX_CONNECTED`` objects.
+    """
     from deixis.reasoning.entailment.kernels import connected
 
     label, count = connected(subjects.astype(np.int64), objects.astype(np.int64), n)
@@ -93,7 +122,20 @@ class Orders:
     axes: tuple[AxisRows | None, ...]
 
     def implies(self, bound: Bound, subject: int, obj: int) -> bool:
-        """Return whether the bound holds between two objects in every picture."""
+        """Say whether a bound holds between two objects in every picture.
+
+        Parameters
+        ----------
+        bound
+            The bound.
+        subject, obj
+            Positions of the objects.
+
+        Returns
+        -------
+        bool
+            True if it holds.
+        """
         rows = self.axes[bound.axis]
         label, place = self.groups.label, self.groups.place
         if rows is None or label[subject] != label[obj]:
@@ -111,6 +153,16 @@ class Orders:
 
         The matrix of a group has shape (objects, objects). Its diagonal is empty. A relation that is not a single
         conjunction of bounds has no pairs, and neither has a graded word, for which bounds are not sufficient.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        Words
+            The bits in words.
         """
         if relation not in self._found:
             self._found[relation] = self._relation_bits(relation)
@@ -143,7 +195,18 @@ class Orders:
         return bits
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """Return the pairs that have the relation in every picture, shape (k, 2), by subject, then by object."""
+        """Return the pairs that have a relation in every picture.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        ndarray
+            Positions, shape (k, 2), by subject, then by object.
+        """
         from deixis.reasoning.entailment.kernels import count_bits, list_pairs
 
         bits = self.relation_bits(relation)
@@ -155,14 +218,38 @@ class Orders:
         return pairs
 
     def count(self, relation: Relation) -> int:
-        """Return the number of pairs that have the relation in every picture."""
+        """Return the number of pairs that have the relation in every picture.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        int
+            The number of ordered pairs.
+        """
         from deixis.reasoning.entailment.kernels import count_bits
 
         return int(count_bits(self.relation_bits(relation)))
 
 
 def order_graph(bounds: EndpointBounds, n: int) -> OrderGraph:
-    """Return the graph of bounds between the 6 n points of n objects; each low edge is before its high edge."""
+    """Return the graph of bounds between the 6 n points of n objects; each low edge is before its high edge.
+
+    Parameters
+    ----------
+    bounds
+        The bounds.
+    n
+        Number of objects.
+
+    Returns
+    -------
+    OrderGraph
+        The graph.
+    """
     low = (np.arange(AXES)[:, None] * 2 * n + np.arange(n)).ravel()
     return OrderGraph.of(
         2 * AXES * n,
@@ -174,7 +261,20 @@ def order_graph(bounds: EndpointBounds, n: int) -> OrderGraph:
 
 
 def orders_of(bounds: EndpointBounds, groups: Groups) -> Orders | None:
-    """Close bounds between the edges of objects; return None if they have no picture."""
+    """Close bounds between the edges of objects.
+
+    Parameters
+    ----------
+    bounds
+        The bounds.
+    groups
+        The connected groups of the objects.
+
+    Returns
+    -------
+    Orders or None
+        All implied orders, or None if no picture satisfies the bounds.
+    """
     axes: list[AxisRows | None] = []
     n = len(groups.label)
     axis_of = bounds.tail // (2 * n) if n else bounds.tail

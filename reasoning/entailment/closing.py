@@ -39,7 +39,20 @@ class Closed:
 
 
 def close(demands: Demands, deadline: Deadline) -> Closed:
-    """Return all implications of the demands; searches end at ``deadline``."""
+    """Return all implications of some demands.
+
+    Parameters
+    ----------
+    demands
+        The demands.
+    deadline
+        Time limit of the searches.
+
+    Returns
+    -------
+    Closed
+        The orders that hold in every picture, and whether these are all.
+    """
     graph, firm = demands.graph, demands.firm
     groups = groups_of(graph.subjects[firm], graph.objects[firm], len(graph.nodes))
     orders = orders_of(demands.bounds, groups)
@@ -80,7 +93,13 @@ class LocalProblem:
     clauses: Clauses
 
     def network(self) -> DifferenceNetwork | None:
-        """Return the network of the demands without choices, or None if they are inconsistent."""
+        """Return the network of the demands without choices, or None if they are inconsistent.
+
+        Returns
+        -------
+        DifferenceNetwork or None
+            The network, or None if the demands are inconsistent.
+        """
         n = len(self.nodes)
         network = DifferenceNetwork(2 * n, AXES, ORDERS)
         axis, low = np.divmod(np.arange(AXES * n), max(n, 1))
@@ -88,7 +107,23 @@ class LocalProblem:
         return network if network.add_all(np.concatenate([own, self.differences])) else None
 
     def picture(self, deadline: Deadline) -> Codes | None:
-        """Return the orders of one picture, or None if there is no picture; raise OutOfTimeError at the deadline."""
+        """Return the orders of one picture.
+
+        Parameters
+        ----------
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Codes or None
+            The orders, or None if there is no picture.
+
+        Raises
+        ------
+        OutOfTimeError
+            If the deadline passes first.
+        """
         network = self.network()
         return None if network is None else solution(network, self.clauses, self._nothing_taken(), deadline)
 
@@ -96,10 +131,22 @@ class LocalProblem:
         return np.full(len(self.clauses), -1, np.int64)
 
     def shared(self, deadline: Deadline) -> tuple[Codes | None, bool]:
-        """Return the orders common to all pictures, and whether they are complete; None if there is no picture.
+        """Return the orders common to all pictures.
 
-        At the deadline the result has the orders proved so far, which are correct, and False. Raises OutOfTimeError if
-        not even one picture was found.
+        Parameters
+        ----------
+        deadline
+            Time limit. Orders that were proved before it are returned.
+
+        Returns
+        -------
+        tuple
+            The orders, or None if there is no picture, and True if they are complete.
+
+        Raises
+        ------
+        OutOfTimeError
+            If not even one picture was found.
         """
         known, last = self.network(), self._nothing_taken()
         common = None if known is None else solution(known, self.clauses, last, deadline)
@@ -134,7 +181,22 @@ def _candidate(known: Codes, common: Codes) -> Difference | None:
 
 
 def local_problem(demands: Demands, nodes: NDArray[np.int64], choices: Sequence[Choice]) -> LocalProblem:
-    """Return the demands among the objects of a connected group."""
+    """Return the demands among the objects of a connected group.
+
+    Parameters
+    ----------
+    demands
+        All demands.
+    nodes
+        Positions of the objects of the group.
+    choices
+        The choices among these objects.
+
+    Returns
+    -------
+    LocalProblem
+        The problem of the group.
+    """
     n, m = len(demands.graph.nodes), len(nodes)
     place = np.full(n, -1)
     place[nodes] = np.arange(m)
@@ -172,7 +234,25 @@ def _write(known: Codes, axes: Sequence[AxisRows], groups: Groups, group: int) -
 
 
 def consistent(demands: Demands, deadline: Deadline) -> bool:
-    """Return whether the demands have a picture; raise OutOfTimeError at the deadline."""
+    """Say whether some demands have a picture.
+
+    Parameters
+    ----------
+    demands
+        The demands.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    bool
+        True if they have one.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes first.
+    """
     n = len(demands.graph.nodes)
     if order_graph(demands.bounds, n).contradictory:
         return False
@@ -183,7 +263,18 @@ def consistent(demands: Demands, deadline: Deadline) -> bool:
 
 
 def picture_of(known: Codes) -> NDArray[np.float64]:
-    """Return boxes of n objects that satisfy closed, consistent orders: shape (n, 2, 3), least and greatest corner."""
+    """Return boxes that satisfy closed, consistent orders.
+
+    Parameters
+    ----------
+    known
+        The orders of n objects.
+
+    Returns
+    -------
+    ndarray
+        Least and greatest corners, shape (n, 2, 3), without a unit.
+    """
     after = (known == STRICT).sum(axis=1)
     return _boxes(after.reshape(AXES, 2, -1))
 
@@ -192,6 +283,18 @@ def picture_of_group(orders: Orders, group: int) -> NDArray[np.float64]:
     """Return a picture of the objects of a connected group, in its order, by closed orders without open choices.
 
     The boxes have shape (n, 2, 3): least and greatest corner.
+
+    Parameters
+    ----------
+    orders
+        Closed orders without open choices.
+    group
+        Number of the group.
+
+    Returns
+    -------
+    ndarray
+        Least and greatest corners of its n objects, shape (n, 2, 3), without a unit.
     """
     n, words = int(orders.groups.sizes[group]), int(orders.groups.words[group])
     after = np.tile(np.array([[1], [0]], np.int64), (AXES, 1, n))

@@ -32,8 +32,20 @@ class Conflict:
 
 
 def compatible(a: Relation, b: Relation) -> bool:
-    """Return whether two boxes can have both relations: their atoms intersect on every axis.
+    """Say whether two boxes can have both of two relations: their atoms intersect on every axis.
 
+    Parameters
+    ----------
+    a, b
+        The relations.
+
+    Returns
+    -------
+    bool
+        True if they can.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> compatible(r["left"], r["top"]), compatible(r["left"], r["right"]), compatible(r["on"], r["under"])
@@ -44,11 +56,23 @@ def compatible(a: Relation, b: Relation) -> bool:
 
 
 def find_conflict(implied: Implications, deadline: Deadline | None = None) -> Conflict | None:
-    """Return a minimal contradiction, or None if the facts are consistent or the time limit left that open.
+    """Find a minimal contradiction.
 
-    Searches end at ``deadline``, by default after the time limit of ``implied``. If it passes before a contradiction
-    with choices is minimal, the facts left so far are returned with ``minimal`` False.
+    Parameters
+    ----------
+    implied
+        The implications of the facts.
+    deadline
+        Time limit of the searches; default: after the time limit of ``implied``.
 
+    Returns
+    -------
+    Conflict or None
+        The contradiction, or None if the facts are consistent or the time limit left that open. If the deadline passes
+        before a contradiction with choices is minimal, it has the facts left so far, and ``minimal`` is False.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> facts = [Fact("a", (r["left"],), "b"), Fact("b", (r["left"],), "a"), Fact("c", (r["on"],), "b")]

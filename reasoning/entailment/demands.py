@@ -32,7 +32,18 @@ class Choice:
     premise: int
 
     def clause(self, n: int) -> Clause:
-        """Return the alternatives as difference constraints between the points of n objects."""
+        """Return the alternatives as difference constraints between the points of n objects.
+
+        Parameters
+        ----------
+        n
+            Number of objects.
+
+        Returns
+        -------
+        Clause
+            One piece for each alternative.
+        """
         return Clause(
             tuple(
                 tuple(bound.difference(self.subject, self.object, n) for bound in conjunction)
@@ -54,7 +65,18 @@ class Demands:
     choices: tuple[Choice, ...]
 
     def restricted(self, edges: Iterable[int]) -> Demands:
-        """Return the demands of only these facts."""
+        """Return the demands of some of the facts.
+
+        Parameters
+        ----------
+        edges
+            Edges of the facts in the graph.
+
+        Returns
+        -------
+        Demands
+            The demands.
+        """
         chosen = np.zeros(len(self.graph), np.bool_)
         chosen[list(edges)] = True
         return Demands(
@@ -90,7 +112,18 @@ class EdgeFacts(Sequence[Fact]):
 
 
 def demands_of(graph: RelationGraph) -> Demands:
-    """Return the demands of the firm facts of a graph."""
+    """Return the demands of the firm facts of a graph.
+
+    Parameters
+    ----------
+    graph
+        The graph.
+
+    Returns
+    -------
+    Demands
+        Bounds that must hold, and choices.
+    """
     firm = np.flatnonzero(~graph.optional & (graph.weights >= 1.0) & (graph.relation_sets != 0))
     single = graph.positive[firm] & (np.bitwise_count(graph.relation_sets[firm]) == 1)
     bounds = _plain_bounds(graph, firm[single])
@@ -109,7 +142,20 @@ def demands_of(graph: RelationGraph) -> Demands:
 
 
 def demands_of_facts(vocabulary: Relations, facts: Sequence[Fact]) -> Demands:
-    """Return the demands of a list of facts among the objects that they name."""
+    """Return the demands of a list of facts among the objects that they name.
+
+    Parameters
+    ----------
+    vocabulary
+        Relations of the ontology.
+    facts
+        The facts.
+
+    Returns
+    -------
+    Demands
+        Bounds that must hold, and choices.
+    """
     names = tuple(dict.fromkeys(name for fact in facts for name in (fact.subject, fact.object)))
     return demands_of(RelationGraph.from_facts(vocabulary, names, facts))
 

@@ -75,11 +75,32 @@ class OrderDerivations:
         assert self._paths.reverse is not None
 
     def cycle(self) -> Path | None:
-        """Return the premises of the contradiction with the fewest premises, or None if they are consistent."""
+        """Return the premises of the contradiction with the fewest premises, or None if they are consistent.
+
+        Returns
+        -------
+        Path or None
+            The premises, or None if they are consistent.
+        """
         return self._graph.shortest_cycle()
 
     def costs(self, bound: Bound, subject: int, objects: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the number of premises of a bound from a subject to some objects, ``FAR`` if it does not follow."""
+        """Return the number of premises of a bound from a subject to some objects.
+
+        Parameters
+        ----------
+        bound
+            The bound.
+        subject
+            Position of the subject.
+        objects
+            Positions of the k objects, shape (k,).
+
+        Returns
+        -------
+        ndarray
+            Numbers of shape (k,); ``FAR`` where the bound does not follow.
+        """
         n, onward = len(self._names), bound.tail == 0
         root = bound.points(subject, subject, n)[0 if onward else 1]
         points = (2 * bound.axis + (bound.head_side if onward else bound.tail_side)) * n + objects
@@ -100,7 +121,20 @@ class OrderDerivations:
         return stated
 
     def chains(self, relation: Relation, subject: str, obj: str) -> dict[Bound, Path] | None:
-        """Return for every bound of a relation a short path of facts to it, or None if a bound has no path."""
+        """Return for every bound of a relation a short path of facts to it.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+        subject, obj
+            Names of the objects.
+
+        Returns
+        -------
+        dict or None
+            Path by bound, or None if a bound has no path.
+        """
         stated = self._stated.get((subject, relation.bit, obj))
         if stated is not None:
             return dict.fromkeys(meaning(relation)[0], (stated,))
@@ -137,12 +171,40 @@ class OrderDerivations:
         return _chains(paths, meaning(relation), int(place[nodes[0]]), int(place[nodes[1]]), len(nodes))
 
     def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
-        """Return a derivation of the fact, or None if no path leads to it."""
+        """Return a derivation of a fact.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+        subject, obj
+            Names of the objects.
+
+        Returns
+        -------
+        Derivation or None
+            The derivation, or None if no path leads to the fact.
+        """
         found = self.chains(relation, subject, obj)
         return None if found is None else self.of_chains(found, relation, subject, obj)
 
     def of_chains(self, chains: dict[Bound, Path], relation: Relation, subject: str, obj: str) -> Derivation:
-        """Return the derivation by these chains."""
+        """Return the derivation of a fact by given paths.
+
+        Parameters
+        ----------
+        chains
+            Path by bound, as of :meth:`chains`.
+        relation
+            The relation.
+        subject, obj
+            Names of the objects.
+
+        Returns
+        -------
+        Derivation
+            The derivation.
+        """
         groups: dict[Path, list[Bound]] = {}
         for bound, path in chains.items():
             groups.setdefault(path, []).append(bound)
@@ -226,27 +288,85 @@ def _widened(step: Derivation, relation: Relation) -> Derivation | None:
 
 
 def follows(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> bool:
-    """Return whether a plain fact holds in every picture of the facts.
+    """Say whether a plain fact holds in every picture of some facts.
 
     The test is exact for every relation: the denial of the goal is a list of choices, none of which may have a picture.
-    Raises OutOfTimeError.
+
+    Parameters
+    ----------
+    facts
+        The facts.
+    goal
+        The plain fact.
+    vocabulary
+        Relations of the ontology.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    bool
+        True if it holds.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes first.
     """
     return not consistent(demands_of_facts(vocabulary, [*facts, replace(goal, positive=False)]), deadline)
 
 
 def needed_facts(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> list[Fact]:
-    """Return a minimal set of facts that imply a goal, given facts that all together imply it.
+    """Return a minimal set of facts that imply a goal.
 
-    Raises OutOfTimeError.
+    Parameters
+    ----------
+    facts
+        Facts that all together imply it.
+    goal
+        The plain fact.
+    vocabulary
+        Relations of the ontology.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    list of Fact
+        The needed facts, in order.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes first.
     """
     found = minimal_subset(facts, lambda chosen: chosen if follows(chosen, goal, vocabulary, deadline) else None)
     return list(found.items)
 
 
 def derive_by_cases(facts: Sequence[Fact], goal: Fact, vocabulary: Relations, deadline: Deadline) -> Derivation | None:
-    """Return a proof of a plain fact from facts with choices, or None if it does not follow.
+    """Return a proof of a plain fact from facts with choices.
 
-    The proof rests on a minimal set of facts. Raises OutOfTimeError.
+    Parameters
+    ----------
+    facts
+        The facts.
+    goal
+        The plain fact.
+    vocabulary
+        Relations of the ontology.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Derivation or None
+        A proof that rests on a minimal set of facts, or None if the goal does not follow.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes first.
     """
     if not follows(facts, goal, vocabulary, deadline):
         return None

@@ -22,8 +22,22 @@ MAX_INFERRED = 1_000_000
 
 
 def facts_of_graded_words(vocabulary: Relations, stated: Iterable[tuple[int, Fact]]) -> Known:
-    r"""Return all facts of graded words that follow from stated ones, given with their edges, breadth first.
+    r"""Return all facts of graded words that follow from stated ones, breadth first.
 
+    Parameters
+    ----------
+    vocabulary
+        Relations of the ontology.
+    stated
+        Stated facts, each with its edge in the graph.
+
+    Returns
+    -------
+    Known
+        The facts with their derivations.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> said = [Fact("key", (r["inside"],), "box"), Fact("box", (r["inside"],), "bag")]

@@ -98,7 +98,20 @@ class Implications:
         return self.closed.complete
 
     def holds(self, relation: Relation, subject: str, obj: str) -> bool:
-        """Return whether the fact holds in every picture."""
+        """Say whether a fact holds in every picture.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+        subject, obj
+            Names of the objects.
+
+        Returns
+        -------
+        bool
+            True if it holds.
+        """
         s, o = self.graph.index(subject), self.graph.index(obj)
         if relation.reading is Reading.GRADED:
             return (relation.name, subject, obj) in self._by_words
@@ -109,9 +122,24 @@ class Implications:
         return all(orders.implies(bound, s, o) for bound in alternatives[0])
 
     def derive(self, relation: Relation, subject: str, obj: str) -> Derivation | None:
-        """Return the shortest derivation found of a fact, or None if it does not follow.
+        """Return the shortest derivation found of a fact.
 
-        Raises OutOfTimeError if it depends on choices and the time limit is reached.
+        Parameters
+        ----------
+        relation
+            The relation.
+        subject, obj
+            Names of the objects.
+
+        Returns
+        -------
+        Derivation or None
+            The derivation, or None if the fact does not follow.
+
+        Raises
+        ------
+        OutOfTimeError
+            If it depends on choices and the time limit is reached.
         """
         if not self.holds(relation, subject, obj):
             return None
@@ -153,40 +181,81 @@ class Implications:
         self._derivations.prepare()
 
     def pairs(self, relation: Relation) -> NDArray[np.int64]:
-        """Return the pairs of nodes that have the relation in every picture, shape (k, 2), by subject, then object."""
+        """Return the pairs of nodes that have a relation in every picture.
+
+        Parameters
+        ----------
+        relation
+            The relation.
+
+        Returns
+        -------
+        ndarray
+            Positions of nodes, shape (k, 2), by subject, then object.
+        """
         orders = self.closed.orders
         if relation.reading is Reading.GRADED:
             return np.array(sorted(self._pairs_by_words.get(relation.name, ())), np.int64).reshape(-1, 2)
         return np.empty((0, 2), np.int64) if orders is None else orders.pairs(relation)
 
     def triples(self) -> Iterator[tuple[Relation, str, str]]:
-        """Yield every fact that is stated or implied, by relation, subject and object in node order."""
+        """Yield every fact that is stated or implied, by relation, subject and object in node order.
+
+        Yields
+        ------
+        tuple
+            Relation, name of the subject, and name of the object.
+        """
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
             for subject, obj in self.pairs(relation).tolist():
                 yield relation, nodes[subject], nodes[obj]
 
     def ntriples(self) -> str:
-        """Return every firmly stated or implied fact as a line of N-Triples, with the IRIs of the Turtle export."""
+        """Return every firmly stated or implied fact as a line of N-Triples, with the IRIs of the Turtle export.
+
+        Returns
+        -------
+        str
+            The lines, with the IRIs of the Turtle export.
+        """
         iris = node_iris(self.graph)
         return "".join(pairs_to_ntriples(r, self.pairs(r), iris) for r in self.vocabulary.values())
 
     def inferred(self) -> Iterator[Derivation]:
-        """Yield every implied fact that is not stated, with its shortest derivation."""
+        """Yield every implied fact that is not stated, with its shortest derivation.
+
+        Yields
+        ------
+        Derivation
+            A derivation.
+        """
         for fact in self.implied():
             derivation = self.derive(fact.relations[0], fact.subject, fact.object)
             assert derivation is not None
             yield derivation
 
     def implied(self) -> Iterator[Fact]:
-        """Yield every implied fact that is not stated, without its derivation, which is always fast."""
+        """Yield every implied fact that is not stated, without its derivation, which is always fast.
+
+        Yields
+        ------
+        Fact
+            A fact.
+        """
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
             for subject, obj in self._unstated(relation).tolist():
                 yield Fact(nodes[subject], (relation,), nodes[obj])
 
     def unstated(self) -> int:
-        """Return the number of facts that are implied but not stated."""
+        """Return the number of facts that are implied but not stated.
+
+        Returns
+        -------
+        int
+            The number.
+        """
         return sum(len(self._unstated(relation)) for relation in self.vocabulary.values())
 
     def _unstated(self, relation: Relation) -> NDArray[np.int64]:
@@ -197,9 +266,12 @@ class Implications:
         return pairs[~np.isin(pairs[:, 0] * n + pairs[:, 1], stated)]
 
     def implied_with_steps(self) -> Iterator[tuple[Fact, int]]:
-        """Yield every implied fact that is not stated, with the number of facts in the longest of its shortest paths.
+        """Yield every implied fact that is not stated, with its number of steps.
 
-        The number is 0 for a fact that follows by cases, without a path.
+        Yields
+        ------
+        tuple
+            A fact, and the number of facts in the longest of its shortest paths; 0 for a fact that follows by cases.
         """
         nodes = self.graph.nodes
         for relation in self.vocabulary.values():
@@ -222,8 +294,26 @@ class Implications:
     def support(self, fact: Fact, deadline: Deadline | None = None) -> Support:
         """Return the last rule of an implied fact's derivation, and the edges of the graph that it rests on.
 
-        The rule and the edges are those of :meth:`derive`. A search ends at ``deadline``, by default after the time
-        limit. Raises GraphError if the fact does not follow, and OutOfTimeError.
+        The rule and the edges are those of :meth:`derive`.
+
+        Parameters
+        ----------
+        fact
+            The fact.
+        deadline
+            Time limit of a search; default: after the time limit of these implications.
+
+        Returns
+        -------
+        Support
+            The rule and the edges.
+
+        Raises
+        ------
+        GraphError
+            If the fact does not follow.
+        OutOfTimeError
+            If the deadline passes first.
         """
         relation, subject, obj = fact.relations[0], fact.subject, fact.object
         if not self.holds(relation, subject, obj):
@@ -242,7 +332,13 @@ class Implications:
         return Support(Rule.CASES, tuple(e for e, f in zip(edges, facts, strict=True) if id(f) in needed))
 
     def counts(self) -> dict[Relation, int]:
-        """Return the number of pairs stated or implied to have each relation."""
+        """Return the number of pairs stated or implied to have each relation.
+
+        Returns
+        -------
+        dict
+            Number of ordered pairs by relation.
+        """
         return {
             relation: len(self.pairs(relation)) if relation.reading is Reading.GRADED else self._count(relation)
             for relation in self.vocabulary.values()
@@ -253,5 +349,11 @@ class Implications:
         return 0 if orders is None else orders.count(relation)
 
     def count(self) -> int:
-        """Return the number of stated or implied facts."""
+        """Return the number of stated or implied facts.
+
+        Returns
+        -------
+        int
+            The number, with the stated facts.
+        """
         return sum(self.counts().values())

@@ -50,8 +50,8 @@ def redundant_facts(graph: RelationGraph, deadline: Deadline = Deadline.never())
     left_out: set[int] = set()
 
     def implied(tail: int, head: int, strict: bool) -> bool:
-        start = (tail, False)
-        seen, queue = {start}, deque([start])
+        seen: set[tuple[int, bool]] = {(tail, False)}
+        queue = deque(seen)
         while queue:
             point, passed = queue.popleft()
             if point == head and (passed or not strict):

@@ -50,6 +50,11 @@ def why_not(implied: Implications, fact: Fact) -> WhyNot:
     fact
         One affirmed relation between two different objects.
 
+    Returns
+    -------
+    WhyNot
+        The reason, or a derivation if the fact does follow.
+
     Raises
     ------
     GraphError

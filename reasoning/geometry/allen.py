@@ -176,6 +176,18 @@ _EXAMPLES = ((0, 1), (0, 2), (0, 3), (0, 5), (0, 6), (2, 3), (2, 5), (2, 6), (3,
 def admitted(orders: tuple[EndOrder, ...]) -> int:
     """Return the mask of the Allen relations in which all orders hold.
 
+    Parameters
+    ----------
+    orders
+        Orders of the ends of two intervals.
+
+    Returns
+    -------
+    int
+        Bit mask over the 13 relations.
+
+    Examples
+    --------
     >>> admitted((EndOrder(HIGH_A, LOW_B, strict=True),)) == 1 << Allen.BEFORE
     True
     """

@@ -145,7 +145,25 @@ class PairBlocks:
 
     @classmethod
     def of(cls, boxes: Array, deadline: Deadline = Deadline.never()) -> PairBlocks:
-        """Return the blocks of valid boxes; raise OutOfTimeError at the ``deadline``."""
+        """Return the blocks of valid boxes.
+
+        Parameters
+        ----------
+        boxes
+            Least and greatest corners, shape (n, 2, d).
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        PairBlocks
+            The blocks, none of which is computed yet.
+
+        Raises
+        ------
+        OutOfTimeError
+            If the deadline passes.
+        """
         n = len(boxes)
         nearer = np.zeros((n, n), np.uint16 if n < 1 << 16 else np.uint32)
         rows = max(1, ROW_CELLS // max(n, 1))
@@ -162,7 +180,20 @@ class PairBlocks:
         return cls(boxes, nearer)
 
     def block(self, subjects: slice, objects: slice) -> PairGeometry:
-        """Return the pairs of these subjects with these objects."""
+        """Return the pairs of these subjects with these objects.
+
+        Parameters
+        ----------
+        subjects
+            Range of the subjects.
+        objects
+            Range of the objects.
+
+        Returns
+        -------
+        PairGeometry
+            The geometry of these pairs.
+        """
         others = max(len(self.boxes) - 2, 1)
         counts = self.nearer[subjects, objects].astype(np.float64) + self.nearer[objects, subjects].T
         known = self.boxes[subjects]
@@ -182,9 +213,26 @@ class Surroundings:
 
     @classmethod
     def of(cls, boxes: Array, everything: Array, deadline: Deadline = Deadline.never()) -> Surroundings:
-        """Return the surroundings of boxes (n, 2, d) among ``everything`` (m, 2, d), which they are part of.
+        """Return the surroundings of some boxes of a scene.
 
-        Raises OutOfTimeError at the ``deadline``.
+        Parameters
+        ----------
+        boxes
+            The boxes, shape (n, 2, d).
+        everything
+            All boxes of the scene, shape (m, 2, d), with these among them.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Surroundings
+            The surroundings.
+
+        Raises
+        ------
+        OutOfTimeError
+            If the deadline passes.
         """
         spread = _spread_evenly(everything)
         distances = np.empty((len(boxes), len(spread)), np.float32)
@@ -199,11 +247,39 @@ class Surroundings:
         return cls(boxes, distances)
 
     def block(self, subjects: slice, objects: slice) -> PairGeometry:
-        """Return the pairs of these subjects with these objects."""
+        """Return the pairs of these subjects with these objects.
+
+        Parameters
+        ----------
+        subjects
+            Range of the subjects.
+        objects
+            Range of the objects.
+
+        Returns
+        -------
+        PairGeometry
+            The geometry of these pairs.
+        """
         return self.block_with(subjects, self, objects)
 
     def block_with(self, subjects: slice, other: Surroundings, objects: slice) -> PairGeometry:
-        """Return the pairs of these subjects with objects that another list of boxes of the same scene holds."""
+        """Return the pairs of some subjects with objects of another list of boxes of the same scene.
+
+        Parameters
+        ----------
+        subjects
+            Range of the subjects.
+        other
+            Surroundings of the other list.
+        objects
+            Range of its objects.
+
+        Returns
+        -------
+        PairGeometry
+            The geometry of these pairs.
+        """
         known, others = self.boxes[subjects], other.boxes[objects]
         crowd = np.empty((len(known), len(others)))
         pairs = PairGeometry(known, others, crowd)
@@ -248,6 +324,11 @@ def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
     ----------
     boxes
         Least and greatest corners, shape (n, 2, d), d = 2 or 3.
+
+    Returns
+    -------
+    PairGeometry
+        Features of all ordered pairs, arrays whose first axes are (n, n).
 
     Raises
     ------

@@ -40,7 +40,18 @@ class BoxRelations:
     names: NDArray[np.int8]  # (n, n) relation indices of the exact reading; -1 on the diagonal
 
     def atom(self, subject: int, object: int) -> str:
-        """Return the atom in the notation of QSRlib: the Allen symbols on x and y (and z), separated by commas."""
+        """Return the atom of a pair in the notation of QSRlib.
+
+        Parameters
+        ----------
+        subject, object
+            Positions of the two boxes.
+
+        Returns
+        -------
+        str
+            The Allen symbols on x and y (and z), separated by commas.
+        """
         axes = (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
         return ",".join(SYMBOLS[axis[subject, object]] for axis in axes)
 
@@ -64,6 +75,11 @@ def box_relations(
         Distance in metres up to which two end points count as equal.
     ranks
         Order of the boxes for equal or crossing boxes of one centre, shape (n,); by default their positions.
+
+    Returns
+    -------
+    BoxRelations
+        Allen codes by axis and names of the exact relations, shape (n, n).
 
     Raises
     ------
@@ -111,7 +127,20 @@ class SceneRelations:
     def from_graph(cls, graph: RelationGraph) -> SceneRelations:
         """Read the relations of a complete relation graph.
 
-        Raises GraphError if an ordered pair has no exact relation, or more than one.
+        Parameters
+        ----------
+        graph
+            The graph.
+
+        Returns
+        -------
+        SceneRelations
+            The relations as matrices.
+
+        Raises
+        ------
+        GraphError
+            If an ordered pair has no exact relation, or more than one.
         """
         n = len(graph.nodes)
         exact = sum(relation.bit for relation in graph.vocabulary.of_reading(Reading.EXACT))
@@ -127,18 +156,56 @@ class SceneRelations:
         return cls(graph.vocabulary, graph.nodes, names, graph.boxes, graph.kinds)
 
     def index(self, node: str) -> int:
-        """Return the position of an object; raise GraphError if no object has that name."""
+        """Return the position of an object.
+
+        Parameters
+        ----------
+        node
+            Its name.
+
+        Returns
+        -------
+        int
+            The position.
+
+        Raises
+        ------
+        GraphError
+            If no object has that name.
+        """
         try:
             return self.nodes.index(node)
         except ValueError:
             raise GraphError(f"the scene has no object '{node}'") from None
 
     def relation(self, subject: int, object: int) -> Relation:
-        """Return the exact relation of an ordered pair of different objects."""
+        """Return the exact relation of an ordered pair of different objects.
+
+        Parameters
+        ----------
+        subject, object
+            Positions of two different objects.
+
+        Returns
+        -------
+        Relation
+            The relation.
+        """
         return self.vocabulary.members(1 << int(self.names[subject, object]))[0]
 
     def reordered(self, order: NDArray[np.int64]) -> SceneRelations:
-        """Return the scene with its objects in another order, or with some of them."""
+        """Return the scene with its objects in another order, or with some of them.
+
+        Parameters
+        ----------
+        order
+            Present positions of the objects to keep, in their new order, shape (k,).
+
+        Returns
+        -------
+        SceneRelations
+            The scene of k objects.
+        """
         return SceneRelations(
             self.vocabulary,
             tuple(self.nodes[i] for i in order),
@@ -148,7 +215,13 @@ class SceneRelations:
         )
 
     def graph(self) -> RelationGraph:
-        """Return the complete relation graph: one edge per ordered pair, by subject, then by object."""
+        """Return the complete relation graph.
+
+        Returns
+        -------
+        RelationGraph
+            One edge per ordered pair, by subject, then by object.
+        """
         subjects, objects = np.nonzero(~np.eye(len(self.nodes), dtype=bool))
         m = len(subjects)
         return RelationGraph(
@@ -165,7 +238,13 @@ class SceneRelations:
         )
 
     def paper_view(self) -> PaperGraph:
-        """Return the graph of Definition 1, with the word of every ordered pair as its edge label."""
+        """Return the graph of Definition 1, with the word of every ordered pair as its edge label.
+
+        Returns
+        -------
+        PaperGraph
+            The graph, with the word of every ordered pair as its edge label.
+        """
         labels = tuple(relation.word for relation in self.vocabulary.of_reading(Reading.EXACT))
         words = (self.vocabulary.paper_word(relation) for relation in self.vocabulary.values())
         label_of = np.array([-1 if word is None else labels.index(word) for word in words], dtype=np.int8)
@@ -205,6 +284,11 @@ def scene_relations(
     deadline
         Time limit.
 
+    Returns
+    -------
+    SceneRelations
+        The exact relations, shape (n, n), with the ids and kinds.
+
     Raises
     ------
     GraphError
@@ -228,7 +312,18 @@ def scene_relations(
 
 
 def require_boxes(boxes: NDArray[np.float64]) -> None:
-    """Raise GraphError unless boxes have shape (n, 2, 2) or (n, 2, 3), finite corners, and ordered corners."""
+    """Raise GraphError unless boxes have shape (n, 2, 2) or (n, 2, 3), finite corners, and ordered corners.
+
+    Parameters
+    ----------
+    boxes
+        The boxes.
+
+    Raises
+    ------
+    GraphError
+        If they have not.
+    """
     if boxes.ndim != 3 or boxes.shape[1] != 2 or boxes.shape[2] not in (2, 3):
         raise GraphError(f"boxes must have shape (n, 2, 2) or (n, 2, 3), got {boxes.shape}")
     if not np.isfinite(boxes).all():
@@ -246,9 +341,27 @@ def cross_relations(
     vocabulary: Relations,
     tolerance: float = 0.0,
 ) -> tuple[list[NDArray[np.int8]], NDArray[np.int8]]:
-    """Return the Allen codes by axis and the exact names of r boxes with n others, each of shape (r, n).
+    """Compute the relations of r boxes with n others.
 
-    ``ranks`` (r,) and (n,) stand for the order of listing. Where a box is paired with itself, its name means nothing.
+    Where a box is paired with itself, its name means nothing.
+
+    Parameters
+    ----------
+    subjects
+        The r boxes, shape (r, 2, d).
+    objects
+        The n boxes, shape (n, 2, d).
+    ranks
+        Order of listing of both, shapes (r,) and (n,).
+    vocabulary
+        The relations to name the pairs by.
+    tolerance
+        Distance in metres up to which two end points count as equal.
+
+    Returns
+    -------
+    tuple
+        Allen codes by axis and names of the exact relations, each of shape (r, n).
     """
     codes = [
         allen_relations(

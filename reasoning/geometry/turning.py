@@ -27,6 +27,11 @@ def turned(boxes: Array, angle: float, mirrored: bool = False) -> Array:
     mirrored
         Mirror the scene left to right before turning it.
 
+    Returns
+    -------
+    Array
+        The turned boxes, shape (n, 2, d): the enclosing axis-aligned ones.
+
     Raises
     ------
     GraphError

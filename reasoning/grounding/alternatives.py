@@ -24,7 +24,24 @@ FITS_OTHERS = "the description names fewer things than were perceived, and it fi
 def alternatives(
     evidence: Evidence, alignment: Alignment, i: int, groups: tuple[tuple[str, ...], ...]
 ) -> tuple[Alternative, ...]:
-    """Return what else object ``i`` could be, best first: by probability where there is one, else by similarity."""
+    """Return what else an object could be.
+
+    Parameters
+    ----------
+    evidence
+        The evidence.
+    alignment
+        The best alignment.
+    i
+        Position of the object.
+    groups
+        Groups of objects that the description cannot tell apart.
+
+    Returns
+    -------
+    tuple of Alternative
+        Other things, best first: by probability if the engine has one, else by similarity.
+    """
     found = (
         _similar(evidence, alignment, i, groups) if alignment.posterior is None else _probable(evidence, alignment, i)
     )
@@ -60,7 +77,22 @@ def _similar(
 
 
 def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """Return the objects without a match, in the order of ``names``: the reason, and what each could be."""
+    """Return the objects without a match, each with the reason and what it could be.
+
+    Parameters
+    ----------
+    evidence
+        The evidence.
+    alignment
+        The best alignment.
+    names
+        Names of the objects.
+
+    Returns
+    -------
+    tuple of LeftOut
+        The objects, in the order of ``names``.
+    """
     reasons = {}
     for i in np.flatnonzero(alignment.assignment == UNMATCHED):
         if not len(evidence.scene.nodes):
@@ -78,7 +110,22 @@ def left_out_objects(evidence: Evidence, alignment: Alignment, names: tuple[str,
 
 
 def left_out_things(evidence: Evidence, alignment: Alignment, ids: tuple[str, ...]) -> tuple[LeftOut, ...]:
-    """Return the things without a match, in the order of ``ids``, and the reasons."""
+    """Return the things without a match, each with the reason.
+
+    Parameters
+    ----------
+    evidence
+        The evidence.
+    alignment
+        The best alignment.
+    ids
+        Ids of the things.
+
+    Returns
+    -------
+    tuple of LeftOut
+        The things, in the order of ``ids``.
+    """
     taken = set(alignment.assignment.tolist()) - {UNMATCHED}
     reasons = {}
     for p, thing in enumerate(evidence.scene.nodes):

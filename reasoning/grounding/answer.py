@@ -179,7 +179,18 @@ class Grounding(Answer):
         return ", ".join(parts)
 
     def of(self, outcome: Outcome) -> tuple[FactOutcome, ...]:
-        """Return the facts with this outcome."""
+        """Return the facts with one outcome.
+
+        Parameters
+        ----------
+        outcome
+            Satisfied, violated, waived or open.
+
+        Returns
+        -------
+        tuple of FactOutcome
+            The facts in the order of the script, each with the perceived relation of its pair.
+        """
         return tuple(entry for entry in self.outcomes if entry.outcome is outcome)
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
@@ -247,7 +258,18 @@ class Grounding(Answer):
         return self.of(Outcome.SATISFIED)
 
     def noting(self, notes: tuple[str, ...]) -> Grounding:
-        """Return a copy of the answer with ``notes`` before its own notes."""
+        """Return a copy of the answer with further notes.
+
+        Parameters
+        ----------
+        notes
+            Notes to put before those of the answer.
+
+        Returns
+        -------
+        Grounding
+            The copy.
+        """
         return replace(self, notes=notes + self.notes)
 
     @property

@@ -57,4 +57,18 @@ class Engine(Protocol):
     """Method that aligns a description with a scene."""
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        """Return the best alignment that is found until ``deadline``."""
+        """Find the best alignment of a description with a scene.
+
+        Parameters
+        ----------
+        evidence
+            Log-likelihood ratios of n1 objects and n2 things, and of pairs.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Alignment
+            The best alignment found, and whether it is proved.
+        """
+        ...

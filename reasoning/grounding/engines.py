@@ -36,6 +36,11 @@ def engine_named(
     seen
         Evidence as seen from each of the sides, in their order; None to turn the scene instead.
 
+    Returns
+    -------
+    Engine
+        The engine, ready to be called.
+
     Raises
     ------
     UnknownTermError

@@ -140,8 +140,8 @@ def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64
     outcomes = []
     for edge, degree in zip(evidence.facts, degrees, strict=True):
         fact = evidence.description.fact(int(edge))
-        p = alignment.assignment[evidence.description.subjects[edge]]
-        q = alignment.assignment[evidence.description.objects[edge]]
+        p = int(alignment.assignment[evidence.description.subjects[edge]])
+        q = int(alignment.assignment[evidence.description.objects[edge]])
         if UNMATCHED in (p, q):
             outcomes.append(FactOutcome(fact, Outcome.OPEN, 0.0, None, None))
             continue

@@ -353,7 +353,20 @@ def _log_sum(values: Sequence[float]) -> float:
 
 
 def log_total(found: Posterior, value: float) -> float:
-    """Return the log sum over all maps: exact, or estimated from the best ``value`` and the objects' entropies."""
+    """Return the logarithm of the sum over all maps.
+
+    Parameters
+    ----------
+    found
+        Posterior of the matches.
+    value
+        Logarithm of the best map's weight.
+
+    Returns
+    -------
+    float
+        The logarithm: exact, or estimated from the best value and the objects' entropies.
+    """
     return found.log_total if math.isfinite(found.log_total) else value + ENTROPY_SHARE * float(found.entropy.sum())
 
 
@@ -382,6 +395,20 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
 def side_text(angle: float, mirrored: bool) -> str:
     """Describe in words how the scene is turned or mirrored for a side.
 
+    Parameters
+    ----------
+    angle
+        Angle in radians, counter-clockwise.
+    mirrored
+        True if the scene is mirrored.
+
+    Returns
+    -------
+    str
+        A phrase.
+
+    Examples
+    --------
     >>> side_text(math.pi, False), side_text(0.0, True)
     ('turned by 180 degrees counter-clockwise', 'mirrored and as it stands')
     """

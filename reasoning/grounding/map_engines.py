@@ -61,7 +61,20 @@ class ExactEngine:
     seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        """Return the likeliest map, with its proof where the time suffices, and the posterior of its matches."""
+        """Find the likeliest map, with a proof if there is time, and the posterior of its matches.
+
+        Parameters
+        ----------
+        evidence
+            Log-likelihood ratios of n1 objects and n2 things, and of pairs.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Alignment
+            The alignment.
+        """
         found = exact(evidence.problem, deadline.share(PROOF_SHARE))
         notes = () if found.proved else ("time limit reached before the alignment was proved the best",)
         gap = 0.0 if found.proved else found.gap
@@ -84,7 +97,20 @@ class ScalableEngine:
     seen: tuple[Evidence | None, ...] = ()
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        """Return the likeliest map that the search finds, and the posterior of its matches."""
+        """Search for the likeliest map, and estimate the posterior of its matches.
+
+        Parameters
+        ----------
+        evidence
+            Log-likelihood ratios of n1 objects and n2 things, and of pairs.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Alignment
+            The alignment, which is not proved to be the best.
+        """
         found = scalable(evidence.problem, deadline.share(SEARCH_SHARE))
         notes = () if found.finished else ("time limit reached before the search ended",)
         return _answer("scalable", self, evidence, found.assignment, deadline, notes, finished=found.finished)
@@ -98,7 +124,20 @@ class BaselineEngine:
     similarity: Callable[[Problem, Deadline], NodeSimilarity]
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        """Return the assignment with the largest sum of similarities."""
+        """Return the assignment with the largest sum of similarities.
+
+        Parameters
+        ----------
+        evidence
+            Log-likelihood ratios of n1 objects and n2 things, and of pairs.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Alignment
+            The alignment, without a posterior.
+        """
         found = self.similarity(evidence.problem, deadline)
         return Alignment(
             self.name,

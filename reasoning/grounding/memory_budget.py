@@ -33,7 +33,20 @@ BYTES_PER_LISTED_THING = 3000
 
 
 def bytes_of_things(objects: int, things: int) -> float:
-    """Estimate the bytes for labels, sizes and colours of all things, before any two things are compared."""
+    """Estimate the bytes for labels, sizes and colours of all things, before any two things are compared.
+
+    Parameters
+    ----------
+    objects
+        Number of objects of the description.
+    things
+        Number of things of the scene.
+
+    Returns
+    -------
+    float
+        The number of bytes.
+    """
     return float(things * (objects * BYTES_PER_LISTED_MATCH + BYTES_PER_LISTED_THING))
 
 
@@ -48,6 +61,11 @@ def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, ch
         Number of facts that differ in relation, sign or weight.
     chains
         Whether marginals are sampled by Markov chains.
+
+    Returns
+    -------
+    float
+        Gigabytes (10^9 bytes).
 
     Examples
     --------
@@ -66,15 +84,43 @@ def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, ch
 
 
 def different_facts(description: RelationGraph) -> int:
-    """Return the number of facts that differ in relation, sign or weight; each needs a table."""
+    """Return the number of facts that differ in relation, sign or weight; each needs a table.
+
+    Parameters
+    ----------
+    description
+        The relation graph of the description.
+
+    Returns
+    -------
+    int
+        The number.
+    """
     columns = (description.relation_sets, description.affirmed, description.net_weights)
     return len(set(zip(*(column.tolist() for column in columns), strict=True)))
 
 
 def leaves_room_for_chains(description: RelationGraph, things: int, limit: float) -> bool:
-    """Return whether a grounding that samples marginals fits in ``limit`` gigabytes.
+    """Say whether a grounding that samples marginals fits in memory.
 
-    Raises OutOfMemoryError where a grounding without sampling does not fit either.
+    Parameters
+    ----------
+    description
+        The relation graph of the description.
+    things
+        Number of things of the scene.
+    limit
+        Memory limit in gigabytes (10^9 bytes).
+
+    Returns
+    -------
+    bool
+        True if it fits.
+
+    Raises
+    ------
+    OutOfMemoryError
+        If a grounding without sampling does not fit either.
     """
     objects, facts, tables = len(description.nodes), len(description), different_facts(description)
     if required_gigabytes(objects, things, facts, tables) <= limit:
@@ -89,6 +135,17 @@ def leaves_room_for_chains(description: RelationGraph, things: int, limit: float
 
 
 def require_memory_limit(gigabytes: float) -> None:
-    """Raise SettingError unless ``gigabytes`` is a positive number."""
+    """Raise SettingError unless a memory limit is a positive number.
+
+    Parameters
+    ----------
+    gigabytes
+        The limit.
+
+    Raises
+    ------
+    SettingError
+        If it is not.
+    """
     if not isinstance(gigabytes, int | float) or not gigabytes > 0 or math.isnan(gigabytes):
         raise SettingError(f"the memory limit must be above 0 gigabytes, got {gigabytes}")

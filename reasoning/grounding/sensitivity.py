@@ -36,9 +36,28 @@ def leave_one_out(
     """Yield the likeliest map without each fact in turn, until the deadline.
 
     Problems of more than ``MAX_OBJECTS`` objects are not solved. Among equally likely maps, the one closest to the
-    current ``assignment`` (n1,) is taken. Probabilities are computed where ``probable`` is true and they can be exact.
-    The iterator ends early at the deadline. Only the first ``facts`` are left out in turn; by default, all are.
+    current one is taken.
 
+    Parameters
+    ----------
+    problem
+        The matching problem.
+    assignment
+        The current map, shape (n1,).
+    probable
+        True to compute probabilities where they can be exact.
+    deadline
+        Time limit, at which the iterator ends early.
+    facts
+        Number of the first facts to leave out in turn; default: all.
+
+    Yields
+    ------
+    WithoutFact
+        The map without a fact, and its probabilities.
+
+    Examples
+    --------
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.array([[0, 0.5], [0, 0]]), np.full(2, -1.0))
     >>> [d.assignment.tolist() for d in leave_one_out(problem, np.array([0, 1]), True, Deadline.never())]

@@ -34,9 +34,24 @@ if TYPE_CHECKING:
 def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = None) -> RelationGraph:
     """Return the graph with the firm facts that inverses and transitivity of single words add, after the stated ones.
 
-    Contradictory facts imply everything, so nothing is added to them. Nothing is added either where there would be more
-    than ``most`` facts. ``consistent`` tells whether the firm facts can hold together; None where that is unknown.
+    Contradictory facts imply everything, so nothing is added to them.
 
+    Parameters
+    ----------
+    graph
+        The graph.
+    most
+        Maximum number of facts; nothing is added if there would be more.
+    consistent
+        Whether the firm facts can hold together; None if that is unknown.
+
+    Returns
+    -------
+    RelationGraph
+        The graph.
+
+    Examples
+    --------
     >>> from deixis.ontology.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
@@ -112,7 +127,13 @@ class SimilarityMatrices:
     iterations: int
 
     def transposed(self) -> SimilarityMatrices:
-        """Return the similarity with the two graphs exchanged."""
+        """Return the similarity with the two graphs exchanged.
+
+        Returns
+        -------
+        SimilarityMatrices
+            The matrices, transposed.
+        """
         return replace(self, matrices=self.matrices.transpose(0, 2, 1))
 
 
@@ -141,6 +162,11 @@ def node_similarity(
         Maximum number of iterations.
     deadline
         Time at which the iteration stops.
+
+    Returns
+    -------
+    SimilarityMatrices
+        Matrices of shape (b, n1, n2), the number of iterations, and whether they converged.
 
     Examples
     --------
@@ -297,9 +323,22 @@ def _inverse(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
 def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return the assignment of rows to columns with the largest sum (the Hungarian method, through scipy).
 
-    ``matrix`` and ``allowed`` have shape (n1, n2). As many rows as possible are matched to allowed columns; the
-    others are ``UNMATCHED``. Returns shape (n1,).
+    As many rows as possible are matched to allowed columns.
 
+    Parameters
+    ----------
+    matrix
+        Values, shape (n1, n2).
+    allowed
+        True for pairs that may be matched, shape (n1, n2).
+
+    Returns
+    -------
+    ndarray
+        Column of each row, ``UNMATCHED`` for the others, shape (n1,).
+
+    Examples
+    --------
     >>> assign(np.array([[0.5, 0.5], [0.0, 0.5]]), np.ones((2, 2), dtype=bool)).tolist()
     [0, 1]
     """
@@ -316,10 +355,23 @@ def assign(matrix: NDArray[np.float64], allowed: NDArray[np.bool_]) -> NDArray[n
 
 
 def graph_similarity(matrix: NDArray[np.float64], assignment: NDArray[np.int64]) -> float:
-    """Return the overall similarity of two graphs under an assignment, in [0, 1].
+    """Return the overall similarity of two graphs under an assignment.
 
-    The paper does not define it. It is the sum of the matched entries of the normalised matrix (n1, n2) over the square
-    root of the number of matches: 1 only where the matrix is a perfect one-to-one map.
+    Parameters
+    ----------
+    matrix
+        Normalised similarities, shape (n1, n2).
+    assignment
+        Column of each row, shape (n1,).
+
+    Returns
+    -------
+    float
+        The similarity, in [0, 1]; 1 only if the matrix is a perfect one-to-one map.
+
+    Notes
+    -----
+    The paper does not define it. It is the sum of the matched entries over the square root of the number of matches.
     """
     rows = np.flatnonzero(assignment != UNMATCHED)
     if len(rows) == 0:

@@ -42,14 +42,42 @@ MAX_DESCRIBED = 20_000
 
 
 def described(description: RelationGraph, consistent: bool | None = None) -> PaperGraph:
-    """Return the description as the paper's graph, with inverse facts and those that transitivity of a word implies."""
+    """Return a description as the paper's graph, with inverse facts and those that transitivity of a word implies.
+
+    Parameters
+    ----------
+    description
+        The relation graph of the description.
+    consistent
+        Whether the firm facts can hold together; None if that is unknown.
+
+    Returns
+    -------
+    PaperGraph
+        The labelled graph.
+    """
     return with_same_word(description, MAX_DESCRIBED, consistent).paper_view()
 
 
 def paper_similarity(
     evidence: Evidence, members: NDArray[np.bool_] | None = None, deadline: Deadline = Deadline.never()
 ) -> SimilarityMatrices:
-    """Compute equations 5 to 9: certain labels forbid pairs, and uncertain labels multiply equation 5."""
+    """Compute equations 5 to 9: certain labels forbid pairs, and uncertain labels multiply equation 5.
+
+    Parameters
+    ----------
+    evidence
+        The evidence, whose certain labels forbid pairs.
+    members
+        Objects of each sub-graph, shape (b, n1); default: one sub-graph of all objects.
+    deadline
+        Time at which the iteration stops.
+
+    Returns
+    -------
+    SimilarityMatrices
+        Matrices of shape (b, n1, n2).
+    """
     first, second = described(evidence.description, evidence.consistent), evidence.scene.paper_view()
     n2 = len(second.vertices)
     work = 2 * len(first.labels) * len(first.vertices) * n2 * n2 + 2000 * len(first.edges)
@@ -73,7 +101,20 @@ class SimilarityEngine:
     select: Select = Select.FACTS
 
     def align(self, evidence: Evidence, deadline: Deadline) -> Alignment:
-        """Return the assignment with the largest similarity, over the sub-graphs of the larger side."""
+        """Return the assignment with the largest similarity, over the sub-graphs of the larger side.
+
+        Parameters
+        ----------
+        evidence
+            The evidence of n1 objects and n2 things.
+        deadline
+            Time limit.
+
+        Returns
+        -------
+        Alignment
+            The alignment, without a posterior.
+        """
         n1, n2 = evidence.allowed.shape
         if n1 == n2 or not n1 or not n2:
             found = paper_similarity(evidence, deadline=deadline)

@@ -27,11 +27,22 @@ _Edges = tuple[tuple[tuple[int, Hashable], ...], ...]
 
 
 def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[tuple[str, ...]]:
-    """Return the groups of two or more objects that the description cannot tell apart, in node order.
+    """Return the groups of two or more objects that the description cannot tell apart.
 
-    ``colours`` (n,) stands for everything else that is known of each node; only nodes of equal colour can be
-    interchangeable.
+    Parameters
+    ----------
+    graph
+        The relation graph of n objects.
+    colours
+        Everything else that is known of each node, shape (n,); only nodes of equal colour can be interchangeable.
 
+    Returns
+    -------
+    list of tuple of str
+        Names of the objects of each group, in node order.
+
+    Examples
+    --------
     >>> from deixis.ontology.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> left = (default_ontology().relations["left"],)

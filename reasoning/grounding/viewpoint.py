@@ -130,6 +130,11 @@ def recover_viewpoint(
         End of the time limit. The scene is searched as it stands in any case, then quarter turned, then from the other
         sides. Sides that were not searched have the evidence of the best one that was.
 
+    Returns
+    -------
+    Viewpoints
+        The viewpoints with their probabilities.
+
     Raises
     ------
     GraphError

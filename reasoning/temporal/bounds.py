@@ -21,9 +21,22 @@ MAX_SECONDS = 4e9
 
 
 def to_ticks(seconds: float) -> int:
-    """Return the nearest whole number of microseconds.
+    """Return a time as a whole number of microseconds, the nearest one.
 
-    Raises SettingError if the time is not finite, or farther away than ``MAX_SECONDS``.
+    Parameters
+    ----------
+    seconds
+        The time in seconds.
+
+    Returns
+    -------
+    int
+        The number of microseconds.
+
+    Raises
+    ------
+    SettingError
+        If the time is not finite, or farther away than ``MAX_SECONDS``.
     """
     if not math.isfinite(seconds):
         raise SettingError(f"a time must be a finite number of seconds, got {seconds}")
@@ -35,6 +48,20 @@ def to_ticks(seconds: float) -> int:
 def encode(seconds: float, strict: bool = False) -> int:
     """Return the code of *x <= seconds*, or of *x < seconds*; infinity means no bound.
 
+    Parameters
+    ----------
+    seconds
+        The bound in seconds; infinity means no bound.
+    strict
+        True for *<*, False for *<=*.
+
+    Returns
+    -------
+    int
+        The code; a smaller code is a tighter bound.
+
+    Examples
+    --------
     >>> encode(0.0) == ZERO, encode(0.0, strict=True) < encode(0.0) < encode(0.000001, strict=True)
     (True, True)
     """
@@ -46,6 +73,18 @@ def encode(seconds: float, strict: bool = False) -> int:
 def text_of_ticks(ticks: int) -> str:
     """Return microseconds as text in seconds, without trailing zeros.
 
+    Parameters
+    ----------
+    ticks
+        Microseconds.
+
+    Returns
+    -------
+    str
+        Decimal number of seconds.
+
+    Examples
+    --------
     >>> text_of_ticks(2_500_000), text_of_ticks(-3_000_000), text_of_ticks(1700000000_250000)
     ('2.5', '-3', '1700000000.25')
     """
@@ -55,8 +94,24 @@ def text_of_ticks(ticks: int) -> str:
 
 
 def bound_text(tail: str, head: str, code: int, origin: str) -> str:
-    """Return in words that ``head - tail`` is bounded by a code; a difference to the origin is a time.
+    """Return an upper bound of a difference of two points in words.
 
+    Parameters
+    ----------
+    tail, head
+        Names of the points; the bound is on ``head - tail``.
+    code
+        Code of the bound.
+    origin
+        Name of the origin; a difference to it is a time.
+
+    Returns
+    -------
+    str
+        An inequality.
+
+    Examples
+    --------
     >>> bound_text("a.finish", "b.start", encode(5), "origin"), bound_text("a.start", "origin", encode(-2), "origin")
     ('b.start <= a.finish + 5', 'a.start >= 2')
     """
@@ -101,7 +156,20 @@ class Bounds:
 
     @classmethod
     def from_codes(cls, at_least: int, at_most: int) -> Bounds:
-        """Return the bounds with these two codes."""
+        """Return the bounds with two codes.
+
+        Parameters
+        ----------
+        at_least
+            Code of the upper bound of the negated value.
+        at_most
+            Code of the upper bound of the value.
+
+        Returns
+        -------
+        Bounds
+            The bounds in seconds.
+        """
         lower = -math.inf if at_least >= UNBOUNDED else -(at_least >> 1) / TICKS
         upper = math.inf if at_most >= UNBOUNDED else (at_most >> 1) / TICKS
         return cls(lower, upper, at_least < UNBOUNDED and not at_least & 1, at_most < UNBOUNDED and not at_most & 1)

@@ -86,15 +86,48 @@ class Chronology:
             raise UnknownFluentError("fluent", fluent_id, self._places) from None
 
     def start(self, fluent_id: str) -> Bounds:
-        """Return the tightest bounds of a fluent's start, in seconds."""
+        """Return the tightest bounds of a fluent's start.
+
+        Parameters
+        ----------
+        fluent_id
+            Id of the fluent.
+
+        Returns
+        -------
+        Bounds
+            Bounds in seconds since the origin.
+        """
         return self._bounds(fluent_id, _ORIGIN, _START)
 
     def finish(self, fluent_id: str) -> Bounds:
-        """Return the tightest bounds of a fluent's finish, in seconds."""
+        """Return the tightest bounds of a fluent's finish.
+
+        Parameters
+        ----------
+        fluent_id
+            Id of the fluent.
+
+        Returns
+        -------
+        Bounds
+            Bounds in seconds since the origin.
+        """
         return self._bounds(fluent_id, _ORIGIN, _FINISH)
 
     def duration(self, fluent_id: str) -> Bounds:
-        """Return the tightest bounds of the time from a fluent's start to its finish, in seconds."""
+        """Return the tightest bounds of the time from a fluent's start to its finish.
+
+        Parameters
+        ----------
+        fluent_id
+            Id of the fluent.
+
+        Returns
+        -------
+        Bounds
+            Bounds in seconds.
+        """
         return self._bounds(fluent_id, _START, _FINISH)
 
     def _bounds(self, fluent_id: str, tail: int, head: int) -> Bounds:
@@ -104,18 +137,63 @@ class Chronology:
     def held_at(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held at a time: start <= time < finish in every scenario.
 
-        Raises SettingError if the time is not finite, as :meth:`may_have_held` does.
+        Parameters
+        ----------
+        time
+            Seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
+
+        Raises
+        ------
+        SettingError
+            If the time is not finite.
         """
         return self._chosen(self._certain(*_at(time)), pattern)
 
     def may_have_held(self, time: float, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
-        """Return the fluents that may have held at a time: start <= time < finish in some scenario."""
+        """Return the fluents that may have held at a time: start <= time < finish in some scenario.
+
+        Parameters
+        ----------
+        time
+            Seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
+
+        Raises
+        ------
+        SettingError
+            If the time is not finite.
+        """
         return self._chosen(self._possible(*_at(time)), pattern)
 
     def held_throughout(self, window: Window, pattern: Pattern = ANYTHING) -> tuple[Fluent, ...]:
         """Return the fluents that certainly held throughout a window, in every scenario.
 
         That is, start <= begin and end <= finish.
+
+        Parameters
+        ----------
+        window
+            Begin and end in seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
         """
         return self._chosen(self._certain(*_throughout(window)), pattern)
 
@@ -123,6 +201,18 @@ class Chronology:
         """Return the fluents that may have held throughout a window, in some scenario.
 
         That is, start <= begin and end <= finish.
+
+        Parameters
+        ----------
+        window
+            Begin and end in seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
         """
         return self._chosen(self._possible(*_throughout(window)), pattern)
 
@@ -130,6 +220,18 @@ class Chronology:
         """Return the fluents that certainly held at some time in a window, in every scenario.
 
         That is, start < end and begin < finish.
+
+        Parameters
+        ----------
+        window
+            Begin and end in seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
         """
         return self._chosen(self._certain(*_within(window)), pattern)
 
@@ -137,6 +239,18 @@ class Chronology:
         """Return the fluents that may have held at some time in a window, in some scenario.
 
         That is, start < end and begin < finish.
+
+        Parameters
+        ----------
+        window
+            Begin and end in seconds since the origin.
+        pattern
+            Pattern of their statements.
+
+        Returns
+        -------
+        tuple of Fluent
+            The fluents, in the order of listing.
         """
         return self._chosen(self._possible(*_within(window)), pattern)
 
@@ -162,14 +276,35 @@ class Chronology:
         )
 
     def relations(self, a: str, b: str) -> tuple[Allen, ...]:
-        """Return the Allen relations that fluent a may have to fluent b; a single one is certain."""
+        """Return the Allen relations that one fluent may have to another.
+
+        Parameters
+        ----------
+        a, b
+            Ids of the fluents.
+
+        Returns
+        -------
+        tuple of Allen
+            The relations of a to b; a single one is certain.
+        """
         return members(int(self.masks[self._place(a), self._place(b)]))
 
     def certain_order(self, a: str, b: str) -> TemporalOrder | None:
-        """Return the certain order of two fluents, or None if no order is certain.
+        """Return the certain order of two fluents.
 
         The order is PRECEDES if a.finish <= b.start in every scenario, FOLLOWS if b.finish <= a.start, and CONCURRENT
         if they share a time in every scenario.
+
+        Parameters
+        ----------
+        a, b
+            Ids of the fluents.
+
+        Returns
+        -------
+        TemporalOrder or None
+            The order, or None if no order is certain.
         """
         mask = int(self.masks[self._place(a), self._place(b)])
         if not mask & ~_PRECEDES:
@@ -184,6 +319,18 @@ class Chronology:
         """Return the certain order of each two fluents, or of those that may have held at some time in a window.
 
         Each two fluents come once, in the order of listing, or reversed if the first follows the second.
+
+        Parameters
+        ----------
+        window
+            Times in seconds that both fluents may have held at, or None for all times.
+        pattern
+            Pattern of the statements of both fluents.
+
+        Returns
+        -------
+        tuple of tuple
+            Pairs of fluents with their order.
         """
         everything = tuple(fluent for fluent in self.fluents if pattern.matches(fluent.statement))
         chosen = everything if window is None else self.may_have_held_within(window, pattern)

@@ -62,18 +62,55 @@ class Claim:
 
 
 def ends(fluent: str) -> tuple[str, str]:
-    """Return the names of the two ends of a fluent."""
+    """Return the names of the two ends of a fluent.
+
+    Parameters
+    ----------
+    fluent
+        Id of the fluent.
+
+    Returns
+    -------
+    tuple
+        Names of start and finish.
+    """
     return f"{fluent}.start", f"{fluent}.finish"
 
 
 def proper_interval(fluent: str) -> DifferenceConstraint:
-    """Return the constraint that a fluent starts before it finishes."""
+    """Return the constraint that a fluent starts before it finishes.
+
+    Parameters
+    ----------
+    fluent
+        Id of the fluent.
+
+    Returns
+    -------
+    DifferenceConstraint
+        The constraint.
+    """
     start, finish = ends(fluent)
     return DifferenceConstraint(finish, start, STRICT, Proof(f"{start} < {finish}", Rule.PROPER_INTERVAL))
 
 
 def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[DifferenceConstraint, ...]:
-    """Return the difference constraints that define a convex set of Allen relations."""
+    """Return the difference constraints that define a convex set of Allen relations.
+
+    Parameters
+    ----------
+    a, b
+        Ids of the fluents.
+    relations
+        Mask of a convex set of Allen relations of a to b.
+    why
+        Proof that the constraints cite.
+
+    Returns
+    -------
+    tuple of DifferenceConstraint
+        The constraints; none for a set of all relations.
+    """
     names = ends(a) + ends(b)
     found = []
     for tail, head, code in necessary_orders(relations):
@@ -83,7 +120,18 @@ def allen_constraints(a: str, relations: int, b: str, why: Proof[str]) -> tuple[
 
 
 def claims_of(item: Fluent | AllenStatement | EndDifference) -> tuple[Claim, ...]:
-    """Return the claims of a fluent's bounds, of a difference or of a relation, one per statement."""
+    """Return the claims of a statement: of the bounds of a fluent, of a difference or of a relation.
+
+    Parameters
+    ----------
+    item
+        The statement.
+
+    Returns
+    -------
+    tuple of Claim
+        The claims.
+    """
     if isinstance(item, AllenStatement):
         return (_allen_claim(item),) if item.relations != ALL_ALLEN else ()
     if isinstance(item, EndDifference):
@@ -112,7 +160,18 @@ def _allen_claim(item: AllenStatement) -> Claim:
 
 
 def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
-    """Return a network with the ends of fluents, each of which starts before it finishes."""
+    """Return a network with the ends of fluents, each of which starts before it finishes.
+
+    Parameters
+    ----------
+    fluents
+        Ids of the fluents.
+
+    Returns
+    -------
+    SimpleTemporalNetwork
+        The network.
+    """
     network = SimpleTemporalNetwork()
     for fluent in fluents:
         add_fluent(network, fluent)
@@ -120,12 +179,31 @@ def network_of(fluents: Iterable[str]) -> SimpleTemporalNetwork:
 
 
 def add_fluent(network: SimpleTemporalNetwork, fluent: str) -> None:
-    """Add the two ends of a fluent, with no other constraints."""
+    """Add the two ends of a fluent, with no other constraints.
+
+    Parameters
+    ----------
+    network
+        The network, which is changed.
+    fluent
+        Id of the fluent.
+    """
     for point in ends(fluent):
         network.add_point(point)
     network.add([proper_interval(fluent)])
 
 
 def disjunctions(claims: Iterable[Claim]) -> Iterator[Disjunction]:
-    """Yield the disjunctions among claims."""
+    """Yield the disjunctions among claims.
+
+    Parameters
+    ----------
+    claims
+        The claims.
+
+    Yields
+    ------
+    Disjunction
+        A claim with several alternatives.
+    """
     return (claim.disjunction for claim in claims if claim.disjunction is not None)

@@ -68,7 +68,20 @@ def masks_of_pairs(distances: NDArray[np.int64], pairs: NDArray[np.int64]) -> ND
 def allen_masks(
     distances: NDArray[np.int64], starts: NDArray[np.int64], finishes: NDArray[np.int64]
 ) -> NDArray[np.uint16]:
-    """Return the Allen relations of all ordered pairs of n fluents, given the points of their ends, shape (n, n)."""
+    """Return the Allen relations of all ordered pairs of fluents.
+
+    Parameters
+    ----------
+    distances
+        Codes of the tightest bounds between points, a square array.
+    starts, finishes
+        Points of the ends of n fluents, shape (n,) each.
+
+    Returns
+    -------
+    ndarray
+        Masks of the possible relations, shape (n, n).
+    """
     n = len(starts)
     first, second = np.triu_indices(n, 1)
     pairs = np.stack([starts[first], finishes[first], starts[second], finishes[second]], axis=1).astype(np.int64)
@@ -79,7 +92,18 @@ def allen_masks(
 
 
 def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
-    """Return the converse of each mask, which moves bit i to bit 12 - i."""
+    """Return the converse of each mask, which moves bit i to bit 12 - i.
+
+    Parameters
+    ----------
+    masks
+        Masks over the 13 relations.
+
+    Returns
+    -------
+    ndarray
+        Masks of the same shape.
+    """
     found = np.zeros_like(masks)
     for code in range(13):
         found |= ((masks >> code) & 1) << (12 - code)
@@ -87,7 +111,18 @@ def converse_masks(masks: NDArray[np.uint16]) -> NDArray[np.uint16]:
 
 
 def distances_from_bounds(starts: list[Bounds], finishes: list[Bounds]) -> NDArray[np.int64]:
-    """Return closed distances among the origin (0), n starts (1 to n) and n finishes, shape (2 n + 1, 2 n + 1)."""
+    """Return closed distances among the origin (0), n starts (1 to n) and n finishes.
+
+    Parameters
+    ----------
+    starts, finishes
+        Bounds of the n fluents.
+
+    Returns
+    -------
+    ndarray
+        Codes of bounds, shape (2 n + 1, 2 n + 1).
+    """
     n = len(starts)
     upper = np.array([ZERO, *(b.at_most for b in (*starts, *finishes))], dtype=np.int64)
     lower = np.array([ZERO, *(b.at_least for b in (*starts, *finishes))], dtype=np.int64)

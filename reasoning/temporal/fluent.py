@@ -47,7 +47,18 @@ class Pattern:
     object: str | None = None
 
     def matches(self, statement: Statement) -> bool:
-        """Return whether a statement matches the pattern."""
+        """Return whether a statement matches the pattern.
+
+        Parameters
+        ----------
+        statement
+            Subject, predicate and object.
+
+        Returns
+        -------
+        bool
+            True if each part that the pattern gives is that of the statement.
+        """
         return (
             self.subject in (None, statement.subject)
             and self.predicate in (None, statement.predicate)
@@ -159,7 +170,20 @@ def _place(source: str | None) -> str:
 
 
 def allen_text(a: str, mask: int, b: str) -> str:
-    """Return a set of Allen relations between two fluents, in words."""
+    """Return a set of Allen relations between two fluents, in words.
+
+    Parameters
+    ----------
+    a, b
+        Ids of the fluents.
+    mask
+        Mask of the relations of a to b.
+
+    Returns
+    -------
+    str
+        A phrase.
+    """
     if mask == ALL_ALLEN:
         return f"any relation({a}, {b})"
     return " or ".join(relation.name.lower() for relation in members(mask)) + f"({a}, {b})"

@@ -25,21 +25,85 @@ class TimeQuestion(Protocol):
     """A question to a network, with an integer as the answer, and the explanation of the answer."""
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
-        """Return the answer by a network."""
+        """Return the answer by a network.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        int
+            The answer as a code or a mask.
+        """
+        ...
 
     def joined(self, answers: Sequence[int]) -> int:
-        """Return the answer that holds if one of several answers does."""
+        """Return the answer that holds if one of several answers does.
+
+        Parameters
+        ----------
+        answers
+            Answers of single cases.
+
+        Returns
+        -------
+        int
+            The answer that all of them imply.
+        """
+        ...
 
     def text(self, answer: int) -> str:
-        """Return an answer in words."""
+        """Return an answer in words.
+
+        Parameters
+        ----------
+        answer
+            An answer.
+
+        Returns
+        -------
+        str
+            A sentence without a full stop.
+        """
+        ...
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Return the explanation of the network's answer, or None without any information."""
+        """Return the explanation of the network's answer, or None without any information.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        Proof[str] or None
+            The proof, or None without any information.
+        """
+        ...
 
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Return the explanation by the network, and by each open disjunction on its own."""
+        """Return the explanation by the network, and by each open disjunction on its own.
+
+        Parameters
+        ----------
+        why
+            Explanation by the network alone.
+        network
+            The network.
+        undecided
+            Open disjunctions.
+
+        Returns
+        -------
+        Proof[str] or None
+            The explanation, or None without any information.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,25 +114,84 @@ class BoundQuestion:
     head: str
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
-        """Return the answer by a network."""
+        """Return the answer by a network.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        int
+            Code of the upper bound.
+        """
         return network.code(self.tail, self.head)
 
     def joined(self, answers: Sequence[int]) -> int:
-        """Return the answer that holds if one of several answers does."""
+        """Return the answer that holds if one of several answers does.
+
+        Parameters
+        ----------
+        answers
+            Codes of single cases.
+
+        Returns
+        -------
+        int
+            The weakest bound.
+        """
         return max(answers)
 
     def text(self, answer: int) -> str:
-        """Return an answer in words."""
+        """Return an answer in words.
+
+        Parameters
+        ----------
+        answer
+            Code of a bound.
+
+        Returns
+        -------
+        str
+            An inequality.
+        """
         return bound_text(self.tail, self.head, answer, ORIGIN)
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Return the explanation of the network's answer, or None without any information."""
+        """Return the explanation of the network's answer, or None without any information.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        Proof[str] or None
+            The proof, or None without a bound.
+        """
         return network.explain(self.tail, self.head)
 
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Return the explanation unchanged, since an open disjunction on its own bounds no time."""
+        """Return the explanation unchanged, since an open disjunction on its own bounds no time.
+
+        Parameters
+        ----------
+        why
+            Explanation by the network alone.
+        network
+            The network.
+        undecided
+            Open disjunctions.
+
+        Returns
+        -------
+        Proof[str] or None
+            ``why``.
+        """
         return why
 
 
@@ -80,20 +203,64 @@ class RelationQuestion:
     b: str
 
     def answer(self, network: SimpleTemporalNetwork) -> int:
-        """Return the answer by a network."""
+        """Return the answer by a network.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        int
+            Mask of the possible relations.
+        """
         pair = np.array([[network.index(point) for point in ends(self.a) + ends(self.b)]], dtype=np.int64)
         return int(masks_of_pairs(network.distances, pair)[0]) if self.a != self.b else 1 << Allen.EQUALS
 
     def joined(self, answers: Sequence[int]) -> int:
-        """Return the answer that holds if one of several answers does."""
+        """Return the answer that holds if one of several answers does.
+
+        Parameters
+        ----------
+        answers
+            Masks of single cases.
+
+        Returns
+        -------
+        int
+            Their union.
+        """
         return int(np.bitwise_or.reduce(np.array(answers)))
 
     def text(self, answer: int) -> str:
-        """Return an answer in words."""
+        """Return an answer in words.
+
+        Parameters
+        ----------
+        answer
+            Mask of relations.
+
+        Returns
+        -------
+        str
+            A phrase.
+        """
         return allen_text(self.a, answer, self.b)
 
     def explain(self, network: SimpleTemporalNetwork) -> Proof[str] | None:
-        """Return the orders of end points that give the answer, with refutations of single excluded relations."""
+        """Return the orders of end points that give the answer, with refutations of single excluded relations.
+
+        Parameters
+        ----------
+        network
+            The network.
+
+        Returns
+        -------
+        Proof[str] or None
+            The proof, or None if all relations are possible.
+        """
         mask = self.answer(network)
         if self.a == self.b:
             return Proof(self.text(mask), Rule.DEFINITION)
@@ -113,7 +280,22 @@ class RelationQuestion:
     def restricted(
         self, why: Proof[str] | None, network: SimpleTemporalNetwork, undecided: Sequence[Disjunction]
     ) -> Proof[str] | None:
-        """Return the answer that takes statements about the two fluents into account."""
+        """Return the answer that takes statements about the two fluents into account.
+
+        Parameters
+        ----------
+        why
+            Explanation by the network alone.
+        network
+            The network.
+        undecided
+            Open disjunctions.
+
+        Returns
+        -------
+        Proof[str] or None
+            The explanation, or None if all relations are possible.
+        """
         left = before = self.answer(network)
         premises = [] if why is None else [why]
         for disjunction in undecided:
@@ -134,10 +316,28 @@ def justify(
     deadline: Deadline,
     most: int,
 ) -> Proof[str] | None:
-    """Return the explanation of the answer to a question, or None without information or with conflicting disjunctions.
+    """Explain the answer to a question.
 
-    Open disjunctions are split case by case, up to ``most`` cases and until the deadline. If the cases agree on more
-    than the network alone implies, they are the explanation. The network is changed.
+    Open disjunctions are split case by case. If the cases agree on more than the network alone implies, they are the
+    explanation. The network is changed.
+
+    Parameters
+    ----------
+    question
+        The question.
+    network
+        The network, which is changed.
+    disjunctions
+        The disjunctions of the timeline.
+    deadline
+        Time limit for the cases.
+    most
+        Maximum number of cases.
+
+    Returns
+    -------
+    Proof[str] or None
+        The proof, or None without information or with conflicting disjunctions.
     """
     forced = ScenarioSearch(network, disjunctions, deadline, explain=True)
     if forced.propagate() is SearchOutcome.REFUTED:

@@ -74,14 +74,41 @@ class SimpleTemporalNetwork:
         return distances
 
     def index(self, point: str) -> int:
-        """Return the row of a point; raise UnknownFluentError if there is no such point."""
+        """Return the row of a point.
+
+        Parameters
+        ----------
+        point
+            Its name.
+
+        Returns
+        -------
+        int
+            The row in the matrix of distances.
+
+        Raises
+        ------
+        UnknownFluentError
+            If there is no such point.
+        """
         try:
             return self._index[point]
         except KeyError:
             raise UnknownFluentError("time point", point, self._index) from None
 
     def add_point(self, point: str) -> None:
-        """Add a point if it is new; raise LimitError beyond ``MAX_POINTS``."""
+        """Add a point if it is new.
+
+        Parameters
+        ----------
+        point
+            Its name.
+
+        Raises
+        ------
+        LimitError
+            If the network would have more than ``MAX_POINTS`` points.
+        """
         if point in self._index:
             return
         if len(self._index) == MAX_POINTS:
@@ -90,26 +117,69 @@ class SimpleTemporalNetwork:
         self.differences.add_point()
 
     def code(self, tail: str, head: str) -> int:
-        """Return the tightest upper bound on ``head - tail``, as a code."""
+        """Return the tightest upper bound on the difference of two points.
+
+        Parameters
+        ----------
+        tail, head
+            Names of the points.
+
+        Returns
+        -------
+        int
+            Code of the bound on ``head - tail``.
+        """
         return int(self.distances[self.index(tail), self.index(head)])
 
     def bounds(self, tail: str, head: str) -> Bounds:
-        """Return the tightest bounds on ``head - tail``, in seconds."""
+        """Return the tightest bounds on the difference of two points.
+
+        Parameters
+        ----------
+        tail, head
+            Names of the points.
+
+        Returns
+        -------
+        Bounds
+            Bounds on ``head - tail``, in seconds.
+        """
         return Bounds.from_codes(self.code(head, tail), self.code(tail, head))
 
     def add(self, constraints: Sequence[DifferenceConstraint]) -> None:
         """Add all constraints, or none.
 
-        Raises TemporalConflictError, with the negative cycle, if they contradict the network, and LimitError if
-        differences add up to more than can be computed exactly. The network is not changed then.
+        Parameters
+        ----------
+        constraints
+            The constraints.
+
+        Raises
+        ------
+        TemporalConflictError
+            If they contradict the network; the error has the negative cycle.
+        LimitError
+            If differences add up to more than can be computed exactly.
         """
         if not self.try_add(constraints):
             raise TemporalConflictError(self.refutation(constraints), minimal=False)
 
     def try_add(self, constraints: Sequence[DifferenceConstraint]) -> bool:
-        """Add all constraints and return True; return False and change nothing if a negative cycle would close."""
+        """Add all constraints, or none if a negative cycle would close.
+
+        Parameters
+        ----------
+        constraints
+            The constraints.
+
+        Returns
+        -------
+        bool
+            True if they were added.
+        """
         for each in constraints:
-            self.index(each.tail), self.index(each.head)
+            self.index(each.tail)
+            self.index(each.head)
         # a simple path has every constraint at most once, so their sum bounds its length
         total = self._between + sum(map(_size, constraints))
         if total > MAX_TOTAL or any(abs(c.code >> 1) > MAX_SECONDS * TICKS for c in constraints):
@@ -131,7 +201,13 @@ class SimpleTemporalNetwork:
         return Difference(0, self.index(constraint.tail), self.index(constraint.head), constraint.code)
 
     def back(self, length: int) -> None:
-        """Take back the constraints added last, until ``length`` are left, as far as :meth:`keep` allows."""
+        """Take back the constraints added last, as far as :meth:`keep` allows.
+
+        Parameters
+        ----------
+        length
+            Number of constraints to leave.
+        """
         self.differences.back(length)
         self._between -= sum(map(_size, self._constraints[length:]))
         del self._constraints[length:]
@@ -141,14 +217,26 @@ class SimpleTemporalNetwork:
         self.differences.keep()
 
     def retract(self, constraints: Iterable[DifferenceConstraint]) -> None:
-        """Remove constraints, each once, and recompute everything."""
+        """Remove constraints, each once, and recompute everything.
+
+        Parameters
+        ----------
+        constraints
+            Constraints of the network.
+        """
         for constraint in constraints:
             self._constraints.remove(constraint)
         self._between = sum(map(_size, self._constraints))
         self.differences.replace([self._difference(constraint) for constraint in self._constraints])
 
     def copy(self) -> SimpleTemporalNetwork:
-        """Return an independent network with the same points and constraints."""
+        """Return an independent network with the same points and constraints.
+
+        Returns
+        -------
+        SimpleTemporalNetwork
+            The network.
+        """
         other = SimpleTemporalNetwork()
         other.differences = self.differences.copy()
         other._index = dict(self._index)
@@ -157,7 +245,18 @@ class SimpleTemporalNetwork:
         return other
 
     def explain(self, tail: str, head: str) -> Proof[str] | None:
-        """Return the fewest constraints that add up to the upper bound of ``head - tail``, or None without a bound."""
+        """Explain the upper bound on the difference of two points.
+
+        Parameters
+        ----------
+        tail, head
+            Names of the points.
+
+        Returns
+        -------
+        Proof[str] or None
+            The fewest constraints that add up to the bound on ``head - tail``, or None without a bound.
+        """
         code = self.code(tail, head)
         if code >= UNBOUNDED or tail == head:
             return None
@@ -169,6 +268,16 @@ class SimpleTemporalNetwork:
         """Return the negative cycle that constraints would close, which :meth:`try_add` refuses; change nothing.
 
         The cycle is simple: it passes each of its points once.
+
+        Parameters
+        ----------
+        constraints
+            Constraints that :meth:`try_add` refuses.
+
+        Returns
+        -------
+        Proof[str]
+            The cycle, as a proof of a contradiction.
         """
         length = len(self._constraints)
         refused = next(constraint for constraint in constraints if not self._take_in(constraint))
@@ -177,14 +286,33 @@ class SimpleTemporalNetwork:
         return proof
 
     def cycle(self, refused: DifferenceConstraint) -> Proof[str]:
-        """Return the negative cycle that a constraint closes with those of the network."""
+        """Return the negative cycle that a constraint closes with those of the network.
+
+        Parameters
+        ----------
+        refused
+            A constraint that the network refuses.
+
+        Returns
+        -------
+        Proof[str]
+            The cycle, as a proof of a contradiction.
+        """
         cycle = [refused, *(self._constraints[k] for k in self.differences.cycle(self._difference(refused)))]
         code = add(self.code(refused.head, refused.tail), refused.code)
         point = next((c.tail for c in cycle if c.tail != ORIGIN), ORIGIN)
         return Proof(bound_text(point, point, code, ORIGIN), Rule.NEGATIVE_CYCLE, tuple(c.why for c in cycle))
 
     def record(self, length: int, constraints: Sequence[DifferenceConstraint]) -> None:
-        """Set the constraints, from number ``length`` on, for differences that a search has added directly."""
+        """Set constraints whose differences a search has added directly.
+
+        Parameters
+        ----------
+        length
+            Number of the constraints to keep before them.
+        constraints
+            The constraints.
+        """
         self._constraints[length:] = constraints
 
 
@@ -194,7 +322,22 @@ def _size(constraint: DifferenceConstraint) -> int:
 
 
 def difference(tail: str, head: str, bounds: Bounds, source: str | None = None) -> tuple[DifferenceConstraint, ...]:
-    """Return the stated constraints, at most two, that ``head - tail`` lies within bounds."""
+    """Return the constraints that the difference of two points lies within bounds.
+
+    Parameters
+    ----------
+    tail, head
+        Names of the points.
+    bounds
+        Bounds on ``head - tail``, in seconds.
+    source
+        Place of the statement, for explanations.
+
+    Returns
+    -------
+    tuple of DifferenceConstraint
+        At most two constraints.
+    """
     found = []
     for start, end, code in ((tail, head, bounds.at_most), (head, tail, bounds.at_least)):
         if code < UNBOUNDED:

@@ -42,13 +42,29 @@ class ScenarioSearch(Search):
         self._against: dict[Level, list[Proof[str]]] = {}  # proofs that the pieces tried so far fail
 
     def still_open(self) -> list[Disjunction]:
-        """Return the disjunctions that are neither decided nor implied."""
+        """Return the disjunctions that are neither decided nor implied.
+
+        Returns
+        -------
+        list of Disjunction
+            The disjunctions.
+        """
         return [self._disjunctions[k] for k in self.open()]
 
     def visit(self, look: Callable[[], None], most: int) -> tuple[int, bool]:
-        """Call ``look`` while the network holds each scenario, at most ``most`` of them.
+        """Call a function while the network holds each scenario; the network is unchanged in the end.
 
-        Returns the number of scenarios visited, and whether these are all. The network is unchanged in the end.
+        Parameters
+        ----------
+        look
+            The function.
+        most
+            Maximum number of scenarios.
+
+        Returns
+        -------
+        tuple
+            Number of scenarios visited, and whether these are all.
         """
         found = 0
         while self.advance() is SearchOutcome.SOLVED and found < most:
@@ -110,7 +126,20 @@ def _clause(network: SimpleTemporalNetwork, disjunction: Disjunction) -> Clause:
 
 
 def refuted(claims: Sequence[Claim], deadline: Deadline) -> Proof[str] | None:
-    """Return the proof that claims cannot all hold, or None if they can or the deadline comes first."""
+    """Search for a proof that claims cannot all hold.
+
+    Parameters
+    ----------
+    claims
+        The claims.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Proof[str] or None
+        The proof, or None if they can hold or the deadline comes first.
+    """
     network = network_of(dict.fromkeys(fluent for claim in claims for fluent in claim.fluents))
     for claim in claims:
         if not network.try_add(claim.constraints):
@@ -123,6 +152,20 @@ def minimal_conflict(claims: Sequence[Claim], proof: Proof[str], deadline: Deadl
     """Return the error for claims that a proof refutes, with a minimal set of claims.
 
     Only claims that the proof rests on are considered. At the deadline, the error says that the set may not be minimal.
+
+    Parameters
+    ----------
+    claims
+        The claims.
+    proof
+        Proof that they cannot all hold.
+    deadline
+        Time limit for making the set minimal.
+
+    Returns
+    -------
+    TemporalConflictError
+        The error, which is not raised.
     """
 
     def resting(chosen: Sequence[Claim]) -> list[Claim]:

@@ -62,7 +62,17 @@ class Timeline:
     def add(self, item: Fluent | TemporalRelation, time_limit: float = 10.0) -> None:
         """Add a fluent or a relation; adding a statement again changes nothing.
 
-        ``time_limit`` in seconds is for making the explanation of a contradiction minimal.
+        Parameters
+        ----------
+        item
+            The statement.
+        time_limit
+            Seconds for making the explanation of a contradiction minimal.
+
+        Raises
+        ------
+        TemporalConflictError
+            If the statement contradicts the others.
         """
         if item in self._claims:
             return
@@ -84,7 +94,23 @@ class Timeline:
             self._fluents[item.id] = item
 
     def fluent(self, fluent_id: str) -> Fluent:
-        """Return a fluent by its id; raise UnknownFluentError if there is no such fluent."""
+        """Return a fluent by its id.
+
+        Parameters
+        ----------
+        fluent_id
+            The id.
+
+        Returns
+        -------
+        Fluent
+            The fluent.
+
+        Raises
+        ------
+        UnknownFluentError
+            If there is no such fluent.
+        """
         try:
             return self._fluents[fluent_id]
         except KeyError:
@@ -93,7 +119,17 @@ class Timeline:
     def retract(self, item: Fluent | TemporalRelation) -> None:
         """Remove a statement, and recompute the rest.
 
-        Raises UnknownFluentError if it was not stated, and FluentError for a fluent that relations refer to.
+        Parameters
+        ----------
+        item
+            The statement.
+
+        Raises
+        ------
+        UnknownFluentError
+            If it was not stated.
+        FluentError
+            If it is a fluent that relations refer to.
         """
         if item not in self._claims:
             raise UnknownFluentError("statement", str(item), map(str, self._claims))
@@ -113,9 +149,23 @@ class Timeline:
     def chronology(self, time_limit: float = 10.0) -> Chronology:
         """Return the implied bounds of all times, and the possible relations of every pair of fluents.
 
-        Raises TemporalConflictError if the disjunctions are inconsistent; making the proof minimal may take as long
-        again. If the time limit, in seconds, is reached before consistency is known, the status is UNDECIDED, and the
-        chronology holds what is certain without the open disjunctions.
+        If the time limit is reached before consistency is known, the status is UNDECIDED, and the chronology holds what
+        is certain without the open disjunctions.
+
+        Parameters
+        ----------
+        time_limit
+            Seconds for the search over disjunctions.
+
+        Returns
+        -------
+        Chronology
+            The chronology.
+
+        Raises
+        ------
+        TemporalConflictError
+            If the disjunctions are inconsistent; making the proof minimal may take as long again.
         """
         deadline = Deadline.after(time_limit)
         claims = self._all_claims()
@@ -148,16 +198,42 @@ class Timeline:
         return minimal_conflict(claims, proof, deadline)
 
     def explain_relation(self, a: str, b: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Return why fluent a must have one of its possible relations to fluent b; None if all are possible."""
+        """Explain why one fluent must have one of its possible relations to another.
+
+        Parameters
+        ----------
+        a, b
+            Ids of the fluents.
+        time_limit
+            Seconds for the search over disjunctions.
+
+        Returns
+        -------
+        Proof[str] or None
+            The proof, or None if all relations are possible.
+        """
         return self._justify(RelationQuestion(self.fluent(a).id, self.fluent(b).id), time_limit)
 
     def explain_bound(self, tail: str, head: str, time_limit: float = 10.0) -> Proof[str] | None:
-        """Return the explanation of the upper bound of ``head - tail``, or None without a bound.
+        """Explain the upper bound on the difference of two points.
 
         A point is ``ID.start`` or ``ID.finish``, or ``origin``: the upper bound of a fluent's start is
         ``explain_bound("origin", "f1.start")``, its lower bound ``explain_bound("f1.start", "origin")``.
+
+        Parameters
+        ----------
+        tail, head
+            Names of the points.
+        time_limit
+            Seconds for the search over disjunctions.
+
+        Returns
+        -------
+        Proof[str] or None
+            The proof, or None without a bound.
         """
-        self._network.index(tail), self._network.index(head)
+        self._network.index(tail)
+        self._network.index(head)
         return self._justify(BoundQuestion(tail, head), time_limit)
 
     def _justify(self, question: TimeQuestion, time_limit: float) -> Proof[str] | None:

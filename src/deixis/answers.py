@@ -44,15 +44,37 @@ class Answer:
         return _renderers().to_dict(self)  # type: ignore[no-any-return]
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Return :meth:`to_dict` as JSON text, ``indent`` spaces to a level; None gives one line."""
+        """Return :meth:`to_dict` as JSON text.
+
+        Parameters
+        ----------
+        indent
+            Number of spaces for each level; None gives one line.
+
+        Returns
+        -------
+        str
+            The JSON text, with characters outside ASCII as they are.
+        """
         return json.dumps(self.to_dict(), indent=indent, ensure_ascii=False, allow_nan=False)
 
     def to_text(self) -> str:
-        """Return the lines that the command of the same name prints."""
+        """Return the lines that the command of the same name prints.
+
+        Returns
+        -------
+        str
+            The lines, joined by line ends.
+        """
         return "\n".join(_renderers().to_lines(self))
 
     def to_dataframe(self) -> Any:
         """Return the table in the answer as a ``pandas.DataFrame``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row for each entry of the table, with named columns.
 
         Raises
         ------
@@ -98,7 +120,13 @@ class Answer:
         return f"{type(self).__name__} {self.summary()}"
 
     def summary(self) -> str:
-        """Return the answer in a few words, for ``repr``."""
+        """Return the answer in a few words, for ``repr``.
+
+        Returns
+        -------
+        str
+            The summary, without the name of the type.
+        """
         raise NotImplementedError
 
 
@@ -109,6 +137,20 @@ def _renderers() -> Any:
 def count(number: int, noun: str) -> str:
     """Return a number with its noun, in the singular for 1.
 
+    Parameters
+    ----------
+    number
+        The number, at least 0.
+    noun
+        The noun in the singular.
+
+    Returns
+    -------
+    str
+        The number and the noun, in the plural unless the number is 1.
+
+    Examples
+    --------
     >>> count(1, "fact"), count(3, "fact"), count(2, "category")
     ('1 fact', '3 facts', '2 categories')
     """

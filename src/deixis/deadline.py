@@ -19,7 +19,13 @@ class Clock:
         self._state: tuple[float | None, float] = None, 0.0  # start of this stop; seconds of earlier ones
 
     def now(self) -> float:
-        """Return the seconds of the clock."""
+        """Return the seconds of the clock.
+
+        Returns
+        -------
+        float
+            Seconds since an arbitrary moment, without the time in :func:`clock_stopped`.
+        """
         since, before = self._state
         return (time.monotonic() if since is None else since) - before
 
@@ -47,6 +53,13 @@ CLOCK = Clock()
 def clock_stopped() -> Iterator[None]:
     """Stop the clock of all deadlines, for work that is done once and does not count, such as compiling.
 
+    Yields
+    ------
+    None
+        Nothing; the clock runs again after the block.
+
+    Examples
+    --------
     >>> deadline = Deadline.after(0.05)
     >>> with clock_stopped():
     ...     time.sleep(0.1)
@@ -86,12 +99,29 @@ class Deadline:
 
     @classmethod
     def after(cls, seconds: float | None) -> Self:
-        """Return the deadline ``seconds`` from now; None means no limit."""
+        """Return the deadline some seconds from now.
+
+        Parameters
+        ----------
+        seconds
+            Seconds from now; None means no limit.
+
+        Returns
+        -------
+        Deadline
+            The deadline.
+        """
         return cls(math.inf if seconds is None else CLOCK.now() + seconds)
 
     @classmethod
     def never(cls) -> Self:
-        """Return a deadline that never passes."""
+        """Return a deadline that never passes.
+
+        Returns
+        -------
+        Deadline
+            A deadline without a limit.
+        """
         return cls(math.inf)
 
     @property
@@ -105,15 +135,48 @@ class Deadline:
         return CLOCK.now() >= self.at
 
     def share(self, fraction: float) -> Self:
-        """Return an earlier deadline, by which ``fraction`` (0 to 1) of the time left is used up."""
+        """Return an earlier deadline, by which part of the time left is used up.
+
+        Parameters
+        ----------
+        fraction
+            Part of the time left, in [0, 1].
+
+        Returns
+        -------
+        Deadline
+            The earlier deadline.
+        """
         if math.isinf(self.at):
             return self
         return type(self)(min(self.at, CLOCK.now() + fraction * self.left))
 
     def within(self, seconds: float) -> Self:
-        """Return the earlier of this deadline and the one ``seconds`` from now."""
+        """Return this deadline, or one some seconds from now if that is earlier.
+
+        Parameters
+        ----------
+        seconds
+            Seconds from now.
+
+        Returns
+        -------
+        Deadline
+            The earlier of the two.
+        """
         return type(self)(min(self.at, CLOCK.now() + seconds))
 
     def earlier(self, seconds: float) -> Self:
-        """Return the deadline ``seconds`` earlier, which leaves time for work after it."""
+        """Return an earlier deadline, which leaves time for work after it.
+
+        Parameters
+        ----------
+        seconds
+            Seconds before this deadline.
+
+        Returns
+        -------
+        Deadline
+            The earlier deadline.
+        """
         return type(self)(self.at - seconds)

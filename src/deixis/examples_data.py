@@ -9,5 +9,16 @@ EXAMPLES = Path(str(files("deixis.examples")))
 
 
 def example(name: str) -> Path:
-    """Return the path of a shipped example, such as ``script1.layout``."""
+    """Return the path of a shipped example.
+
+    Parameters
+    ----------
+    name
+        Name of its file, such as ``script1.layout``.
+
+    Returns
+    -------
+    Path
+        The path in the installed package.
+    """
     return EXAMPLES / name

@@ -38,8 +38,22 @@ class MissingExtraError(DeixisError, ImportError):
 
 
 def require(package: str, purpose: str) -> None:
-    """Raise MissingExtraError unless an optional package is installed; ``purpose`` begins the message.
+    """Raise MissingExtraError unless an optional package is installed.
 
+    Parameters
+    ----------
+    package
+        Name of the package.
+    purpose
+        What needs the package, as the beginning of the message.
+
+    Raises
+    ------
+    MissingExtraError
+        If the package is not installed; the message says how to install it.
+
+    Examples
+    --------
     >>> import sys
     >>> from unittest.mock import patch
     >>> with patch.dict(sys.modules, matplotlib=None):

@@ -35,9 +35,17 @@ def _write_bytecode() -> None:
 
 
 def compile_grounding(engine: str) -> None:
-    """Compile, or load compiled, the kernels of grounding with one engine, chains for many objects included.
+    """Compile, or load compiled, the kernels of grounding with one engine, including chains for many objects.
 
-    Raises UnknownTermError if no engine has that name.
+    Parameters
+    ----------
+    engine
+        Name of the engine.
+
+    Raises
+    ------
+    UnknownTermError
+        If no engine has that name.
     """
     from deixis.deadline import Deadline
     from deixis.grammar.parser import parse_script
@@ -90,7 +98,10 @@ def compile_inference() -> None:
 def compile_solving(wide: bool = True) -> None:
     """Compile, or load compiled, closure and search, over plain calculi and over products.
 
-    ``wide`` includes the loops for calculi of more than 16 atoms.
+    Parameters
+    ----------
+    wide
+        True to include the loops for calculi of more than 16 atoms.
     """
     from deixis.grammar.formats.networks import parse_networks
     from deixis.reasoning.kernel import load_compiled

@@ -58,23 +58,56 @@ class KnowledgeStore(Closing):
         self._memory.require_usable()
 
     def exists(self) -> bool:
-        """Return whether there is a memory at the path.
+        """Say whether there is a memory at the path.
 
-        Raises MemoryFormatError where the path holds something else, or a damaged memory.
+        Returns
+        -------
+        bool
+            True if there is one.
+
+        Raises
+        ------
+        MemoryFormatError
+            If the path holds something else, or a damaged memory.
         """
         from deixis.memory.folder import FolderState, inspect
 
         return self._memory.is_open or inspect(self.path) not in (FolderState.ABSENT, FolderState.EMPTY)
 
     def memory(self, create: bool = False) -> SemanticMemory:
-        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
+        """Return the open memory.
+
+        Parameters
+        ----------
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        SemanticMemory
+            The store, open until the session ends.
+
+        Raises
+        ------
+        DeixisError
+            If there is no memory and ``create`` is False.
+        """
         return self._memory.get(create)
 
     def meaning(self) -> Meaning:
         """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
 
-        Raises OntologyError where a learned model in the memory is incomplete, MemoryBusyError where another process
-        has the memory open.
+        Returns
+        -------
+        Meaning
+            Models of words and ranges of sizes.
+
+        Raises
+        ------
+        OntologyError
+            If a learned model in the memory is incomplete.
+        MemoryBusyError
+            If another process has the memory open.
         """
         from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 
@@ -93,7 +126,13 @@ class KnowledgeStore(Closing):
         return Meaning(shipped_models().replaced(*words) if words else None, sizes)
 
     def recollection(self) -> Recollection:
-        """Return all lessons of the memory, ready to be learned from; nothing where there is no memory."""
+        """Return all lessons of the memory, ready to be learned from.
+
+        Returns
+        -------
+        Recollection
+            The lessons with their scenes; empty without a memory.
+        """
         from deixis.learning.recollection import Recollection
         from deixis.learning.update import remembered
 
@@ -102,7 +141,22 @@ class KnowledgeStore(Closing):
     def keeping(self, lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]]) -> Commit:
         """Return a function that commits lessons, what follows from them, and the views that each taught, in one step.
 
-        Raises DeixisError, having changed nothing, if they are refused.
+        Parameters
+        ----------
+        lessons
+            The lessons, in order.
+        seen
+            Views by the id of the lesson that teaches them.
+
+        Returns
+        -------
+        Commit
+            The function, to be called while the memory is held.
+
+        Raises
+        ------
+        DeixisError
+            If the lessons are refused; nothing is changed then.
         """
         from deixis.learning.update import keeping
 
@@ -120,11 +174,28 @@ class KnowledgeStore(Closing):
         return committing
 
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
-        """Fit the models of relation words to all lessons, and to examples: scripts, each with a labelled scene.
+        """Fit the models of relation words to all lessons, and to labelled examples.
 
-        The examples are kept as lessons, and the models replace those that were learned before. Raises
-        NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
-        that is not above 0.
+        The examples are kept as lessons, and the models replace those that were learned before.
+
+        Parameters
+        ----------
+        examples
+            Scripts, each with a labelled scene.
+        strength
+            Weight of the shipped models, above 0.
+
+        Returns
+        -------
+        LearnedWords
+            The models that changed, and the examples that teach nothing, with reasons.
+
+        Raises
+        ------
+        NothingFoundError
+            If there is nothing to learn from; nothing is changed then.
+        SettingError
+            If ``strength`` is not above 0.
         """
         from deixis.learning.update import keep_words
         from deixis.learning.words import new_lessons
@@ -148,7 +219,20 @@ class KnowledgeStore(Closing):
     def forgetting(self, lesson: str) -> Commit:
         """Return a function that removes one lesson, what follows from it only, and what it taught of words and sizes.
 
-        Raises UnknownLessonError.
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+
+        Returns
+        -------
+        Commit
+            The function, to be called while the memory is held.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
         """
         from deixis.learning.update import forgetting
 
@@ -157,7 +241,15 @@ class KnowledgeStore(Closing):
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.
 
-        Raises InconsistencyError, having changed nothing, where the file contradicts the memory.
+        Parameters
+        ----------
+        file
+            The file.
+
+        Raises
+        ------
+        InconsistencyError
+            If the file contradicts the memory; nothing is changed then.
         """
         from deixis.learning.update import take_in
 
@@ -167,23 +259,58 @@ class KnowledgeStore(Closing):
         take_in(file, self.path, self.ontology)
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Return every learned layout."""
+        """Return every learned layout.
+
+        Returns
+        -------
+        tuple of LayoutConcept
+            One layout for each lesson; empty without a memory.
+        """
         from deixis.memory.semantic.rdf.graphs import GraphName
         from deixis.ontology.lessons.read import layouts
 
         return layouts(self.memory().triples(GraphName.LEARNED), self.ontology.relations)
 
     def layout(self, name: str) -> LayoutConcept:
-        """Return the layout learned last with this name, or the layout of the lesson with this id.
+        """Return a learned layout.
 
-        Raises UnknownTermError where there is neither.
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of its lesson.
+
+        Returns
+        -------
+        LayoutConcept
+            The layout that was learned last with this name, or that of the lesson.
+
+        Raises
+        ------
+        UnknownTermError
+            If there is neither.
         """
         from deixis.learning.recollection import find_layout
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
     def show(self, name: str) -> str:
-        """Return a learned layout as the text of a script."""
+        """Return a learned layout as a script.
+
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of its lesson.
+
+        Returns
+        -------
+        str
+            The text of the script.
+
+        Raises
+        ------
+        UnknownTermError
+            If there is neither.
+        """
         from deixis.grammar.format import layout_script
 
         return layout_script(self.layout(name), self.ontology)
@@ -191,14 +318,41 @@ class KnowledgeStore(Closing):
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT
     ) -> QueryResult:
-        """Run a SPARQL query over the memory: see :meth:`SemanticMemory.query`."""
+        """Run a SPARQL query over the memory.
+
+        Parameters
+        ----------
+        sparql
+            Text of the query.
+        time_limit
+            Seconds until the answer.
+        memory_limit
+            Bytes for the evaluation.
+
+        Returns
+        -------
+        QueryResult
+            The answer, read to the end.
+
+        Raises
+        ------
+        QueryError
+            If the query is refused or malformed.
+        QueryTimeoutError, QueryMemoryError
+            If a limit is reached.
+        """
         return self.memory().query(sparql, time_limit, memory_limit)
 
     def owl(self) -> ObjectView:
-        """Return the ontology with everything learned as objects of owlready2: see :class:`ObjectView`.
+        """Return the ontology with everything learned as objects of owlready2.
 
         The view has what is stated and inferred now, and does not see later changes. Without a memory it has the
         ontology only.
+
+        Returns
+        -------
+        ObjectView
+            An own world of owlready2, to be closed after use.
         """
         import pyoxigraph as ox
 

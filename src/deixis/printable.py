@@ -23,6 +23,18 @@ _SHORT = {"\n": r"\n", "\r": r"\r", "\t": r"\t"}
 def visible(text: str) -> str:
     r"""Return a text with every control character except tabs and line ends as an escape.
 
+    Parameters
+    ----------
+    text
+        The text.
+
+    Returns
+    -------
+    str
+        The text, with the other characters unchanged.
+
+    Examples
+    --------
     >>> print(visible("fork\x1b[2J\nknife\u202e"))
     fork\u001b[2J
     knife\u202e
@@ -33,6 +45,18 @@ def visible(text: str) -> str:
 def visible_line(text: str) -> str:
     r"""Return a text on one line: as :func:`visible`, with tabs and line ends as escapes too.
 
+    Parameters
+    ----------
+    text
+        The text.
+
+    Returns
+    -------
+    str
+        The text on one line.
+
+    Examples
+    --------
     >>> print(visible_line("fork\nknife\tspoon"))
     fork\nknife\tspoon
     """
@@ -40,8 +64,22 @@ def visible_line(text: str) -> str:
 
 
 def shortened(text: str, limit: int = MAX_MESSAGE) -> str:
-    """Return a text of at most ``limit`` characters: the beginning and the end of a longer one.
+    """Return a text of limited length: the beginning and the end of a longer one.
 
+    Parameters
+    ----------
+    text
+        The text.
+    limit
+        Maximum number of characters.
+
+    Returns
+    -------
+    str
+        The text, with an ellipsis where it is cut.
+
+    Examples
+    --------
     >>> shortened("a" * 100 + " must be a name", 30)
     'aaaaaaaaaaaaaaaaaaa… be a name'
     """
@@ -52,10 +90,24 @@ def shortened(text: str, limit: int = MAX_MESSAGE) -> str:
 
 
 def window(line: str, column: int) -> tuple[str, int]:
-    r"""Return the part of a line around a column (from 0), and the column within that part.
+    r"""Return the part of a line around a column.
 
     Each unprintable character takes one column: blanks become spaces, others the replacement character.
 
+    Parameters
+    ----------
+    line
+        The line.
+    column
+        Column from 0.
+
+    Returns
+    -------
+    tuple
+        The part, and the column within it.
+
+    Examples
+    --------
     >>> window("a\tb", 2), window("a" * 500 + "b" + "c" * 500, 500)[0].count("a")
     (('a b', 2), 50)
     """

@@ -58,7 +58,13 @@ class ScratchFolder:
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """Make a folder for the block, and remove it after it, also where a signal ends the process."""
+    """Make a folder for the block, and remove it after it, also where a signal ends the process.
+
+    Yields
+    ------
+    pathlib.Path
+        The folder.
+    """
     remove_stale()
     with _ended_by_signals():
         scratch = ScratchFolder()
@@ -135,7 +141,13 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
 def tied_to_parent() -> Callable[[], None] | None:
-    """Return a function that makes the system kill a new process when this one ends; None except on Linux."""
+    """Return a function that makes the system kill a new process when this one ends.
+
+    Returns
+    -------
+    callable or None
+        Function to run in the new process; None except on Linux.
+    """
     if not sys.platform.startswith("linux"):
         return None
     library, parent = ctypes.CDLL(None), os.getpid()

@@ -116,12 +116,22 @@ class Session(Closing):
     ) -> Grounding:
         """Ground a script in a scene, with the words and sizes learned in this memory.
 
-        The parameters and errors are those of :func:`deixis.ground`.
+        Parameters
+        ----------
+        script, scene
+            The script and the scene, or their files.
+        engine, time_limit, viewpoint, select, literal, sizes, ask, max_questions, memory_limit
+            The settings of :func:`deixis.ground`.
 
         Returns
         -------
         Grounding
             The thing that each object of the script refers to, with its posterior.
+
+        Raises
+        ------
+        DeixisError
+            For bad input, as :func:`deixis.ground`.
         """
         from deixis.workflows.ground import ground
         from deixis.workflows.read import as_script
@@ -188,8 +198,28 @@ class Session(Closing):
     ) -> tuple[Learned, ...]:
         """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
 
-        Each is grounded with what the memory had learned before this call. ``time_limit`` is in seconds, for each
-        grounding. ``progress`` is called with the number of grounded examples and of all.
+        Each is grounded with what the memory had learned before this call.
+
+        Parameters
+        ----------
+        examples
+            Pairs of a script and its scene, or of their files.
+        engine
+            Name of the engine that grounds the scripts.
+        time_limit
+            Seconds for each grounding.
+        progress
+            Called with the number of grounded examples and of all.
+
+        Returns
+        -------
+        tuple of Learned
+            A lesson for each example, with its grounding.
+
+        Raises
+        ------
+        DeixisError
+            If an example is invalid, or nothing that it names is found; nothing is kept then.
         """
         from deixis.workflows.learn import learn
 
@@ -286,38 +316,94 @@ class Session(Closing):
 
     @_one_at_a_time
     def remembers(self) -> bool:
-        """Return True if there is a memory at the path.
+        """Say whether there is a memory at the path.
 
-        Raises MemoryFormatError where the path holds something else, or a damaged memory.
+        Returns
+        -------
+        bool
+            True if there is one.
+
+        Raises
+        ------
+        MemoryFormatError
+            If the path holds something else, or a damaged memory.
         """
         return self.knowledge_store.exists()
 
     @_one_at_a_time
     def memory(self, create: bool = False) -> SemanticMemory:
-        """Return the open memory; raise DeixisError where there is no memory and ``create`` is False."""
+        """Return the open semantic memory.
+
+        Parameters
+        ----------
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        SemanticMemory
+            The store, open until the session ends.
+
+        Raises
+        ------
+        DeixisError
+            If there is no memory and ``create`` is False.
+        """
         return self.knowledge_store.memory(create)
 
     @_one_at_a_time
     def meaning(self) -> Meaning:
         """Return the words and sizes in force: the learned ones, and the shipped ones for the rest.
 
-        Raises OntologyError where a learned model in the memory is incomplete, MemoryBusyError where another process
-        has the memory open.
+        Returns
+        -------
+        Meaning
+            Models of words and ranges of sizes, for :func:`deixis.ground`.
+
+        Raises
+        ------
+        OntologyError
+            If a learned model in the memory is incomplete.
+        MemoryBusyError
+            If another process has the memory open.
         """
         return self.knowledge_store.meaning()
 
     @_one_at_a_time
     def recollection(self) -> Recollection:
-        """Return all lessons of the memory, ready to be learned from; nothing where there is no memory."""
+        """Return all lessons of the memory, ready to be learned from.
+
+        Returns
+        -------
+        Recollection
+            The lessons with their scenes; empty without a memory.
+        """
         return self.knowledge_store.recollection()
 
     @_one_at_a_time
     def learn_relations(self, examples: Sequence[tuple[Script, Scene]] = (), strength: float = 3.0) -> LearnedWords:
-        """Fit the models of relation words to all lessons, and to examples: scripts, each with a labelled scene.
+        """Fit the models of relation words to all lessons, and to labelled examples.
 
-        The examples are kept as lessons, and the models replace those that were learned before. Raises
-        NothingFoundError, having changed nothing, where there is nothing to learn from; SettingError for a strength
-        that is not above 0.
+        The examples are kept as lessons, and the models replace those that were learned before.
+
+        Parameters
+        ----------
+        examples
+            Scripts, each with a labelled scene.
+        strength
+            Weight of the shipped models, above 0.
+
+        Returns
+        -------
+        LearnedWords
+            The models that changed, and the examples that teach nothing, with reasons.
+
+        Raises
+        ------
+        NothingFoundError
+            If there is nothing to learn from; nothing is changed then.
+        SettingError
+            If ``strength`` is not above 0.
         """
         return self.knowledge_store.learn_relations(examples, strength)
 
@@ -331,6 +417,16 @@ class Session(Closing):
         """Remove one lesson, what follows from it only, and what it taught of words and sizes.
 
         The views that it taught stay.
+
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
         """
         from deixis.workflows.views_of_lessons import forget_lesson
 
@@ -340,26 +436,71 @@ class Session(Closing):
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.
 
-        Raises InconsistencyError, having changed nothing, where the file contradicts the memory.
+        Parameters
+        ----------
+        file
+            The file: TriG, Turtle, N-Triples, RDF/XML or OWL.
+
+        Raises
+        ------
+        InconsistencyError
+            If the file contradicts the memory; nothing is changed then.
+        ImportFormatError
+            If the file cannot be read.
         """
         self.knowledge_store.import_(file)
 
     @_one_at_a_time
     def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Return all learned layouts."""
+        """Return all learned layouts.
+
+        Returns
+        -------
+        tuple of LayoutConcept
+            One layout for each lesson; empty without a memory.
+        """
         return self.knowledge_store.layouts()
 
     @_one_at_a_time
     def layout(self, name: str) -> LayoutConcept:
-        """Return the layout learned last with this name, or the layout of the lesson with this id.
+        """Return a learned layout.
 
-        Raises UnknownTermError where there is neither.
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of its lesson.
+
+        Returns
+        -------
+        LayoutConcept
+            The layout that was learned last with this name, or that of the lesson.
+
+        Raises
+        ------
+        UnknownTermError
+            If there is neither.
         """
         return self.knowledge_store.layout(name)
 
     @_one_at_a_time
     def show(self, name: str) -> str:
-        """Return a learned layout as the text of a script."""
+        """Return a learned layout as a script.
+
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of its lesson.
+
+        Returns
+        -------
+        str
+            The text of the script.
+
+        Raises
+        ------
+        UnknownTermError
+            If there is neither.
+        """
         return self.knowledge_store.show(name)
 
     @_one_at_a_time
@@ -377,6 +518,11 @@ class Session(Closing):
         memory_limit
             Bytes for the evaluation. The answer, as text, may take a sixteenth of them.
 
+        Returns
+        -------
+        QueryResult
+            The answer, read to the end.
+
         Raises
         ------
         QueryError
@@ -388,9 +534,14 @@ class Session(Closing):
 
     @_one_at_a_time
     def owl(self) -> ObjectView:
-        """Return the ontology with everything learned as objects of owlready2 in their own world; close it after use.
+        """Return the ontology with everything learned as objects of owlready2.
 
-        It has what was stated and inferred when it was made. Without a memory it has the ontology only.
+        It has what was stated and inferred when it was made; without a memory it has the ontology only.
+
+        Returns
+        -------
+        ObjectView
+            An own world of owlready2, to be closed after use.
         """
         return self.knowledge_store.owl()
 
@@ -398,24 +549,69 @@ class Session(Closing):
 
     @_one_at_a_time
     def has_views(self) -> bool:
-        """Return True if the memory has views."""
+        """Say whether the memory has views.
+
+        Returns
+        -------
+        bool
+            True if a view was taught.
+        """
         return self.view_store.exists()
 
     @_one_at_a_time
     def views(self, create: bool = False) -> LevelMemory:
-        """Return the open perceptual memory; raise DeixisError where there is no memory and ``create`` is False."""
+        """Return the open perceptual memory.
+
+        Parameters
+        ----------
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        LevelMemory
+            The store, open until the session ends.
+
+        Raises
+        ------
+        DeixisError
+            If there is no memory and ``create`` is False.
+        """
         return self.view_store.memory(create)
 
     @_one_at_a_time
     def category_meant(self, name: str) -> str:
-        """Return the known category with this name, else the first that differs only in case, else the name itself."""
+        """Return the known category that a name stands for.
+
+        Parameters
+        ----------
+        name
+            A name, in any case.
+
+        Returns
+        -------
+        str
+            The category with this name, else the first that differs only in case, else the name itself.
+        """
         return self.view_store.category_meant(name)
 
     @_one_at_a_time
     def rename_category(self, old: str, new: str) -> None:
         """Rename a category; its views stay.
 
-        Raises UnknownCategoryError; RejectedWriteError where the new name is in use; SettingError for an invalid name.
+        Parameters
+        ----------
+        old, new
+            Its present name and its new one.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no category ``old``.
+        RejectedWriteError
+            If the new name is in use.
+        SettingError
+            If the new name is invalid.
         """
         from deixis.view_store import category_name, new_category_name
         from deixis.workflows.views_of_lessons import rename_category
@@ -424,7 +620,18 @@ class Session(Closing):
 
     @_one_at_a_time
     def merge_categories(self, source: str, into: str) -> None:
-        """Move the views of one category to another, such as two words for one thing. Raises UnknownCategoryError."""
+        """Move the views of one category to another, such as two words for one thing.
+
+        Parameters
+        ----------
+        source, into
+            Names of the category that goes and of the category that gets the views.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no category ``source``.
+        """
         from deixis.view_store import category_name
         from deixis.workflows.views_of_lessons import merge_categories
 
@@ -432,7 +639,18 @@ class Session(Closing):
 
     @_one_at_a_time
     def forget_category(self, name: str) -> None:
-        """Forget a category with all its views. Raises UnknownCategoryError."""
+        """Forget a category with all its views.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        """
         from deixis.view_store import category_name
         from deixis.workflows.views_of_lessons import forget_category
 
@@ -440,5 +658,16 @@ class Session(Closing):
 
     @_one_at_a_time
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """Return the number of views of each taught category; ``left_out`` is as in :meth:`recognise`."""
+        """Return the number of views of each taught category.
+
+        Parameters
+        ----------
+        left_out
+            Called with a line about damaged views, which are not counted.
+
+        Returns
+        -------
+        dict
+            Number of views by the name of the category, sorted; empty if nothing was taught.
+        """
         return self.view_store.categories(left_out)

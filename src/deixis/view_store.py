@@ -45,17 +45,50 @@ class ViewStore(Closing):
         self._memory.close()
 
     def exists(self) -> bool:
-        """Return whether the memory has views."""
+        """Say whether the memory has views.
+
+        Returns
+        -------
+        bool
+            True if a view was taught.
+        """
         from deixis.memory.perceptual.in_folder import has_views
 
         return self._memory.is_open or has_views(self.path)
 
     def memory(self, create: bool = False) -> LevelMemory:
-        """Return the open perceptual memory; raise DeixisError where there is no memory and ``create`` is False."""
+        """Return the open perceptual memory.
+
+        Parameters
+        ----------
+        create
+            True to make a memory where there is none.
+
+        Returns
+        -------
+        LevelMemory
+            The store, open until the session ends.
+
+        Raises
+        ------
+        DeixisError
+            If there is no memory and ``create`` is False.
+        """
         return self._memory.get(create)
 
     def category_meant(self, name: str) -> str:
-        """Return the known category with this name, else the first that differs only in case, else the name itself."""
+        """Return the known category that a name stands for.
+
+        Parameters
+        ----------
+        name
+            A name, in any case.
+
+        Returns
+        -------
+        str
+            The category with this name, else the first that differs only in case, else the name itself.
+        """
         from deixis.grammar.names import key_of
 
         if not self.exists():
@@ -67,10 +100,22 @@ class ViewStore(Closing):
     def keeping(
         self, views: Sequence[View], lessons: Mapping[str, str] | None = None
     ) -> tuple[WriteBatch, tuple[Taught, ...]]:
-        """Return the change that stores views, and what each taught; ``lessons`` maps the id of a view to its lesson.
+        """Return the change that stores views, and what each taught.
 
         Damaged stored views teach nothing; one that is stored again is repaired. Call this, and write the change, while
         ``memory(create=True).exclusive()`` is held.
+
+        Parameters
+        ----------
+        views
+            The views, each with its category.
+        lessons
+            Id of the lesson by the id of the view, for views that a lesson teaches.
+
+        Returns
+        -------
+        tuple
+            The change, and what each view taught.
         """
         from deixis.learning.views import batch_of
 
@@ -81,25 +126,47 @@ class ViewStore(Closing):
         return self._despite_damage(self.memory(create=True), change)
 
     def except_taught(self, views: Sequence[View]) -> tuple[list[View], tuple[KeptName, ...]]:
-        """Return the views of a grounding that no teacher has named, and the things that a teacher named otherwise."""
+        """Return the views of a grounding that no teacher has named, and the things that a teacher named otherwise.
+
+        Parameters
+        ----------
+        views
+            Views of a grounding, each with the category of its match.
+
+        Returns
+        -------
+        tuple
+            Views to keep, and the names that stay as taught.
+        """
         from deixis.learning.views import KeptName, taught_by_hand
 
         named = taught_by_hand(self.memory(), views) if self.exists() else {}
-        standing = []
+        kept = []
         for view in views:
             taught = named.get(view.id)
             if taught is not None and taught.category != view.category:
                 thing, teacher = (str(taught.metadata.get(key, "?")) for key in ("object", "teacher"))
-                standing.append(KeptName(thing, taught.category, teacher, view.category))
-        return [view for view in views if view.id not in named], tuple(standing)
+                kept.append(KeptName(thing, taught.category, teacher, view.category))
+        return [view for view in views if view.id not in named], tuple(kept)
 
     def known(
         self, frame: str, progress: Progress | None = None, left_out: Callable[[str], None] | None = None
     ) -> Known:
         """Return the recogniser of the taught categories in a frame; it knows nothing where nothing was taught.
 
-        ``progress`` is called while views are read and calibrated, which takes seconds for many views. ``left_out`` is
-        called with a line about damaged views, which teach nothing.
+        Parameters
+        ----------
+        frame
+            Name of the frame of the views.
+        progress
+            Called while views are read and calibrated, which takes seconds for many views.
+        left_out
+            Called with a line about damaged views, which teach nothing.
+
+        Returns
+        -------
+        Known
+            The recogniser.
         """
         from deixis.learning.views import nothing_known, recogniser_of
 
@@ -125,7 +192,18 @@ class ViewStore(Closing):
             return done
 
     def categories(self, left_out: Callable[[str], None] | None = None) -> dict[str, int]:
-        """Return the number of views of each taught category; ``left_out`` is as in :meth:`known`."""
+        """Return the number of views of each taught category.
+
+        Parameters
+        ----------
+        left_out
+            Called with a line about damaged views, which are not counted.
+
+        Returns
+        -------
+        dict
+            Number of views by the name of the category.
+        """
         if not self.exists():
             return {}
         return self._despite_damage(self.memory(), _counted, left_out)
@@ -144,7 +222,22 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     """Return a view of each decided thing that has a cloud in the scene, under the name of its object.
 
-    Raises SceneError where two things have the same points.
+    Parameters
+    ----------
+    scene
+        The scene.
+    matches
+        Matches of a grounding.
+
+    Returns
+    -------
+    list of View
+        The views, in the order of the matches.
+
+    Raises
+    ------
+    SceneError
+        If two things have the same points.
     """
     from deixis.learning.views import GROUNDING
 
@@ -161,7 +254,29 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
 
 def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> View:
-    """Return a view of a thing of a scene, ready to be stored; raise SceneError where the scene has no points of it."""
+    """Return a view of a thing of a scene, ready to be stored.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    object_id
+        Id of the thing.
+    category
+        Name of the category.
+    teacher
+        Name of the person who named it.
+
+    Returns
+    -------
+    View
+        The view, with its descriptors.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no points of the thing.
+    """
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
@@ -173,7 +288,20 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
 def category_name(text: str) -> str:
     """Return the name of a category as scripts write it, such as ``dinner_fork`` for ``dinner fork``.
 
-    Raises SettingError for an empty name.
+    Parameters
+    ----------
+    text
+        A name.
+
+    Returns
+    -------
+    str
+        The name with underscores.
+
+    Raises
+    ------
+    SettingError
+        If the name is empty.
     """
     from deixis.reasoning.errors import SettingError
 
@@ -188,7 +316,20 @@ def category_name(text: str) -> str:
 def new_category_name(text: str) -> str:
     """Return the name of a category to teach, as :func:`category_name` writes it.
 
-    Raises SettingError also for a name that no scene can have as a label, and for the label of unknown things.
+    Parameters
+    ----------
+    text
+        A name.
+
+    Returns
+    -------
+    str
+        The name with underscores.
+
+    Raises
+    ------
+    SettingError
+        If the name is empty, if no scene can have it as a label, or if it is the label of unknown things.
     """
     from deixis.reasoning.errors import SettingError
 

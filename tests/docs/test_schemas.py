@@ -3,38 +3,92 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from pathlib import Path
 from typing import Any
 
 import pytest
 from commands import deixis as deixis_command
+from documentation.command_reference import commands, options
+from schemas import SCHEMAS, contents, errors_in
 from source_tree import ROOT
 
 import deixis
 
 jsonschema = pytest.importorskip("jsonschema")
-referencing = pytest.importorskip("referencing")
 
-SCHEMAS = {path.name.removesuffix(".schema.json"): path for path in sorted((ROOT / "docs" / "schema").glob("*.json"))}
 EXAMPLES = ROOT / "examples"
+PAGE = ROOT / "docs" / "reference" / "json.md"
+RUN_ELSEWHERE = {"experiment figure6", "experiment scoreboard", "experiment open-ended"}
+"""Commands whose answers the tests of the experiments validate, since running them takes long."""
+
+CASES = [
+    ("categories", "category list"),
+    ("check", "check {e}/formal_dinner.layout {e}/second_table.scene.json"),
+    ("check", "check formal_dinner {t}/table.scene.json"),
+    ("formatted", "fmt {e}/script1.layout"),
+    ("grounding", "ground {e}/script1.layout {e}/place_setting.scene.json --no-sizes"),
+    ("habits", "habits {t}/room.habits sandals 'wooden block'"),
+    ("imagination", "imagine {e}/script2.layout"),
+    ("inference", "infer {e}/script1.layout"),
+    ("inference", "infer {e}/contradiction.layout"),
+    ("inference", "infer {e}/script1.layout --verdict"),
+    ("explanation", "infer {t}/tea.layout --explain 'left(fork, knife)'"),
+    ("explanation", "infer {t}/tea.layout --explain 'above(fork, knife)'"),
+    ("why_not", "infer {t}/tea.layout --why-not 'left(fork, knife)'"),
+    ("why_not", "infer {t}/tea.layout --why-not 'right(fork, knife)'"),
+    ("why_not", "infer {t}/tea.layout --why-not 'above(fork, knife)'"),
+    ("learned", "learn {e}/formal_dinner.layout {e}/place_setting.scene.json --memory {t}/other"),
+    (
+        "learned",
+        "learn {e}/script1.layout {t}/table.scene.json {e}/script2.layout {t}/table.scene.json --memory {t}/other",
+    ),
+    ("learned_relations", "learn-relation -o {t}/models.ttl"),
+    ("learned_relations", "learn-relation --reset --memory {t}/other"),
+    ("learned_relations", "learn-relation --descriptions {t}/said.jsonl -o {t}/weights.json"),
+    ("lint", "lint {e}/contradiction.layout"),
+    ("memory_stats", "memory stats"),
+    ("memory_stats", "memory stats --memory {t}/other"),
+    ("memory_verified", "memory verify"),
+    ("query", "query 'SELECT ?s ?o WHERE {{ ?s a ?o }} LIMIT 5'"),
+    ("query", "query 'ASK {{ ?s ?p 1 }}'"),
+    ("query", "query 'DESCRIBE dx:left'"),
+    ("reading", "read {t}/desk.txt"),
+    ("reason", "reason {t}/kinds.ttl --engine rl"),
+    ("reason", "reason {t}/kinds.ttl --engine rl --explain ':f a :C'"),
+    ("reason", "reason {t}/kinds.ttl --engine rl --explain ':f a :C' --all"),
+    ("recognised", "recognise {t}/table.scene.json"),
+    ("reference", "refer 'the chair' {e}/study.scene.json"),
+    ("reference", "refer 'the bin' {e}/study.scene.json --oracle o14"),
+    ("telling", "tell {e}/formal_dinner.layout"),
+    ("telling", "tell {e}/second_table.scene.json"),
+    ("relate", "relate {e}/place_setting.scene.json --calculus ra"),
+    ("relate", "relate {e}/place_setting.scene.json --of o1 --of o2"),
+    ("relation", "relation left"),
+    ("relation", "relation near"),
+    ("retrieval", "retrieve {e}/place_setting.scene.json"),
+    ("scene", "perceive {t}/table.pcd"),
+    ("script", "parse {e}/formal_dinner.layout"),
+    ("layout", "show formal_dinner"),
+    ("simulation", "simulate {e}/script1.layout --seed 7"),
+    ("solve", "solve {e}/place_setting.csp --calculus ra --scenario"),
+    ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
+    ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
+    ("taught", "teach {t}/table.scene.json o1 napkin"),
+    ("time", "time {e}/serving.fluents.json"),
+    ("time", "time {e}/serving.fluents.json --at 25"),
+    ("time", "time {e}/serving.fluents.json --relate fetch served"),
+    ("time", "time {e}/serving.fluents.json --explain fetch.start served.start"),
+    ("time", "time {t}/wrong.fluents.json"),
+    ("validation", "validate"),
+    ("validation", "validate {t}/wrong.ttl"),
+]
+"""Schema and command line of each validated answer; ``{e}`` is the folder of examples, ``{t}`` that of `home`."""
 
 
-def contents(name: str) -> dict[str, Any]:
-    loaded: dict[str, Any] = json.loads(SCHEMAS[name].read_text(encoding="utf-8"))
-    return loaded
-
-
-def validator(name: str) -> Any:
-    registry = referencing.Registry().with_resources(
-        (contents(other)["$id"], referencing.Resource.from_contents(contents(other))) for other in SCHEMAS
-    )
-    return jsonschema.Draft202012Validator(contents(name), registry=registry)
-
-
-def errors(name: str, answer: deixis.Scene | Any) -> list[str]:
-    data = json.loads(answer.to_json())
-    return [f"{error.json_path}: {error.message}" for error in validator(name).iter_errors(data)]
+def errors(name: str, answer: Any) -> list[str]:
+    return errors_in(name, json.loads(answer.to_json()))
 
 
 @pytest.fixture(scope="module")
@@ -42,11 +96,84 @@ def scene() -> deixis.Scene:
     return deixis.read_scene(EXAMPLES / "place_setting.scene.json")
 
 
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with a cloud, the scene perceived in it, a memory that learned from it, and small files."""
+    pytest.importorskip("open3d")
+    folder = tmp_path_factory.mktemp("home")
+    script = EXAMPLES / "formal_dinner.layout"
+    deixis_command("simulate", script, "--seed", 7, "-o", folder / "table.pcd")
+    deixis_command("perceive", folder / "table.pcd", "-o", folder / "table.scene.json")
+    deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
+    prefixes = "@prefix : <http://e/> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> ."
+    fluent = {"id": "a", "statement": ["cup", "full"], "start": [0, 1], "finish": [5, 6]}
+    too_short = {"from": "a.start", "to": "a.finish", "bounds": [1, 2]}
+    files = {
+        "said.jsonl": json.dumps({"text": "the bin", "scene": str(EXAMPLES / "study.scene.json"), "target": "o14"}),
+        "tea.layout": "layout tea\nfork left of plate\nplate left of knife\n",
+        "desk.txt": "On the desk are two cups, each on its saucer. The red pen was on the pad. A lamp is in a corner.",
+        "room.habits": "sneakers: rack\nboots: rack\nsweater: chair\nshorts: chair\n",
+        "wrong.fluents.json": json.dumps({"origin": "noon", "fluents": [fluent], "relations": [too_short]}),
+        "kinds.ttl": f"{prefixes} :F rdfs:subClassOf :C . :f a :F .",
+        "wrong.ttl": f"{prefixes} @prefix dx: <https://w3id.org/deixis#> . :x a dx:Role .",
+    }
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
 @pytest.mark.parametrize("name", SCHEMAS)
 def test_a_schema_is_valid_and_named_by_its_file(name: str) -> None:
     jsonschema.Draft202012Validator.check_schema(contents(name))
     assert contents(name)["$id"] == f"https://w3id.org/deixis/schema/{name}.schema.json"
     assert contents(name)["title"]
+
+
+@pytest.mark.parametrize(("name", "command"), CASES, ids=[f"{name}{at}" for at, (name, _) in enumerate(CASES)])
+def test_commands_print_answers_of_their_schema(
+    name: str, command: str, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DEIXIS_MEMORY", str(home / "memory"))
+    code, out, err = deixis_command(*shlex.split(command.format(e=EXAMPLES, t=home)), "--json")
+    assert out and code != 2, err
+    assert errors_in(name, json.loads(out)) == []
+
+
+def _listed() -> dict[str, set[str]]:
+    """Return the schemas of each command, as the table on the page of JSON answers has them."""
+    section = PAGE.read_text(encoding="utf-8").partition("## Schemas\n")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| `([a-z0-9 -]+)` +\| (.*?) +\|$", section, flags=re.MULTILINE)
+    return {command: set(re.findall(r"`(\w+)`", schemas)) - {"reference_line"} for command, schemas in rows}
+
+
+def test_every_command_with_json_has_a_schema_on_the_page() -> None:
+    known = {
+        context.command_path.removeprefix("deixis ")
+        for command, context in commands()
+        if "--json" in options(command, context)
+    }
+    assert known and _listed().keys() == known
+    assert set().union(*_listed().values()) | {"fact", "claim", "reference_line"} == SCHEMAS.keys()
+
+
+def test_answers_of_every_command_are_validated() -> None:
+    ran = {
+        command: {name for name, line in CASES if line == command or line.startswith(f"{command} ")}
+        for command in _listed()
+    }
+    expected = {command: set() if command in RUN_ELSEWHERE else schemas for command, schemas in _listed().items()}
+    assert ran == expected
+
+
+def test_lines_of_a_batch_have_their_schema(tmp_path: Path) -> None:
+    study = str(EXAMPLES / "study.scene.json")
+    lines = [{"text": "the bin", "scene": study}, {"text": "the bin", "scene": "none"}, {}]
+    file = tmp_path / "texts.jsonl"
+    file.write_text("\n".join(map(json.dumps, lines)), encoding="utf-8")
+    code, out, _ = deixis_command("refer", "--batch", file)
+    answers = [json.loads(line) for line in out.splitlines()]
+    assert (code, ["error" in answer for answer in answers]) == (0, [False, True, True])
+    assert [errors_in("reference_line", answer) for answer in answers] == [[], [], []]
 
 
 @pytest.mark.parametrize("script", ["formal_dinner", "script1", "script2", "contradiction"])
@@ -59,8 +186,8 @@ def test_scripts_and_what_follows_have_their_schema(script: str) -> None:
 
 @pytest.mark.parametrize(
     "options",
-    [{}, {"sizes": False}, {"engine": "similarity"}, {"viewpoint": "quarter"}, {"ask": {"napkin": "o2"}}],
-    ids=["default", "words", "similarity", "viewpoint", "questions"],
+    [{}, {"engine": "similarity"}, {"viewpoint": "quarter"}, {"ask": {"napkin": "o2"}}],
+    ids=["default", "similarity", "viewpoint", "questions"],
 )
 def test_groundings_have_their_schema(scene: deixis.Scene, options: dict[str, Any]) -> None:
     assert errors("grounding", deixis.ground(EXAMPLES / "script1.layout", scene, **options)) == []
@@ -84,82 +211,9 @@ def test_checks_and_retrievals_have_their_schema(scene: deixis.Scene) -> None:
 @pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.scene.json")), ids=lambda path: path.name)
 def test_scenes_have_their_schema(file: Path) -> None:
     assert errors("scene", deixis.read_scene(file)) == []
-    assert list(validator("scene").iter_errors(json.loads(file.read_text(encoding="utf-8")))) == []
-
-
-def test_what_is_seen_and_learned_has_its_schema(tmp_path: Path) -> None:
-    pytest.importorskip("open3d")
-    from deixis.report.json_answers import learned_to_dict
-
-    script = deixis.read_script(EXAMPLES / "formal_dinner.layout")
-    seen = deixis.perceive(deixis.simulate(script, seed=7).cloud)
-    assert errors("scene", seen) == []
-    with deixis.Session(tmp_path / "memory") as session:
-        learned = json.loads(json.dumps(learned_to_dict(session.learn(script, seen))))
-        assert list(validator("learned").iter_errors(learned)) == []
-        assert errors("recognised", session.recognise(seen)) == []
-        for sparql in ("SELECT ?s ?o WHERE { ?s a ?o } LIMIT 5", "ASK { ?s ?p 1 }"):
-            assert errors("query", session.query(sparql)) == []
-
-
-def test_a_text_in_english_has_its_schema() -> None:
-    from deixis.report.read import reading_to_dict
-
-    text = "On the desk there are two cups, each on its saucer. The red pen was on the pad. A lamp is in a corner."
-    read = reading_to_dict(deixis.read_script(text=text, english=True))
-    assert list(validator("reading").iter_errors(json.loads(json.dumps(read)))) == []
-
-
-@pytest.mark.parametrize("told", ["formal_dinner.layout", "second_table.scene.json"])
-def test_what_is_told_has_its_schema(told: str) -> None:
-    assert errors("telling", deixis.tell(EXAMPLES / told)) == []
-
-
-@pytest.mark.parametrize(
-    ("name", "command"),
-    [
-        ("formatted", "fmt {e}/script1.layout"),
-        ("relate", "relate {e}/place_setting.scene.json --calculus ra"),
-        ("relate", "relate {e}/place_setting.scene.json --of o1 --of o2"),
-        ("relation", "relation left"),
-        ("relation", "relation near"),
-        ("simulation", "simulate {e}/script1.layout --seed 7"),
-        ("solve", "solve {e}/place_setting.csp --calculus ra --scenario"),
-        ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
-        ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
-        ("time", "time {e}/serving.fluents.json"),
-        ("time", "time {e}/serving.fluents.json --at 25"),
-        ("time", "time {e}/serving.fluents.json --relate fetch served"),
-        ("time", "time {e}/serving.fluents.json --explain fetch.start served.start"),
-    ],
-)
-def test_commands_print_answers_of_their_schema(name: str, command: str) -> None:
-    _, out, err = deixis_command(*shlex.split(command.format(e=EXAMPLES)), "--json")
-    assert out, err
-    assert [error.message for error in validator(name).iter_errors(json.loads(out))] == []
-
-
-def test_conflicts_in_time_have_their_schema(tmp_path: Path) -> None:
-    fluent = {"id": "a", "statement": ["cup", "full"], "start": [0, 1], "finish": [5, 6]}
-    file = tmp_path / "wrong.fluents.json"
-    too_short = {"from": "a.start", "to": "a.finish", "bounds": [1, 2]}
-    content = {"origin": "noon", "fluents": [fluent], "relations": [too_short]}
-    file.write_text(json.dumps(content), encoding="utf-8")
-    code, out, _ = deixis_command("time", file, "--json")
-    assert code == 1
-    assert [error.message for error in validator("time").iter_errors(json.loads(out))] == []
-
-
-def test_what_an_ontology_entails_has_its_schema(tmp_path: Path) -> None:
-    prefixes = "@prefix : <http://e/> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> ."
-    file = tmp_path / "kinds.ttl"
-    file.write_text(f"{prefixes} :F rdfs:subClassOf :C . :f a :F .", encoding="utf-8")
-    for options in ([], ["--explain", ":f a :C"], ["--explain", ":f a :C", "--all"]):
-        _, out, err = deixis_command("reason", file, "--engine", "rl", *options, "--json")
-        assert out, err
-        assert [error.message for error in validator("reason").iter_errors(json.loads(out))] == []
+    assert errors_in("scene", json.loads(file.read_text(encoding="utf-8"))) == []
 
 
 def test_an_answer_with_another_key_is_refused() -> None:
     data = deixis.read_script(text="fork left of plate").to_dict() | {"colour": "red"}
-    assert list(validator("script").iter_errors(data))
+    assert errors_in("script", data)

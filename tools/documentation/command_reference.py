@@ -23,22 +23,42 @@ def command_reference() -> str:
     >>> "## deixis ground" in text and "### deixis memory export" in text
     True
     """
+    return "\n".join(_sections())
+
+
+def commands() -> Iterator[tuple[Any, Any]]:
+    """Yield each command and group of commands with its context, in the order of ``deixis --help``.
+
+    Examples
+    --------
+    >>> [context.command_path for _, context in commands()][:2]
+    ['deixis read', 'deixis parse']
+    """
+
+    def below(group: Any, context: Any) -> Iterator[tuple[Any, Any]]:
+        for name in group.list_commands(context):
+            command = group.get_command(context, name)
+            inner = type(context)(command, info_name=name, parent=context)
+            yield command, inner
+            if hasattr(command, "list_commands"):
+                yield from below(command, inner)
+
     root = typer.main.get_command(app)
-    context = root.make_context("deixis", [], resilient_parsing=True)
-    return "\n".join(_sections(root, context, level=2))
+    yield from below(root, root.make_context("deixis", [], resilient_parsing=True))
 
 
-def _sections(group: Any, context: Any, level: int) -> Iterator[str]:
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        inner = type(context)(command, info_name=name, parent=context)
-        yield f"{'#' * level} {inner.command_path}\n"
+def options(command: Any, context: Any) -> set[str]:
+    """Return the names of the options of a command, such as ``--json``."""
+    return {name for parameter in command.get_params(context) for name in parameter.opts if name.startswith("-")}
+
+
+def _sections() -> Iterator[str]:
+    for command, context in commands():
+        yield f"{'#' * len(context.command_path.split())} {context.command_path}\n"
         yield plain(command.help or "") + "\n"
-        if hasattr(command, "list_commands"):
-            yield from _sections(command, inner, level + 1)
-        else:
-            yield f"```text\n{usage(command, inner)}\n```\n"
-            yield from _parameters(command, inner)
+        if not hasattr(command, "list_commands"):
+            yield f"```text\n{usage(command, context)}\n```\n"
+            yield from _parameters(command, context)
 
 
 def usage(command: Any, context: Any) -> str:

@@ -59,7 +59,13 @@ class QueryLimits:
         return self.memory // ANSWER_SHARE
 
     def too_large(self) -> QueryMemoryError:
-        """Return the error for an answer that is too large."""
+        """Return the error for an answer that is too large.
+
+        Returns
+        -------
+        QueryMemoryError
+            The error, which is not raised.
+        """
         return QueryMemoryError(
             f"query: the answer is larger than {in_words(self.answer)}, the share of the memory limit that an answer "
             "may take; ask for less with LIMIT, or raise the limit"
@@ -67,5 +73,16 @@ class QueryLimits:
 
 
 def in_words(size: int) -> str:
-    """Return a number of bytes as text for a message."""
+    """Return a number of bytes as text for a message.
+
+    Parameters
+    ----------
+    size
+        Number of bytes.
+
+    Returns
+    -------
+    str
+        Number and unit.
+    """
     return f"{size / 2**20:,.0f} MiB" if size >= 2**20 else f"{size:,} bytes"

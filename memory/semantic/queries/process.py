@@ -52,16 +52,49 @@ class QueryProcess:
         return self.end.alive and self._process.poll() is None
 
     def open(self, path: Path, deadline: Deadline) -> None:
-        """Open a store instead of the open one. Raises MemoryWriteError where it cannot be read."""
+        """Open a store instead of the open one.
+
+        Parameters
+        ----------
+        path
+            The store.
+        deadline
+            Time limit.
+
+        Raises
+        ------
+        MemoryWriteError
+            If it cannot be read.
+        """
         kind, content = self._answer({"open": str(path)}, deadline, QueryLimits())
         if kind != worker.READY:
             raise MemoryWriteError(f"{path}: cannot be opened for queries: {content.decode()}")
 
     def ask(self, request: Mapping[str, Any], limits: QueryLimits, deadline: Deadline) -> tuple[bytes, bytes]:
-        """Return the kind of an answer, as defined in :mod:`.worker`, and its bytes.
+        """Answer a query in the process.
 
-        Raises QueryTimeoutError and QueryMemoryError where a limit is reached, QueryError where the query ended the
-        process. After each of these, and after Ctrl-C, the process is gone.
+        After an error, and after Ctrl-C, the process is gone.
+
+        Parameters
+        ----------
+        request
+            The query with its graphs and bindings.
+        limits
+            Limits of time and memory.
+        deadline
+            Time limit, with the time for waiting.
+
+        Returns
+        -------
+        tuple
+            Kind of the answer, as defined in :mod:`.worker`, and its bytes.
+
+        Raises
+        ------
+        QueryTimeoutError, QueryMemoryError
+            If a limit is reached.
+        QueryError
+            If the query ended the process.
         """
         bounds = {"memory": limits.memory, "largest": limits.answer}
         kind, content = self._answer({**request, **bounds}, deadline, limits)
@@ -149,7 +182,18 @@ os.register_at_fork(after_in_child=_forget_after_fork)
 
 
 def time_error(limits: QueryLimits) -> QueryTimeoutError:
-    """Return the error for a query that reached its time limit."""
+    """Return the error for a query that reached its time limit.
+
+    Parameters
+    ----------
+    limits
+        The limits.
+
+    Returns
+    -------
+    QueryTimeoutError
+        The error, which is not raised.
+    """
     return QueryTimeoutError(
         f"query: not answered within the time limit of {limits.time:g} s; narrow it down, or give it more time"
     )

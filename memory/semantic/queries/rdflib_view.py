@@ -22,6 +22,18 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
     """Return a view of a store's canonical graphs, without the copies that record contributions.
 
     ``answering`` answers its queries, within the default limits.
+
+    Parameters
+    ----------
+    store
+        The store.
+    answering
+        Function that answers queries, within the default limits.
+
+    Returns
+    -------
+    rdflib.Dataset
+        A read-only dataset.
     """
     import rdflib
     from oxrdflib import OxigraphStore

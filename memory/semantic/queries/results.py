@@ -76,7 +76,13 @@ class Row(tuple[Term | None, ...]):
             raise KeyError(f"the query selects no variable '{key}'; it selects {known}") from None
 
     def asdict(self) -> dict[str, Term | None]:
-        """Return the terms by the names of their variables."""
+        """Return the terms by the names of their variables.
+
+        Returns
+        -------
+        dict
+            Term by name; None for a variable without a value.
+        """
         return dict(zip(self.variables, self, strict=True))
 
 
@@ -94,6 +100,7 @@ class QueryResult(Answer):
     boolean: bool | None = None
     triples: tuple[ox.Triple, ...] = ()
     ordered: bool = False  # True if the query has ORDER BY
+    notes: tuple[str, ...] = ()  # on what the answer may lack
 
     def summary(self) -> str:
         """Return the kind of the answer, and its number of rows or triples."""
@@ -110,7 +117,29 @@ class QueryResult(Answer):
 
     @classmethod
     def of(cls, kind: QueryKind, answer: StoreAnswer, ordered: bool, limits: QueryLimits) -> QueryResult:
-        """Return Oxigraph's answer, read completely; raise QueryMemoryError where it is too large."""
+        """Read Oxigraph's answer to the end.
+
+        Parameters
+        ----------
+        kind
+            Form of the query, such as SELECT.
+        answer
+            The answer of the store.
+        ordered
+            True if the query orders its rows; others are sorted for printing.
+        limits
+            Limits of time and memory.
+
+        Returns
+        -------
+        QueryResult
+            The answer, independent of the store.
+
+        Raises
+        ------
+        QueryMemoryError
+            If the answer is larger than the limit.
+        """
         if isinstance(answer, ox.QueryBoolean):
             return cls(kind, boolean=bool(answer))
         if isinstance(answer, ox.QuerySolutions):
@@ -120,11 +149,23 @@ class QueryResult(Answer):
         return cls(kind, triples=tuple(sorted(set(answer), key=str)))
 
     def printed(self) -> Sequence[Sequence[Term | None]]:
-        """Return the rows in the order in which they are printed."""
+        """Return the rows in the order in which they are printed.
+
+        Returns
+        -------
+        sequence of sequence of Term or None
+            One row for each solution: a term, or None for an unbound variable, in the order of the variables.
+        """
         return self.rows if self.ordered else sorted(self.rows, key=_row_key)
 
     def to_table(self) -> list[str]:
-        """Return lines of aligned plain text, with IRIs abbreviated by known prefixes."""
+        """Return the answer as aligned plain text.
+
+        Returns
+        -------
+        list of str
+            The lines, with IRIs abbreviated by known prefixes.
+        """
         if self.kind is QueryKind.ASK:
             return ["yes" if self.boolean else "no"]
         if self.kind is not QueryKind.SELECT:
@@ -137,28 +178,56 @@ class QueryResult(Answer):
         ]
 
     def to_json(self, indent: int | None = 2) -> str:
-        """Return SPARQL 1.1 results as JSON; for a graph, its triples in N-Triples."""
+        """Return SPARQL 1.1 results as JSON; for a graph, its triples in N-Triples.
+
+        Parameters
+        ----------
+        indent
+            Number of spaces for each level; None gives one line.
+
+        Returns
+        -------
+        str
+            The text.
+        """
         text = "".join(self.json_parts())
         return text if indent == 2 else json.dumps(json.loads(text), indent=indent, ensure_ascii=False)
 
     def json_parts(self) -> Iterator[str]:
-        """Yield the text of :meth:`to_json` in parts, a row each, so that a large answer is not held twice."""
+        """Yield the text of :meth:`to_json` in parts, so that a large answer is not held twice.
+
+        Yields
+        ------
+        str
+            A part of the text: the head, a row, or the end.
+        """
+        notes = f',\n  "notes": {_indented(list(self.notes), 2)}' if self.notes else ""
         if self.kind is QueryKind.ASK:
-            yield json.dumps({"head": {}, "boolean": self.boolean}, indent=2)
+            yield f'{{\n  "head": {{}},\n  "boolean": {json.dumps(self.boolean)}{notes}\n}}'
         elif self.kind is QueryKind.SELECT:
             head = _indented({"vars": list(self.variables)}, 2)
             yield f'{{\n  "head": {head},\n  "results": {{\n    "bindings": '
             yield from _json_list((_binding(self.variables, row) for row in self.printed()), 6)
-            yield "\n  }\n}"
+            yield f"\n  }}{notes}\n}}"
         else:
             yield '{\n  "triples": '
             yield from _json_list((f"{triple} ." for triple in self.triples), 4)
-            yield "\n}"
+            yield f"{notes}\n}}"
 
     def to_csv(self) -> str:
-        """Return SPARQL 1.1 results as CSV. Raises QueryError for an answer without rows.
+        """Return SPARQL 1.1 results as CSV.
 
         A cell that a spreadsheet would run as a formula begins with ``'``; numbers stay as they are.
+
+        Returns
+        -------
+        str
+            The text, with a header line of variables.
+
+        Raises
+        ------
+        QueryError
+            If the answer has no rows.
         """
         if self.kind is not QueryKind.SELECT:
             raise QueryError(f"the answer of {self.kind.upper()} has no rows to write as CSV; use SELECT")
@@ -169,7 +238,18 @@ class QueryResult(Answer):
         return out.getvalue()
 
     def to_turtle(self) -> str:
-        """Return the triples in Turtle. Raises QueryError for an answer without triples."""
+        """Return the triples in Turtle.
+
+        Returns
+        -------
+        str
+            The text, with the prefixes that it uses.
+
+        Raises
+        ------
+        QueryError
+            If the answer has no triples.
+        """
         if self.kind not in (QueryKind.CONSTRUCT, QueryKind.DESCRIBE):
             raise QueryError(
                 f"the answer of {self.kind.upper()} has no triples to write as Turtle; use CONSTRUCT or DESCRIBE"
@@ -179,15 +259,45 @@ class QueryResult(Answer):
 
 
 def solutions(variables: Sequence[str], rows: Sequence[Sequence[Term | None]]) -> dict[str, Any]:
-    """Return rows as SPARQL 1.1 results in JSON; None is a variable without a value."""
+    """Return rows as SPARQL 1.1 results in JSON.
+
+    Parameters
+    ----------
+    variables
+        Names of the variables.
+    rows
+        Terms of each row; None is a variable without a value.
+
+    Returns
+    -------
+    dict
+        Parsed JSON.
+    """
     bindings = [_binding(variables, row) for row in rows]
     return {"head": {"vars": list(variables)}, "results": {"bindings": bindings}}
 
 
 def rows_within(answer: ox.QuerySolutions, limits: QueryLimits) -> Iterator[tuple[Term | None, ...]]:
-    """Yield rows within the limit of an answer; raise QueryMemoryError where they exceed it.
+    """Yield rows within the limit of an answer.
 
     The text of an answer is limited where it is written, but rows without values have nearly no text.
+
+    Parameters
+    ----------
+    answer
+        The rows.
+    limits
+        Limits of time and memory.
+
+    Yields
+    ------
+    tuple of Term or None
+        Terms of a row.
+
+    Raises
+    ------
+    QueryMemoryError
+        If the rows exceed the limit.
     """
     left, row_bytes = limits.answer, ROW_BYTES + CELL_BYTES * len(answer.variables)
     for row in answer:

@@ -37,7 +37,22 @@ class SnapshotQueries(Closing):
         self._process: QueryProcess | None = None
 
     def ask(self, store: ox.Store, request: Mapping[str, Any], limits: QueryLimits) -> tuple[bytes, bytes]:
-        """Return an answer as :meth:`QueryProcess.ask` does; the time limit includes waiting for other threads."""
+        """Answer a query from a snapshot, as :meth:`QueryProcess.ask` does.
+
+        Parameters
+        ----------
+        store
+            The store, a snapshot of which is made if it has changed.
+        request
+            The query with its graphs and bindings.
+        limits
+            Limits of time and memory; the time includes waiting for other threads.
+
+        Returns
+        -------
+        tuple
+            Kind of the answer, and its bytes.
+        """
         deadline = Deadline.after(limits.time)
         if not self._turn.acquire(timeout=min(limits.time, threading.TIMEOUT_MAX)):
             raise time_error(limits)

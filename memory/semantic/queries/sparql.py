@@ -27,12 +27,16 @@ from deixis.memory.semantic.queries.tokens import (
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import CANONICAL, GraphName, graph_iri
 from deixis.ontology.relation import nearest
-from deixis.ontology.vocabulary import BASE
+from deixis.ontology.triples import typed
+from deixis.ontology.vocabulary import BASE, DX
 from deixis.printable import window
 
 _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}
 _FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}
 _PROLOGUE = {"PREFIX", "BASE"}
+
+MAX_NAMED = 3
+"""Maximum number of layouts that a note names."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +80,30 @@ Answering = Callable[[Mapping[str, Any], QueryLimits], tuple[bytes, bytes]]
 
 
 def run_query(answering: Answering, sparql: str, union: Sequence[ox.NamedNode], limits: QueryLimits) -> QueryResult:
-    """Return the answer of a query; ``union`` are the graphs that it reads unless it names others.
+    """Return the answer of a query.
 
-    Raises QueryError for a refused or malformed query, QueryTimeoutError and QueryMemoryError where it reaches a limit.
+    Parameters
+    ----------
+    answering
+        Function that answers requests.
+    sparql
+        Text of the query.
+    union
+        Graphs that it reads unless it names others.
+    limits
+        Limits of time and memory.
+
+    Returns
+    -------
+    QueryResult
+        The answer, read to the end.
+
+    Raises
+    ------
+    QueryError
+        If the query is refused or malformed.
+    QueryTimeoutError, QueryMemoryError
+        If a limit is reached.
     """
     checked = _admitted(sparql)
     default = None if checked.names_graphs else [graph.value for graph in union]
@@ -99,8 +124,27 @@ def answer(
 ) -> StoreAnswer:
     """Return Oxigraph's answer to a checked query; raise as :func:`run_query`.
 
-    ``default_graph`` and ``named_graphs`` are IRIs, or None for those in the query; ``bindings`` are values of
-    variables.
+    Parameters
+    ----------
+    answering
+        Function that answers requests.
+    sparql
+        Text of the query as given, for messages.
+    checked
+        The checked query.
+    prefixes
+        Predeclared prefixes.
+    default_graph, named_graphs
+        IRIs of graphs, or None for those in the query.
+    bindings
+        Values of variables.
+    limits
+        Limits of time and memory.
+
+    Returns
+    -------
+    StoreAnswer
+        Solutions, a boolean, or triples.
     """
     request = {
         "text": checked.text,
@@ -128,10 +172,27 @@ def _admitted(sparql: str) -> CheckedQuery:
 
 
 def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQuery:
-    """Return the properties of a query without running it; ``prefixes`` are predeclared.
+    """Return the properties of a query without running it.
 
-    Raises QueryError for a refused query.
+    Parameters
+    ----------
+    sparql
+        Text of the query.
+    prefixes
+        Predeclared prefixes.
 
+    Returns
+    -------
+    CheckedQuery
+        The properties.
+
+    Raises
+    ------
+    QueryError
+        If the query is refused.
+
+    Examples
+    --------
     >>> check_query("ASK { ?s ?p ?o }").kind
     <QueryKind.ASK: 'ask'>
     """
@@ -204,7 +265,20 @@ def _vocabulary_terms(found: list[Token], known: Mapping[str, str]) -> tuple[tup
 
 
 def require_terms(store: ox.Store, sparql: str) -> None:
-    """Raise QueryError, with the nearest term, if a query names a term that neither vocabulary nor memory has."""
+    """Raise QueryError if a query names a term that neither vocabulary nor memory has.
+
+    Parameters
+    ----------
+    store
+        The memory.
+    sparql
+        An admitted query.
+
+    Raises
+    ------
+    QueryError
+        If it does; the message suggests the nearest term.
+    """
     for iri, place in _admitted(sparql).terms:
         term = ox.NamedNode(iri)
         uses = (
@@ -221,6 +295,40 @@ def require_terms(store: ox.Store, sparql: str) -> None:
         near = next((one for one in sorted(names) if one.casefold() == name.casefold()), None) or nearest(name, names)
         hint = f"; did you mean 'dx:{near}'?" if near else "; docs/reference/ontology.md lists the terms"
         raise _Text(sparql).error(place, f"the vocabulary has no term 'dx:{name}'{hint}")
+
+
+def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
+    """Return notes on what an answer may lack.
+
+    A query about relations or implied statements finds no implications of layouts for which the memory does not store
+    all of them.
+
+    Parameters
+    ----------
+    store
+        The memory.
+    sparql
+        An admitted query.
+
+    Returns
+    -------
+    tuple of str
+        Sentences without a full stop; empty if the answer lacks nothing.
+    """
+    reading, about = ox.NamedNode(DX.READING), {DX.IMPLIED_STATEMENT, DX.RULE}
+    asked = (ox.NamedNode(term) for term, _ in _admitted(sparql).terms)
+    if not any(term.value in about or any(store.quads_for_pattern(term, reading, None)) for term in asked):
+        return ()
+    not_stored = store.quads_for_pattern(None, ox.NamedNode(DX.IMPLICATIONS_STORED), typed(False))
+    layouts = {quad.subject for quad in not_stored}
+    names = sorted(layout.value.rpartition("/")[2] for layout in layouts if isinstance(layout, ox.NamedNode))
+    if not names:
+        return ()
+    listed = ", ".join(names[:MAX_NAMED]) + (f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else "")
+    return (
+        "the memory does not store all that these layouts imply, so their part of the answer may be incomplete: "
+        f"{listed}; 'deixis infer' on the script that 'deixis show' prints computes it",
+    )
 
 
 def _prologue(found: list[Token]) -> int:

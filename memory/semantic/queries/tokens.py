@@ -81,7 +81,18 @@ _SKIPPED = re.compile(rf"(?:#[^\n\r]*|{_IRI}|{_STRINGS})|(?P<escape>{_ESCAPE})",
 
 
 def tokens(text: str) -> Iterator[Token]:
-    """Yield the tokens of a decoded query, without comments."""
+    """Yield the tokens of a decoded query, without comments.
+
+    Parameters
+    ----------
+    text
+        The query.
+
+    Yields
+    ------
+    Token
+        A token.
+    """
     for match in _TOKEN.finditer(text):
         kind = TokenKind(match.lastgroup or "sign")
         if kind is not TokenKind.COMMENT:
@@ -89,11 +100,22 @@ def tokens(text: str) -> Iterator[Token]:
 
 
 def decoded(text: str) -> tuple[str, list[tuple[int, int]]]:
-    r"""Return a text with codepoint escapes decoded outside strings, comments and IRIs.
+    r"""Decode codepoint escapes outside strings, comments and IRIs.
 
-    Also return pairs of offsets, in the decoded and in the given text, to translate places. Only escapes of letters,
-    digits and ``_:?$-`` are decoded; SPARQL does not allow others there.
+    Only escapes of letters, digits and ``_:?$-`` are decoded; SPARQL does not allow others there.
 
+    Parameters
+    ----------
+    text
+        The query.
+
+    Returns
+    -------
+    tuple
+        The decoded text, and pairs of offsets, in the decoded and in the given text, to translate places.
+
+    Examples
+    --------
     >>> decoded(r"SEL\u0045CT * {}")[0]
     'SELECT * {}'
     """
@@ -118,13 +140,39 @@ def _letter(escape: str) -> str | None:
 
 
 def given_offset(offset: int, places: list[tuple[int, int]]) -> int:
-    """Return the offset in the given text for an offset in the decoded text."""
+    """Return the offset in the given text for an offset in the decoded text.
+
+    Parameters
+    ----------
+    offset
+        Offset in the decoded text.
+    places
+        Pairs of offsets, as of :func:`decoded`.
+
+    Returns
+    -------
+    int
+        The offset.
+    """
     here, there = max(place for place in places if place[0] <= offset)
     return there + offset - here
 
 
 def ambiguous(token: Token, prefixes: Collection[str]) -> bool:
-    """Return whether an IRI may be a comparison that hides the beginning of a comment, a string or a SERVICE."""
+    """Say whether an IRI may be a comparison that hides the beginning of a comment, a string or a SERVICE.
+
+    Parameters
+    ----------
+    token
+        The token of the IRI.
+    prefixes
+        Known prefixes.
+
+    Returns
+    -------
+    bool
+        True if it may be one.
+    """
     return bool(_may_be_comparison(token, prefixes) and re.search(r"[#']|service", token.text, re.IGNORECASE))
 
 
@@ -141,11 +189,27 @@ _PREFIX_OPERATORS = {"!", "-", "+", "^"}
 
 
 def too_deep(found: Sequence[Token], prefixes: Collection[str], limit: int) -> Token | None:
-    """Return the first token that is nested more than ``limit`` levels deep, or None.
+    """Return the first token that is nested too deeply.
 
     Open brackets of all sorts count, ``<<`` among them, and prefix operators in a row. The count is never below the
     nesting that a parser meets: brackets within an IRI that may be a comparison count too, as in ``?a<((?b>?c``.
 
+    Parameters
+    ----------
+    found
+        The tokens.
+    prefixes
+        Known prefixes.
+    limit
+        Maximum number of levels.
+
+    Returns
+    -------
+    Token or None
+        The token, or None.
+
+    Examples
+    --------
     >>> words = list(tokens("ASK { FILTER(!!(?a)) }"))
     >>> too_deep(words, (), 5), too_deep(words, (), 4).start
     (None, 15)

@@ -22,7 +22,18 @@ BUILD = (
 
 
 def default_graph(store: ox.Store) -> list[ox.NamedNode]:
-    """Return the non-empty graphs that a query without GRAPH reads; none of them share a triple."""
+    """Return the non-empty graphs that a query without GRAPH reads; none of them share a triple.
+
+    Parameters
+    ----------
+    store
+        The memory.
+
+    Returns
+    -------
+    list of ox.NamedNode
+        Names of the graphs.
+    """
     if store.contains_named_graph(MERGED):
         return [MERGED]
     graphs = [graph_iri(name) for name in UNION]
@@ -30,7 +41,20 @@ def default_graph(store: ox.Store) -> list[ox.NamedNode]:
 
 
 def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Operation]:
-    """Yield the operations that update the union for a change; they are run after those of the change."""
+    """Yield the operations that update the union for a change; they are run after those of the change.
+
+    Parameters
+    ----------
+    store
+        The memory before the change.
+    added, removed
+        Triples of the change by graph.
+
+    Yields
+    ------
+    Operation
+        An operation.
+    """
     if store.contains_named_graph(MERGED):
         gone = {triple for name in UNION for triple in removed.get(name, ())}
         yield from deletion(MERGED, [t for t in gone if not any(_after(store, n, t, added, removed) for n in UNION)])
@@ -38,13 +62,39 @@ def merging(store: ox.Store, added: Triples, removed: Triples) -> Iterator[Opera
 
 
 def building(store: ox.Store, added: Triples, removed: Triples) -> Iterator[str]:
-    """Yield the SPARQL operation that builds the union, if it does not exist and a change makes the graphs overlap."""
+    """Yield the SPARQL operation that builds the union, if it does not exist and a change makes the graphs overlap.
+
+    Parameters
+    ----------
+    store
+        The memory before the change.
+    added, removed
+        Triples of the change by graph.
+
+    Yields
+    ------
+    str
+        The operation; nothing if it is not needed.
+    """
     if not store.contains_named_graph(MERGED) and overlapping(store, added, removed):
         yield BUILD
 
 
 def overlapping(store: ox.Store, added: Triples, removed: Triples) -> bool:
-    """Return whether a change adds a triple to a graph that another graph has after it."""
+    """Say whether a change adds a triple to a graph that another graph has after it.
+
+    Parameters
+    ----------
+    store
+        The memory before the change.
+    added, removed
+        Triples of the change by graph.
+
+    Returns
+    -------
+    bool
+        True if it does.
+    """
     by_subject: dict[GraphName, dict[object, list[ox.Triple]]] = {name: defaultdict(list) for name in UNION}
     for name in UNION:
         for triple in added.get(name, ()):
@@ -67,7 +117,13 @@ def _after(store: ox.Store, name: GraphName, triple: ox.Triple, added: Triples, 
 
 
 def merge_if_overlapping(store: ox.Store) -> None:
-    """Build the union in a store that was filled in bulk, if the three graphs overlap."""
+    """Build the union in a store that was filled in bulk, if the three graphs overlap.
+
+    Parameters
+    ----------
+    store
+        The memory, which is changed.
+    """
     if store.contains_named_graph(MERGED):
         return
     by_size = sorted(UNION, key=lambda name: _size(store, name))

@@ -29,6 +29,7 @@ from deixis.scratch import scratch_folder, tied_to_parent
 
 if TYPE_CHECKING:
     import rdflib
+    import rdflib.term
 
 MEMORY_LIMIT = 4 << 30
 """Memory limit of the process, in bytes."""

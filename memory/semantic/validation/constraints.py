@@ -22,12 +22,15 @@ class Values(Protocol):
 
     def __call__(self, view: FocusData, node: Node) -> Iterable[Node]:
         """Return the nodes that the path leads to."""
+        ...
 
     def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
         """Return at most ``number`` of these nodes."""
+        ...
 
     def fresh(self, view: FocusData, node: Node) -> Iterable[Node]:
         """Return the nodes whose class the change may have altered."""
+        ...
 
 
 Check = Callable[[FocusData, Node], bool]

@@ -17,6 +17,7 @@ from deixis.memory.semantic.rdf.package import SHAPES_FILE
 
 if TYPE_CHECKING:
     import rdflib
+    import rdflib.term
 
 
 @lru_cache(maxsize=1)

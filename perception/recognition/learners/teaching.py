@@ -188,7 +188,7 @@ def _practise(
     right: list[bool] = []
     while len(right) < settings.patience or len(right) < len(known):
         for place in rng.permutation(len(known)):
-            category = known[place]
+            category = known[int(place)]
             view = next(unseen[category], None)
             if view is None:
                 return End.NO_VIEWS

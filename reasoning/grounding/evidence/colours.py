@@ -39,7 +39,7 @@ def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
     [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
     """
     if np.asarray(rgb).dtype == np.uint8:
-        linear = _linear(np.arange(256.0))[rgb]
+        linear = _linear(np.arange(256.0))[np.asarray(rgb, np.uint8)]
     else:
         linear = _linear(np.asarray(rgb, dtype=np.float64))
     xyz = linear @ TO_XYZ.T / TO_XYZ.sum(axis=1)

@@ -378,8 +378,8 @@ class _FactRatios:
         both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
         for rows, columns, some, fitting in both if subjects != objects else both[:1]:
             spoken = self.facts.spoken(some)
-            for fact, ratio in enumerate(self.graded):
-                ratio[rows, columns] = self.facts.ratio(fact, fitting, self.names[rows, columns], spoken)
+            for fact in range(len(self.graded)):
+                self.graded[fact, rows, columns] = self.facts.ratio(fact, fitting, self.names[rows, columns], spoken)
 
 
 def literal_degree(

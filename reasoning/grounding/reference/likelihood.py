@@ -6,7 +6,7 @@ computes the derivatives of one number by all weights, in one pass backwards (re
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -107,7 +107,7 @@ def log_complement(score: Score, share: float) -> Score:
     return Score(np.log1p(-p), ((score, lambda given: -given * p / (1 - p)),))
 
 
-def add_gradients(result: Score, found: Mapping[str, Array]) -> None:
+def add_gradients(result: Score, found: MutableMapping[str, Array]) -> None:
     """Add the derivatives of a score of shape () by all weights to ``found``, arrays by the names of the weights."""
     order: list[Score] = []
     seen: set[int] = set()

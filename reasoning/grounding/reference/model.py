@@ -145,7 +145,12 @@ class Model:
             sizes = np.zeros((len(among), 2))
             for group in rivals:
                 sizes[group] = (len(group) > 1, np.log(len(group)))
-            found = found + weighted(np.column_stack([sizes, room.surrounds[among]]), "target", self.weights)[None]
+            found = (
+                found
+                + weighted(np.column_stack([sizes, room.surrounds[among].astype(np.float64)]), "target", self.weights)[
+                    None
+                ]
+            )
         for prop in said.properties:
             if (score := self._property(prop, room, among, rivals)) is not None:
                 found = found + score

@@ -25,7 +25,7 @@ Rivals = tuple[Indices, ...]
 
 def order(values: Array, rivals: Rivals) -> Features:
     """Return features of having a large value among the rivals; ``values`` has shape (v, x)."""
-    standard, greatest, rank, lead = np.zeros((4, *values.shape))
+    standard, greatest, rank, lead = (np.zeros(values.shape) for _ in range(4))
     greatest[:] = 1.0
     for group in rivals:
         if len(group) == 1:

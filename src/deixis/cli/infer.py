@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -42,7 +43,7 @@ def infer(
             raise DeixisError("infer: --verdict excludes --explain, --why-not and --ntriples")
         raise typer.Exit(_verdict(script, time_limit, as_json))
     text, option = (explain, "--explain") if explain is not None else (why_not, "--why-not")
-    fact = None if text is None else plain_fact(text, option)
+    fact = None if text is None else replace(plain_fact(text, option), source=None)
     inference = run(script, time_limit)
     if fact is not None and inference.consistent and inference.decided:
         (_explain if explain is not None else _why_not)(inference, fact, as_json)
@@ -74,13 +75,14 @@ def _verdict(script: str, time_limit: float, as_json: bool) -> int:
 
 
 def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
+    from deixis.ontology.export import fact_to_dict
     from deixis.report.json_answers import derivation_to_dict
     from deixis.workflows.infer import require_names
 
     require_names(inference, fact, "--explain")
     derivation = inference.derive(fact.relations[0], fact.subject, fact.object)
     if as_json:
-        print_json({"fact": str(fact), "derivation": derivation and derivation_to_dict(derivation)})
+        print_json({"fact": fact_to_dict(fact), "derivation": derivation and derivation_to_dict(derivation)})
     elif derivation is None:
         print_line(f"{fact} does not follow from the script (--why-not says why).")
     else:

@@ -61,6 +61,8 @@ def query(
             print_lines(result.to_table())
             if result.empty:
                 print_note("the query has no answer: nothing in the memory matches it")
+            for note in result.notes:
+                print_note(note)
         if result.boolean is False:
             raise typer.Exit(NO)
 

@@ -47,6 +47,18 @@ def implied_triples(layout: LayoutConcept, relations: Relations) -> Iterator[ox.
     """Yield the relations between the roles of a layout that it states or implies, and the implied statements.
 
     What follows only by cases, from facts with alternatives or from denials, takes a search, and is left out.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    relations
+        Relations of the ontology.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the inferred graph.
     """
     try:
         implications = Implications(layout.graph(relations), cases=False)
@@ -74,7 +86,22 @@ def implied_triples(layout: LayoutConcept, relations: Relations) -> Iterator[ox.
 
 
 def of_layouts(after: After, nodes: Iterable[object], relations: Relations) -> set[ox.Triple]:
-    """Return the implications of the layouts with these IRIs, as they are after a change."""
+    """Return the implications of some layouts, as they are after a change.
+
+    Parameters
+    ----------
+    after
+        The store after the change.
+    nodes
+        IRIs of the layouts.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    set of ox.Triple
+        Triples of the inferred graph.
+    """
     found: set[ox.Triple] = set()
     for node in nodes:
         assert isinstance(node, ox.NamedNode)
@@ -86,14 +113,40 @@ def of_layouts(after: After, nodes: Iterable[object], relations: Relations) -> s
 
 
 def of_all_layouts(after: After, relations: Relations) -> set[ox.Triple]:
-    """Return the implications of all layouts after a change."""
+    """Return the implications of all layouts after a change.
+
+    Parameters
+    ----------
+    after
+        The store after the change.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    set of ox.Triple
+        Triples of the inferred graph.
+    """
     return of_layouts(
         after, {t.subject for t in after.triples(GraphName.LEARNED, None, SUB_CLASS_OF, LAYOUT)}, relations
     )
 
 
 def changed_layouts(after: After, relations: Relations) -> tuple[set[ox.Triple], set[ox.Triple]]:
-    """Return the inferred triples about the layouts that a change touches: as they are stored, and as they become."""
+    """Return the inferred triples about the layouts that a change touches: as they are stored, and as they become.
+
+    Parameters
+    ----------
+    after
+        The store after the change.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    tuple
+        Triples before and after the change.
+    """
     sides = (after.change.added, after.change.removed)
     changed = [t for side in sides for t in side.get(GraphName.LEARNED, ())]
     parts = {t.subject for t in changed if t.predicate == IN_LAYOUT}

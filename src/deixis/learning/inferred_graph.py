@@ -57,8 +57,24 @@ STATED = (GraphName.LEARNED, GraphName.ASSERTED)
 def following(after: After, relations: Relations) -> Change:
     """Return the change of the inferred graph that a change of the other graphs requires.
 
-    ``after`` is a store whose inferred graph fits its content before the change. Raises InconsistencyError where a
-    class becomes unsatisfiable; BeyondLessonsError where the class axioms are not of the form that lessons write.
+    Parameters
+    ----------
+    after
+        The store after the change; its inferred graph fits its content before the change.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    Change
+        Triples to add and to remove.
+
+    Raises
+    ------
+    InconsistencyError
+        If a class becomes unsatisfiable.
+    BeyondLessonsError
+        If the class axioms are not of the form that lessons write.
     """
     said = _Said(after, relations)
     said.require_lessons_only(after.change.added)
@@ -98,7 +114,27 @@ def following(after: After, relations: Relations) -> Change:
 
 
 def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple]:
-    """Return the inferred graph of a store, computed from scratch; raise as :func:`following` does."""
+    """Return the inferred graph of a store, computed from scratch.
+
+    Parameters
+    ----------
+    after
+        The store after the change.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    set of ox.Triple
+        Triples of the inferred graph.
+
+    Raises
+    ------
+    InconsistencyError
+        If a class is unsatisfiable.
+    BeyondLessonsError
+        If the class axioms are not of the form that lessons write.
+    """
     said = _Said(after, relations)
     said.require_lessons_only({name: after.triples(name) for name in CLASSES})
     names = {_value(t.subject) for name in CLASSES for t in after.triples(name, None, SUB_CLASS_OF)}
@@ -108,7 +144,25 @@ def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple
 
 
 def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
-    """Return the inferred graph of a store with any class axioms, classified by HermiT; raise as :func:`following`."""
+    """Return the inferred graph of a store with any class axioms, classified by HermiT.
+
+    Parameters
+    ----------
+    after
+        The store after the change.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    set of ox.Triple
+        Triples of the inferred graph.
+
+    Raises
+    ------
+    InconsistencyError
+        If a class is unsatisfiable.
+    """
     learned = list(after.triples(GraphName.LEARNED))
     axioms = with_blank_nodes([*after.triples(GraphName.ONTOLOGY), *class_axioms(learned)])
     text = (ox.serialize(axioms, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
@@ -127,7 +181,18 @@ def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
 
 
 def impossible(classes: Iterable[str]) -> InconsistencyError:
-    """Return the error for classes that cannot have instances."""
+    """Return the error for classes that cannot have instances.
+
+    Parameters
+    ----------
+    classes
+        IRIs of the classes.
+
+    Returns
+    -------
+    InconsistencyError
+        The error, which is not raised.
+    """
     listed = ", ".join(name.rsplit("/", 1)[-1] for name in sorted(classes))
     return InconsistencyError(
         f"no instance of '{listed}' is possible: an earlier lesson declares it to be of another kind; "
@@ -136,7 +201,18 @@ def impossible(classes: Iterable[str]) -> InconsistencyError:
 
 
 def class_axioms(learned: list[ox.Triple]) -> list[ox.Triple]:
-    """Return the class axioms among learned triples, without roles, statements and matches."""
+    """Return the class axioms among learned triples, without roles, statements and matches.
+
+    Parameters
+    ----------
+    learned
+        Triples of the learned graph.
+
+    Returns
+    -------
+    list of ox.Triple
+        The class axioms.
+    """
     classes = {t.subject for t in learned if t.predicate == TYPE and _value(t.object) == W3C.OWL_CLASS}
     return [t for t in learned if t.subject in classes or _value(t.subject).startswith(GENID)]
 
@@ -311,6 +387,16 @@ def origin(engines: Mapping[str, str] = ENGINES) -> Iterator[ox.Triple]:
     """Yield the provenance of the inferred graph: its sources and its engines.
 
     It has no time, so that the same facts always give the same graph.
+
+    Parameters
+    ----------
+    engines
+        Description by the name of each engine.
+
+    Yields
+    ------
+    ox.Triple
+        A triple.
     """
     graph, inference = graph_iri(GraphName.INFERRED), iri(learned_iri("inference"))
     sources = [graph_iri(name) for name in (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED)]

@@ -35,7 +35,22 @@ class Occasion:
 
 
 def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[str, ...]] = ()) -> LayoutConcept:
-    """Return the layout that a script describes, as a concept of a lesson."""
+    """Return the layout that a script describes, as a concept of a lesson.
+
+    Parameters
+    ----------
+    script
+        The script.
+    lesson
+        Id of the lesson.
+    interchangeable
+        Groups of names that the description cannot tell apart.
+
+    Returns
+    -------
+    LayoutConcept
+        The layout.
+    """
     graph = script.graph()
     roles = [
         Role(name, kind, name in script.kinds, script.colours[name].iri if name in script.colours else None)
@@ -55,7 +70,18 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
 
 
 def layout_name(script: Script) -> str:
-    """Return the layout name in the header of a script, or a valid name made from its file name."""
+    """Return the layout name in the header of a script, or a valid name made from its file name.
+
+    Parameters
+    ----------
+    script
+        The script.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     if script.name:
         return script.name
     stem = Path(script.file).name.strip("<>.").split(".")[0]
@@ -64,7 +90,26 @@ def layout_name(script: Script) -> str:
 
 
 def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion: Occasion) -> Lesson:
-    """Return the lesson that a grounding teaches."""
+    """Return the lesson that a grounding teaches.
+
+    Parameters
+    ----------
+    script
+        The script.
+    scene
+        The scene.
+    found
+        Grounding of the script in the scene.
+    id
+        Id of the lesson.
+    occasion
+        Time span and version of the program.
+
+    Returns
+    -------
+    Lesson
+        The lesson.
+    """
     return Lesson(
         layout=layout_concept(script, id, found.interchangeable),
         scene=scene,

@@ -55,15 +55,43 @@ class Recollection:
     unreadable: tuple[str, ...] = ()
 
     def of(self, ids: Iterable[str]) -> Recollection:
-        """Return the lessons with these ids only."""
+        """Return some of the lessons.
+
+        Parameters
+        ----------
+        ids
+            Ids of the lessons to keep.
+
+        Returns
+        -------
+        Recollection
+            The lessons with these ids.
+        """
         wanted = set(ids)
         return Recollection(tuple(one for one in self.lessons if one.lesson in wanted))
 
 
 def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> LayoutConcept:
-    """Return the layout with this lesson id, or the one learned last with this name; read no other layout.
+    """Return one layout of a memory, without reading the others.
 
-    Raises UnknownTermError with the nearest known name.
+    Parameters
+    ----------
+    memory
+        The open memory.
+    name
+        Name of the layout, or id of its lesson.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    LayoutConcept
+        The layout that was learned last with this name, or that of the lesson.
+
+    Raises
+    ------
+    UnknownTermError
+        If there is neither; the message suggests the nearest name.
     """
     store, graph = memory.store, graph_iri(GraphName.LEARNED)
     is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
@@ -84,7 +112,22 @@ def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> Layo
 
 
 def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontology: Ontology) -> Recollection:
-    """Read the lessons from the triples of the learned graph and of the episodes graph."""
+    """Read the lessons from the triples of the learned graph and of the episodes graph.
+
+    Parameters
+    ----------
+    learned
+        Triples of the learned graph.
+    episodes
+        Triples of the graph of episodes.
+    ontology
+        Words of the language.
+
+    Returns
+    -------
+    Recollection
+        The lessons; unreadable ones are listed apart.
+    """
     learned = list(learned)
     by_lesson = {layout.lesson: layout for layout in layouts(learned, ontology.relations)}
     found: list[Remembered] = []
@@ -98,7 +141,20 @@ def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontol
 
 
 def remembered_lesson(lesson: Lesson | WordLesson, ontology: Ontology) -> Remembered:
-    """Return a lesson that was just learned as it will be read from the memory."""
+    """Return a lesson that was just learned as it will be read from the memory.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+    ontology
+        Words of the language.
+
+    Returns
+    -------
+    Remembered
+        The lesson as it will be read.
+    """
     layout, matches = (lesson.layout, lesson.matches) if isinstance(lesson, Lesson) else (None, ())
     texts = (lesson.script_file, lesson.script_text, lesson.scene_text)
     return _remembered(LessonRecord(lesson.id, *texts, matches, layout is None), layout, ontology)
@@ -129,7 +185,22 @@ def _matched(record: LessonRecord, description: RelationGraph, scene: Scene) -> 
 
 
 def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
-    """Match each object with the only thing whose label fits it, with the confidence of that label."""
+    """Match each object with the only thing whose label fits it, with the confidence of that label.
+
+    Parameters
+    ----------
+    description
+        Relation graph of a script.
+    scene
+        A scene with labels.
+    kinds
+        The known kinds, which labels are compared by.
+
+    Returns
+    -------
+    Who
+        Thing and confidence by object.
+    """
     from deixis.learning.scene_evidence import scene_labels
     from deixis.reasoning.grounding.evidence.labels import naming
 

@@ -20,7 +20,22 @@ from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
-    """Return the evidence of a script's facts and claims, and of a scene's labels, sizes and colours."""
+    """Return the evidence of a script's facts and claims, and of a scene's labels, sizes and colours.
+
+    Parameters
+    ----------
+    script
+        The script.
+    scene
+        The scene.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them.
+
+    Returns
+    -------
+    Evidence
+        Log-likelihood ratios of names and things, and of pairs.
+    """
     return graph_evidence(script.graph(), scene, script.ontology, meaning, claims=script.claims)
 
 
@@ -37,12 +52,30 @@ def graph_evidence(
 
     Parameters
     ----------
+    description
+        The relation graph of the description.
+    scene
+        The scene.
+    ontology
+        The known words, kinds, sizes and colours.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them.
     label_error
         Share of the labels with confidence 1 that are wrong.
     deadline
         Time limit of the computation.
     claims
         Claims of the description beside its facts.
+
+    Returns
+    -------
+    Evidence
+        Log-likelihood ratios of names and things, and of pairs.
+
+    Raises
+    ------
+    OutOfTimeError
+        If the deadline passes.
     """
     return evidence_from(
         description,
@@ -68,13 +101,32 @@ def shortlisted_evidence(
 ) -> Evidence:
     """Return the evidence for the few things of a large scene that can match the description.
 
-    Neither all pairs of things are compared, nor is memory for them allocated: the computation takes at most
-    ``gigabytes``.
+    Neither are all pairs of things compared, nor is memory for them allocated.
+
+    Parameters
+    ----------
+    description
+        The relation graph of the description.
+    scene
+        The scene.
+    ontology
+        The known words, kinds, sizes and colours.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them.
+    gigabytes
+        Memory limit in gigabytes (10^9 bytes).
+    deadline
+        Time limit of the computation.
+
+    Returns
+    -------
+    Evidence
+        Log-likelihood ratios of names and things, and of pairs.
 
     Raises
     ------
     OutOfMemoryError, OutOfTimeError
-        Too many things are left after each was judged alone.
+        If too many things are left after each was judged alone.
     """
     known = thing_evidence(
         description,
@@ -105,17 +157,52 @@ def _perceived(scene: Scene) -> dict[str, Any]:
 
 
 def scene_labels(scene: Scene) -> dict[str, Label | None]:
-    """Return the label of each thing of a scene by its id, or None where it has none."""
+    """Return the labels of the things of a scene.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    dict
+        Label by id, or None for a thing without one.
+    """
     return {thing.id: Label(thing.label, thing.confidence) if thing.label else None for thing in scene.objects}
 
 
 def named_by_candidates(thing: PerceivedObject) -> bool:
-    """Return True if the candidates of a thing are used instead of its label: if it has some and no certain label."""
+    """Say whether the candidates of a thing are used instead of its label.
+
+    Parameters
+    ----------
+    thing
+        The thing.
+
+    Returns
+    -------
+    bool
+        True if it has candidates and no certain label.
+    """
     return bool(thing.candidates) and (thing.label is None or thing.confidence < 1)
 
 
 def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
-    """Return a note if the viewpoint of a script differs from that of the scene."""
+    """Return a note if the viewpoint of a script differs from that of the scene.
+
+    Parameters
+    ----------
+    viewpoint
+        Viewpoint of the script, or None.
+    scene
+        The scene.
+
+    Returns
+    -------
+    tuple of str
+        At most one note.
+    """
     if viewpoint is None or viewpoint == scene.viewpoint:
         return ()
     return (
@@ -125,7 +212,18 @@ def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
 
 
 def conflict_notes(conflict: Conflict | None) -> tuple[str, ...]:
-    """Return a note if a script contradicts itself."""
+    """Return a note if a script contradicts itself.
+
+    Parameters
+    ----------
+    conflict
+        Contradiction in the script, or None.
+
+    Returns
+    -------
+    tuple of str
+        At most one note.
+    """
     if conflict is None:
         return ()
     return (f"the script contradicts itself, so that not all of it can hold: {conflict.reason}",)

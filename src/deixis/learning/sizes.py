@@ -65,20 +65,50 @@ class SizeView:
         return content_key(f"{self.kind} {self.box}")
 
     def written(self) -> str:
-        """Return the view as a text; :meth:`read` is the inverse."""
+        """Return the view as a text; :meth:`read` is the inverse.
+
+        Returns
+        -------
+        str
+            The text.
+        """
         numbers = (int(self.metric), *self.plain, *self.relative)
         return " ".join((self.kind, self.box, self.scene, *map(str, numbers)))
 
     @classmethod
     def read(cls, text: str) -> SizeView:
-        """Read a view from the text that :meth:`written` returns."""
+        """Read a view from the text that :meth:`written` returns.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Returns
+        -------
+        SizeView
+            The view.
+        """
         kind, box, scene, *numbers = text.split(" ")
         metric, *sizes = map(int, numbers)
         return cls(kind, box, scene, bool(metric), (sizes[0], sizes[1]), (sizes[2], sizes[3]))
 
 
 def size_views(lesson: Remembered, kinds: Kinds) -> list[SizeView]:
-    """Return what a lesson adds to the statistics of sizes: a view of each thing whose kind is known."""
+    """Return what a lesson adds to the statistics of sizes: a view of each thing whose kind is known.
+
+    Parameters
+    ----------
+    lesson
+        The lesson.
+    kinds
+        The known kinds.
+
+    Returns
+    -------
+    list of SizeView
+        The views.
+    """
     boxes, scene = lesson.scene.boxes, scene_text_iri(lesson.texts[1])
     metric = lesson.scene.unit == "m"
     known = dict.fromkeys([*_matched(lesson), *_labelled(lesson, kinds)])
@@ -133,14 +163,38 @@ class Counts:
         self._whole: set[str] = set()
 
     def get(self, name: str, key: str) -> str | None:
-        """Return one value, or None."""
+        """Return one value, or None.
+
+        Parameters
+        ----------
+        name
+            Name of the row.
+        key
+            Key in the row.
+
+        Returns
+        -------
+        str or None
+            The value, or None.
+        """
         if key not in self._now[name]:
             found = None if name in self._whole else self._value(name, key)
             self._read[name][key] = self._now[name][key] = found
         return self._now[name][key]
 
     def row(self, name: str) -> Row:
-        """Return all values of a row."""
+        """Return all values of a row.
+
+        Parameters
+        ----------
+        name
+            Name of the row.
+
+        Returns
+        -------
+        Row
+            Value by key.
+        """
         if name not in self._whole:
             for key, value in self._row(name).items():
                 self._read[name].setdefault(key, value)
@@ -149,25 +203,67 @@ class Counts:
         return {key: value for key, value in self._now[name].items() if value is not None}
 
     def set(self, name: str, key: str, value: str | None) -> None:
-        """Set one value; None removes it."""
+        """Set one value; None removes it.
+
+        Parameters
+        ----------
+        name
+            Name of the row.
+        key
+            Key in the row.
+        value
+            The value; None removes the entry.
+        """
         self.get(name, key)
         self._now[name][key] = value
 
     def add(self, name: str, key: str, number: int) -> int:
-        """Add to an integer, which is not stored where it is 0; return the sum."""
+        """Add to an integer, which is not stored if it becomes 0.
+
+        Parameters
+        ----------
+        name
+            Name of the row.
+        key
+            Key in the row.
+        number
+            Number to add.
+
+        Returns
+        -------
+        int
+            The sum.
+        """
         total = int(self.get(name, key) or 0) + number
         self.set(name, key, str(total) if total else None)
         return total
 
     def changed(self, name: str) -> Iterator[tuple[str, str | None, str | None]]:
-        """Yield the keys of a row whose values have changed, with the old value and the new one."""
+        """Yield the keys of a row whose values have changed, with the old value and the new one.
+
+        Parameters
+        ----------
+        name
+            Name of the row.
+
+        Yields
+        ------
+        tuple
+            Key, old value and new value; None stands for no value.
+        """
         for key, new in self._now[name].items():
             old = self._read[name].get(key)
             if old != new:
                 yield key, old, new
 
     def difference(self) -> tuple[list[tuple[str, str, str]], list[tuple[str, str, str]]]:
-        """Return the removed and the added entries, each as row, key and value."""
+        """Return the removed and the added entries, each as row, key and value.
+
+        Returns
+        -------
+        tuple
+            Removed and added entries.
+        """
         every = [
             (name, *entry) for name in sorted(self._now) for entry in sorted(self.changed(name), key=lambda e: e[0])
         ]
@@ -198,13 +294,27 @@ class SizeStatistics:
         self._priors: dict[str, SizePrior | None] | None = None
 
     def add(self, view: SizeView) -> None:
-        """Count a view, unless a smaller one of the same box counts already."""
+        """Count a view, unless a smaller one of the same box counts already.
+
+        Parameters
+        ----------
+        view
+            The view.
+        """
         counted = self._counts.get("views", view.place)
         if counted is None or view < SizeView.read(counted):
             self._exchange(None if counted is None else SizeView.read(counted), view)
 
     def remove(self, view: SizeView, others: Iterable[SizeView]) -> None:
-        """Remove a view; the smallest of ``others``, the views of its box in other lessons, counts instead."""
+        """Remove a view.
+
+        Parameters
+        ----------
+        view
+            The view.
+        others
+            Views of its box in other lessons, the smallest of which counts instead.
+        """
         if self._counts.get("views", view.place) == view.written():
             left = min(others, default=None)
             if left != view:
@@ -292,9 +402,12 @@ class SizeStatistics:
             self._pool(kind, used, 1)
 
     def models(self) -> dict[str, tuple[SizeModel | None, set[str], set[str]]]:
-        """Return the changed models by kind: the model or None, the scenes that are gone, and the new ones.
+        """Return the changed models by kind; call this after :meth:`settle`.
 
-        Call it after :meth:`settle`.
+        Returns
+        -------
+        dict
+            The model or None, the scenes that are gone, and the new ones, by class IRI.
         """
         if self._priors is None:
             return {}

@@ -66,7 +66,20 @@ SEEN = iri(STATISTICS + "seen")
 
 
 def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
-    """Return all lessons of a memory, ready to be learned from."""
+    """Return all lessons of a memory, ready to be learned from.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        Words of the language.
+
+    Returns
+    -------
+    Recollection
+        The lessons.
+    """
     return _recollected(After(memory.store), ontology)
 
 
@@ -83,10 +96,26 @@ def keeping(
     lessons: Sequence[Lesson],
     seen: Mapping[str, Sequence[View]] = MappingProxyType({}),
 ) -> Commit:
-    """Return a function that commits lessons, with the views that each taught, by lesson id: all of them, or none.
+    """Return a function that commits lessons, with the views that each taught: all of them, or none.
 
     What follows from the lessons is computed here, so that the commit itself is fast. For more than :data:`AT_ONCE`
     lessons it is computed in the commit, on the copy of the store that then replaces the store.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        The ontology.
+    lessons
+        The lessons, in order.
+    seen
+        Views by the id of the lesson that teaches them.
+
+    Returns
+    -------
+    Commit
+        The function.
     """
     if len(lessons) <= AT_ONCE:
         change, rules = _arrived(memory, ontology, lessons, seen)
@@ -116,7 +145,24 @@ def _arrived(
 def keep_words(
     memory: SemanticMemory, ontology: Ontology, lessons: Sequence[WordLesson], strength: float
 ) -> LearnedWords:
-    """Write lessons about words, and the models refitted to all lessons."""
+    """Write lessons about words, and the models refitted to all lessons.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        The ontology.
+    lessons
+        Lessons about words.
+    strength
+        Weight of the shipped models, above 0.
+
+    Returns
+    -------
+    LearnedWords
+        The models that changed.
+    """
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     words = fit(_recollected(After(memory.store, change), ontology), strength)
     if not words.taught:
@@ -136,6 +182,25 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
 
     If relation words were fitted to the lesson, it is removed from the statistics of the fit; where that is impossible,
     the words are refitted to the other lessons of the fit.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        The ontology.
+    lesson
+        Id of the lesson.
+
+    Returns
+    -------
+    Commit
+        The function.
+
+    Raises
+    ------
+    UnknownLessonError
+        If there is no such lesson.
     """
     one = _remembered_one(memory, ontology, lesson)
     change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
@@ -151,7 +216,13 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
 
 
 def forget_words(memory: SemanticMemory) -> None:
-    """Remove the learned models of relation words, and the statistics of their fit; keep the lessons."""
+    """Remove the learned models of relation words, and the statistics of their fit; keep the lessons.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    """
     memory.commit(_worded(memory, None), memory.kept_up())
 
 
@@ -162,10 +233,16 @@ def _worded(memory: SemanticMemory, words: LearnedWords | None) -> Change:
 
 
 def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
-    """Import a file into the memory at a path, which must not be open; keep what the memory has.
+    """Import a file into the memory at a path; keep what the memory has.
 
-    What follows from both together is computed first, and words that both had learned are fitted to the lessons of
-    both.
+    Parameters
+    ----------
+    file
+        The file.
+    target
+        Path of the memory, which must not be open.
+    ontology
+        The ontology.
 
     Raises
     ------
@@ -193,7 +270,18 @@ def take_in(file: str | Path, target: Path, ontology: Ontology) -> None:
 
 
 def word_triples(models: Iterable[RelationModel]) -> list[ox.Triple]:
-    """Return learned models as the triples that a memory stores."""
+    """Return learned models as the triples that a memory stores.
+
+    Parameters
+    ----------
+    models
+        Learned models.
+
+    Returns
+    -------
+    list of ox.Triple
+        The triples.
+    """
     return list(dict.fromkeys(triple for model in models for triple in model_triples(model)))
 
 
@@ -256,7 +344,18 @@ def _followed(
 
 
 def kept_up_rules(ontology: Ontology) -> str:
-    """Return the rules by which a memory is updated with an ontology, as a memory records them."""
+    """Return the rules by which a memory is updated with an ontology, as a memory records them.
+
+    Parameters
+    ----------
+    ontology
+        The ontology.
+
+    Returns
+    -------
+    str
+        A text that differs wherever updates would differ.
+    """
     return f"{RULES} {package_digest()[:16]} {ontology.kinds_key}"
 
 
@@ -334,6 +433,18 @@ def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:
     """Yield a line for each part of a memory that differs from what its lessons lead to when recomputed.
 
     A memory of other rules has nothing stale: its next lesson recomputes everything.
+
+    Parameters
+    ----------
+    store
+        The store.
+    ontology
+        The ontology.
+
+    Yields
+    ------
+    str
+        A line of text.
     """
     known, rules = ledger.kept_up(store), kept_up_rules(ontology)
     if known not in (rules, rules + BY_HERMIT):

@@ -48,7 +48,18 @@ class ViewDescriptor:
     root: bool = False
 
     def describe(self, cloud: PointCloud) -> NDArray[np.float32]:
-        """Return the descriptors of a cloud, shape (k, d); k is 0 for a cloud with too few points."""
+        """Describe a cloud.
+
+        Parameters
+        ----------
+        cloud
+            The points of one thing.
+
+        Returns
+        -------
+        ndarray
+            Descriptors of shape (k, d); k is 0 for a cloud with too few points.
+        """
         found = self.describer.describe(cloud)
         return roots(found) if self.root else found
 
@@ -153,14 +164,48 @@ COMPARISONS: tuple[Comparison, ...] = (
 
 
 def comparisons_in(frame: str) -> tuple[Comparison, ...]:
-    """Return the comparisons for views in a frame, the best first."""
+    """Return the comparisons for views in a frame.
+
+    Parameters
+    ----------
+    frame
+        Name of the frame.
+
+    Returns
+    -------
+    tuple of Comparison
+        The comparisons, the best first.
+    """
     return COMPARISONS if frame == TABLE else tuple(way for way in COMPARISONS if way[0] is SPIN_IMAGE_ROOTS)
 
 
 def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metadata: Mapping[str, Any]) -> View:
-    """Return a view of a thing of a category, ready to be stored; raise CloudError where it cannot be described.
+    """Return a view of a thing of a category, ready to be stored.
 
     The view has the data for every descriptor by which it can be compared; without colours it has no colour descriptor.
+
+    Parameters
+    ----------
+    cloud
+        The points of the thing.
+    frame
+        Name of their frame.
+    category
+        Name of the category.
+    time
+        Time of the view.
+    metadata
+        Scene, object and teacher, as JSON.
+
+    Returns
+    -------
+    View
+        The view.
+
+    Raises
+    ------
+    CloudError
+        If the cloud cannot be described.
     """
     needed = dict.fromkeys(chain.from_iterable(comparisons_in(frame)))
     if cloud.colours is None:
@@ -174,9 +219,19 @@ def view_of(cloud: PointCloud, frame: str, category: str, time: datetime, metada
 
 
 def thing_of(view: View) -> str | None:
-    """Return a key of the thing that a view shows, made of the scene and the object's id; None where these are unknown.
+    """Return a key of the thing that a view shows.
 
     The same file with other boxes is another scene: the next table, perceived into the same file.
+
+    Parameters
+    ----------
+    view
+        The view.
+
+    Returns
+    -------
+    str or None
+        A key made of the scene and the object's id, or None if these are unknown.
     """
     scene, object = view.metadata.get("scene"), view.metadata.get("object")
     return json.dumps([scene, view.metadata.get("boxes"), object]) if scene and object else None
@@ -187,9 +242,22 @@ def batch_of(
 ) -> tuple[Batch, tuple[Taught, ...]]:
     """Return the batch that stores views in turn, and what each view taught.
 
-    Views with the same points under another word correct the earlier word. ``lessons`` maps the id of a view to its
-    lesson; the other views are from a teacher and belong to no lesson. Write the batch before anything else is written,
-    so inside :meth:`PerceptualMemory.exclusive`.
+    Views with the same points under another word correct the earlier word. Write the batch before anything else is
+    written, so inside :meth:`PerceptualMemory.exclusive`.
+
+    Parameters
+    ----------
+    memory
+        The memory.
+    views
+        The views, each with its category.
+    lessons
+        Id of the lesson by the id of the view; other views are from a teacher and belong to no lesson.
+
+    Returns
+    -------
+    tuple
+        The batch, and what each view taught.
     """
     with memory.exclusive():
         place = {id: view.category for id, view in _kept(memory, views).items()}
@@ -220,7 +288,20 @@ def batch_of(
 
 
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:
-    """Return, by id, the stored form of those views that a teacher has named already; ignore damaged ones."""
+    """Return, by id, the stored form of those views that a teacher has named already; ignore damaged ones.
+
+    Parameters
+    ----------
+    memory
+        The memory.
+    views
+        The views.
+
+    Returns
+    -------
+    dict
+        Stored view by id.
+    """
     return {id: view for id, view in _kept(memory, views).items() if view.metadata.get("teacher") != GROUNDING}
 
 
@@ -244,13 +325,35 @@ def _of(views: Iterable[View], category: str) -> list[View]:
 
 
 def described_by_all(views: Iterable[View]) -> set[str]:
-    """Return the names of the descriptors that each of some views has."""
+    """Return the names of the descriptors that each of some views has.
+
+    Parameters
+    ----------
+    views
+        The views.
+
+    Returns
+    -------
+    set of str
+        Names of descriptors.
+    """
     named = [set(view.descriptors) for view in views]
     return set.intersection(*named) if named else set()
 
 
 def comparison_of(views: Iterable[View]) -> Comparison:
-    """Return the best comparison for which each of some views has the descriptors."""
+    """Return the best comparison for which each of some views has the descriptors.
+
+    Parameters
+    ----------
+    views
+        The views.
+
+    Returns
+    -------
+    Comparison
+        The comparison.
+    """
     shared = described_by_all(views)
     return next((way for way in COMPARISONS if {each.name for each in way} <= shared), COMPARISONS[-1])
 
@@ -260,7 +363,21 @@ def instances_of(
 ) -> tuple[InstanceCategory, ...]:
     """Return a category for each descriptor of a comparison; distances in its record are not recomputed.
 
-    Of each view only the compared descriptors are held, the first one stored by ``pack``.
+    Parameters
+    ----------
+    record
+        Record of the category.
+    views
+        Views of the category, of which only the compared descriptors are held.
+    comparison
+        The comparison.
+    pack
+        Function that stores the views of the first descriptor.
+
+    Returns
+    -------
+    tuple of InstanceCategory
+        One category for each descriptor.
     """
     descriptor, *others = comparison
     things: dict[str, str] = {}
@@ -298,7 +415,22 @@ def _compared(record: CategoryRecord, ids: Iterable[str], descriptor: ViewDescri
 
 
 def record_of(category: InstanceCategory, descriptor: ViewDescriptor, described: Iterable[str]) -> CategoryRecord:
-    """Return the record of a category, its views ordered by id; ``described`` are the descriptors of all views."""
+    """Return the record of a category, its views ordered by id.
+
+    Parameters
+    ----------
+    category
+        The category by one descriptor.
+    descriptor
+        That descriptor.
+    described
+        Names of the descriptors of all views.
+
+    Returns
+    -------
+    CategoryRecord
+        The record.
+    """
     order = np.argsort(np.array(category.views.ids, dtype=str))
     return CategoryRecord(
         category.name,
@@ -319,13 +451,35 @@ class Known:
     by_shape: Known | None = None
 
     def recognise(self, cloud: PointCloud) -> Recognition:
-        """Name what a cloud shows, or say that it is unknown, and why."""
+        """Name what a cloud shows, or say that it is unknown, and why.
+
+        Parameters
+        ----------
+        cloud
+            The points of one thing.
+
+        Returns
+        -------
+        Recognition
+            The label or none, with its probability and the candidates.
+        """
         if self.by_shape is not None and cloud.colours is None:
             return self.by_shape.recognise(cloud)
         return self.recogniser.recognise([descriptor.describe(cloud) for descriptor in self.comparison])
 
     def calibrated(self, progress: Progress | None = None) -> Known:
-        """Return this recogniser with weights, threshold and probabilities from its own views."""
+        """Return this recogniser with weights, threshold and probabilities from its own views.
+
+        Parameters
+        ----------
+        progress
+            Called while the views are compared.
+
+        Returns
+        -------
+        Known
+            The calibrated recogniser.
+        """
         held = self.recogniser.held_out(progress)
         ways = [way.recogniser.calibrated_by(held[: len(way.comparison)]).calibration for way in self._ways]
         return self.with_calibrations(ways)
@@ -336,7 +490,18 @@ class Known:
         return tuple(way.recogniser.calibration for way in self._ways)
 
     def with_calibrations(self, calibrations: Sequence[Calibration]) -> Known:
-        """Return this recogniser with other calibrations, in the order of :attr:`calibrations`."""
+        """Return this recogniser with other calibrations.
+
+        Parameters
+        ----------
+        calibrations
+            Calibrations in the order of :attr:`calibrations`.
+
+        Returns
+        -------
+        Known
+            The recogniser.
+        """
         whole, *rest = calibrations
         by_shape = None if self.by_shape is None else self.by_shape.with_calibrations(rest)
         return replace(self, recogniser=replace(self.recogniser, calibration=whole), by_shape=by_shape)
@@ -347,7 +512,18 @@ class Known:
 
 
 def nothing_known(frame: str) -> Known:
-    """Return a recogniser without categories."""
+    """Return a recogniser without categories.
+
+    Parameters
+    ----------
+    frame
+        Name of the frame.
+
+    Returns
+    -------
+    Known
+        The recogniser.
+    """
     return known_by(comparisons_in(frame)[-1], [])
 
 
@@ -356,7 +532,22 @@ def known_by(
     categories: Iterable[tuple[InstanceCategory, ...]],
     settings: RecognitionSettings = DEFAULT,
 ) -> Known:
-    """Return the recogniser of categories, given for each descriptor of a comparison, with the shipped calibrations."""
+    """Return the recogniser of some categories, with the shipped calibrations.
+
+    Parameters
+    ----------
+    comparison
+        The comparison.
+    categories
+        Categories, each given for each descriptor of the comparison.
+    settings
+        Settings of the recogniser.
+
+    Returns
+    -------
+    Known
+        The recogniser.
+    """
     by_descriptor = list(zip(*categories, strict=True)) or [()] * len(comparison)
     parts = tuple(
         Recogniser.of(own, replace(settings, prior_spread=PRIOR_SPREADS[descriptor.name]))
@@ -375,6 +566,20 @@ def recogniser_of(memory: LevelMemory, frame: str, progress: Progress | None = N
 
     The calibration is recomputed when a tenth of the views differ from the last time, and stored in the memory. From
     :data:`MAPPED` views on, their descriptors are mapped from a file.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    frame
+        Name of the frame of the views.
+    progress
+        Called while views are read and calibrated.
+
+    Returns
+    -------
+    Known
+        The recogniser.
     """
     with memory.exclusive():
         names, listed = memory.categories(), list(memory.listing())
@@ -417,12 +622,38 @@ def _comparison_in(frame: str, memory: PerceptualReading, listed: Iterable[ViewK
 
 
 def candidates_of(answer: Recognition) -> tuple[tuple[str, float], ...]:
-    """Return the names that a thing can have, with their probabilities, the most probable first."""
+    """Return the names that a thing can have, with their probabilities.
+
+    Parameters
+    ----------
+    answer
+        Answer of the recogniser.
+
+    Returns
+    -------
+    tuple of tuple
+        Pairs of name and probability, the most probable first.
+    """
     return tuple((one.category, round(one.probability, 4)) for one in answer.candidates)
 
 
 def recognise(known: Known, scene: Scene, clouds: Sequence[PointCloud | None]) -> Recognised:
-    """Name the things of a scene that have a cloud; keep the names that the scene has already."""
+    """Name the things of a scene that have a cloud; keep the names that the scene has already.
+
+    Parameters
+    ----------
+    known
+        The recogniser.
+    scene
+        The scene.
+    clouds
+        Points of each thing of the scene, or None.
+
+    Returns
+    -------
+    Recognised
+        The scene with the names, and the answer for each thing.
+    """
     answers, things = {}, []
     for thing, cloud in zip(scene.objects, clouds, strict=True):
         if cloud is not None:

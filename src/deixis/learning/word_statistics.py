@@ -27,7 +27,18 @@ SUMS, SAYS = iri(STATISTICS + "sums"), iri(STATISTICS + "says")
 
 
 def replacing(words: LearnedWords | None) -> list[ledger.Operation]:
-    """Return the operations that replace the stored statistics of learned words; ``None`` only removes them."""
+    """Return the operations that replace the stored statistics of learned words.
+
+    Parameters
+    ----------
+    words
+        The learned words; None only removes the statistics.
+
+    Returns
+    -------
+    list of ledger.Operation
+        Operations on the store.
+    """
     operations = [ledger.drop(GRAPH)]
     if words is not None and words.statistics is not None and words.taught:
         sums = json.dumps({"made": _made(words), **_packed(words.statistics)}, sort_keys=True)
@@ -37,7 +48,18 @@ def replacing(words: LearnedWords | None) -> list[ledger.Operation]:
 
 
 def kept(store: ox.Store) -> LearnedWords | None:
-    """Return the learned models of a store with their statistics, or None where no statistics match the models."""
+    """Return the learned models of a store with their statistics.
+
+    Parameters
+    ----------
+    store
+        The store.
+
+    Returns
+    -------
+    LearnedWords or None
+        The models, or None if no statistics match them.
+    """
     quad = next(store.quads_for_pattern(GRAPH, SUMS, None, GRAPH), None)
     changed = models_from_triples(ledger.triples_in(store, models_graph(ModelSet.WORDS)))
     if quad is None or not changed:
@@ -85,7 +107,7 @@ def _unpacked(packed: dict[str, object]) -> FitStatistics:
     rows, columns = np.triu_indices(len(values))
     information[rows, columns] = information[columns, rows] = upper
     degrees = {
-        name: DegreeSum(int(count), float(total), _read(slope))
+        str(name): DegreeSum(int(count), float(total), _read(slope))
         for name, (count, total, slope) in dict(packed["degrees"]).items()  # type: ignore[call-overload]
     }
     return FitStatistics(

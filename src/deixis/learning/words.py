@@ -53,11 +53,36 @@ def fit(
     more: Sequence[SaidPairs] = (),
     sources: Sequence[str] = (),
 ) -> LearnedWords:
-    """Fit the models of relation words to all lessons, and to ``more`` pairs from other ``sources``.
+    """Fit the models of relation words to all lessons, and to pairs from other sources.
 
-    The prior is the shipped models, never learned ones: so no lesson counts twice, and a forgotten one does not count.
-    Of several lessons with the same script and scene, one counts. Raises SettingError for a strength that is not above
-    0.
+    Of several lessons with the same script and scene, one counts.
+
+    Parameters
+    ----------
+    recollection
+        The lessons.
+    strength
+        Weight of the prior, above 0.
+    prior
+        Models to start from; default: the shipped ones.
+    more
+        Pairs of things from other sources.
+    sources
+        Names of these sources.
+
+    Returns
+    -------
+    LearnedWords
+        The models that changed, with the lessons that taught them.
+
+    Raises
+    ------
+    SettingError
+        If ``strength`` is not above 0.
+
+    Notes
+    -----
+    The prior is never a learned model: so no lesson counts twice, and a forgotten one does not count.
     """
     known = prior or shipped_models()
     teaching = {one.lesson: _pairs(one) for one in recollection.lessons}
@@ -72,8 +97,20 @@ def fit(
 def without(one: Remembered, words: LearnedWords, strength: float) -> LearnedWords | None:
     """Return the models without one of the lessons that they were fitted to, in a time that depends on it only.
 
-    Return None where the models must be refitted to the other lessons: where :func:`take_out` cannot remove the lesson,
-    and where another lesson has the same script and scene.
+    Parameters
+    ----------
+    one
+        The lesson.
+    words
+        The learned models with their statistics.
+    strength
+        Weight of the shipped models, above 0.
+
+    Returns
+    -------
+    LearnedWords or None
+        The models. None if they must be refitted to the other lessons: if :func:`take_out` cannot remove the lesson, or
+        another lesson has the same script and scene.
     """
     if words.statistics is None or [*words.texts.values()].count(words.texts[one.lesson]) > 1:
         return None
@@ -106,7 +143,18 @@ def _pairs(one: Remembered) -> SaidPairs:
 
 
 def informed(models: Iterable[RelationModel]) -> tuple[frozenset[str], float]:
-    """Return the lessons that taught some learned models, and the strength with which they were fitted."""
+    """Return which lessons taught some learned models.
+
+    Parameters
+    ----------
+    models
+        The models.
+
+    Returns
+    -------
+    tuple
+        Ids of the lessons, and the weight of the shipped models in the fit.
+    """
     models = list(models)
     strengths = [model.provenance.strength for model in models if model.provenance.strength is not None]
     return frozenset(id for model in models for id in model.provenance.lessons), strengths[0] if strengths else 1.0
@@ -116,7 +164,18 @@ Example = tuple[Script, Scene]
 
 
 def example_pairs(example: Example) -> SaidPairs:
-    """Return the pairs of things in a labelled scene that the facts of a script are about."""
+    """Return the pairs of things in a labelled scene that the facts of a script are about.
+
+    Parameters
+    ----------
+    example
+        A script and a labelled scene.
+
+    Returns
+    -------
+    SaidPairs
+        The pairs with their words.
+    """
     script, scene = example
     description = script.graph()
     who = labelled(description, scene, script.ontology.kinds)
@@ -124,7 +183,18 @@ def example_pairs(example: Example) -> SaidPairs:
 
 
 def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
-    """Return the examples that teach something, and a line for each of the others with the reason."""
+    """Return the examples that teach something, and a line for each of the others with the reason.
+
+    Parameters
+    ----------
+    examples
+        Scripts, each with a labelled scene.
+
+    Returns
+    -------
+    tuple
+        The examples, and the lines.
+    """
     taught, left_out = [], []
     for script, scene in examples:
         if example_pairs((script, scene)).weights.sum() > 0:
@@ -138,9 +208,21 @@ def teaching(examples: Sequence[Example]) -> tuple[list[Example], list[str]]:
 def new_lessons(
     examples: Sequence[Example], known: Recollection, taken: Callable[[str], bool]
 ) -> tuple[list[WordLesson], list[str]]:
-    """Return lessons about words from examples that teach something new, and a line for each other one with the reason.
+    """Return lessons about words from examples that teach something new, and why the others do not.
 
-    ``taken`` reports the lesson ids that are in use already.
+    Parameters
+    ----------
+    examples
+        Scripts, each with a labelled scene.
+    known
+        The lessons of the memory.
+    taken
+        Function that returns whether an id of a lesson is in use.
+
+    Returns
+    -------
+    tuple
+        The lessons, and a line for each other example.
     """
     taught, left_out = teaching(examples)
     texts, ids = {one.texts: one.lesson for one in known.lessons}, set[str]()
@@ -159,7 +241,24 @@ def new_lessons(
 
 
 def word_lesson(script: Script, scene: Scene, id: str, occasion: Occasion) -> WordLesson:
-    """Return a script and a labelled scene as a lesson; the includes of the script become part of its text."""
+    """Return a script and a labelled scene as a lesson; the includes of the script become part of its text.
+
+    Parameters
+    ----------
+    script
+        The script.
+    scene
+        The labelled scene.
+    id
+        Id of the lesson.
+    occasion
+        Time span and version of the program.
+
+    Returns
+    -------
+    WordLesson
+        The lesson.
+    """
     return WordLesson(
         id=id,
         scene=scene,

@@ -31,7 +31,18 @@ Arrow = tuple[Point, Point]
 
 
 def drawing_order(things: Iterable[PerceivedObject]) -> list[PerceivedObject]:
-    """Return things in drawing order: larger things first, so that smaller ones lie over them."""
+    """Return things in drawing order: larger things first, so that smaller ones lie over them.
+
+    Parameters
+    ----------
+    things
+        The things.
+
+    Returns
+    -------
+    list of PerceivedObject
+        The things, sorted.
+    """
     return sorted(things, key=lambda thing: -float(np.prod(_plan(thing)[1] - _plan(thing)[0])))
 
 
@@ -46,7 +57,18 @@ class Ends:
         self._extent = float(np.ptp(self._boxes, axis=(0, 1)).max()) if ordered else 1.0
 
     def arrow(self, subject: str, other: str) -> Arrow:
-        """Return a short arrow from a subject to another thing, by ids, with both ends where the things are visible."""
+        """Return a short arrow from a subject to another thing, with both ends where the things are visible.
+
+        Parameters
+        ----------
+        subject, other
+            Ids of the things.
+
+        Returns
+        -------
+        Arrow
+            Its ends, in the unit of the scene.
+        """
         (starts, start_room), (ends, end_room) = self._where_seen(subject), self._where_seen(other)
         length = np.linalg.norm(starts[:, None] - ends, axis=2)
         deep, least = END_DEPTH * self._extent, MIN_LENGTH * self._extent
@@ -77,7 +99,21 @@ class Ends:
 
 
 def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, order: int) -> None:
-    """Draw arrows with a dot at the start, slightly bent, so that arrows in both directions are seen as two."""
+    """Draw arrows with a dot at the start, slightly bent, so that arrows in both directions are seen as two.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw into.
+    arrows
+        The arrows, in the unit of the axes.
+    colour
+        Their colour.
+    width
+        Width of the lines in points.
+    order
+        Drawing order; larger is above.
+    """
     from matplotlib.patches import FancyArrowPatch
 
     alpha = 0.75 if colour == QUIET else 1.0
@@ -102,7 +138,18 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
 
 
 def points_along(arrows: Sequence[Arrow]) -> list[Point]:
-    """Return points along arrows as :func:`draw_arrows` bends them, for axes of equal scale."""
+    """Return points along arrows as :func:`draw_arrows` bends them, for axes of equal scale.
+
+    Parameters
+    ----------
+    arrows
+        The arrows, in the unit of the axes.
+
+    Returns
+    -------
+    list of Point
+        Points that names should not cover.
+    """
     share = np.linspace(0.0, 1.0, STEPS)[:, None]
     points: list[Point] = []
     for begin, finish in arrows:

@@ -43,8 +43,21 @@ class CameraPicture:
 def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> CameraPicture:
     """Return the camera's view of an organised cloud, cropped to its things.
 
-    ``labels`` (n,) are the numbers of the things that the points belong to. Other measured points are grey, and
-    unmeasured ones nearly white.
+    Measured points of no thing are grey, and unmeasured ones nearly white.
+
+    Parameters
+    ----------
+    cloud
+        An organised cloud of n points.
+    labels
+        Number of the thing that each point belongs to, shape (n,).
+    scene
+        The scene with these things.
+
+    Returns
+    -------
+    CameraPicture
+        The image, and the places of the things in it.
     """
     assert cloud.organised is not None
     numbers = labels.reshape(cloud.organised)
@@ -84,7 +97,15 @@ def camera_of(cloud: PointCloud, labels: NDArray[np.int32], scene: Scene) -> Cam
 
 
 def draw_camera(axes: Axes, camera: CameraPicture) -> None:
-    """Draw the image in pixel coordinates, y up, without the names."""
+    """Draw the image in pixel coordinates, y up, without the names.
+
+    Parameters
+    ----------
+    axes
+        Axes to draw into.
+    camera
+        The image.
+    """
     height, width = camera.picture.shape[:2]
     axes.imshow(camera.picture, extent=(0, width, 0, height))
     axes.set_title("As the camera sees it", color=INK, fontsize=12, loc="left")
@@ -92,7 +113,18 @@ def draw_camera(axes: Axes, camera: CameraPicture) -> None:
 
 
 def colours_of(numbers: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Return a colour for each number, shape (n, 3); successive numbers have very different hues."""
+    """Return a colour for each number; successive numbers have very different hues.
+
+    Parameters
+    ----------
+    numbers
+        Whole numbers, shape (n,).
+
+    Returns
+    -------
+    ndarray
+        Red, green and blue in [0, 1], shape (n, 3).
+    """
     from matplotlib.colors import hsv_to_rgb
 
     hue = (np.asarray(numbers) * 0.61803398875) % 1.0

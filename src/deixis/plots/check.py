@@ -21,12 +21,37 @@ def plot_check(checked: Check, path: str | Path) -> None:
     """Draw the table from above: misplaced and extra things in red, undetermined ones dotted, and the verdict.
 
     Things of a wrong colour are hatched.
+
+    Parameters
+    ----------
+    checked
+        The check.
+    path
+        File of the picture; its ending says which format.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
     """
     save(check_figure(checked), path)
 
 
 def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
-    """Draw a checked table into axes or into a new figure, and return the figure."""
+    """Draw a checked table into axes or into a new figure.
+
+    Parameters
+    ----------
+    checked
+        The check.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     table = checked.table
     found = [
         _listed("missing", [entry.role for entry in table.of(RoleVerdict.MISSING)]),
@@ -40,7 +65,18 @@ def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
 
 
 def marks_of(checked: Check) -> Marks:
-    """Return the marks of the picture; a thing that is both misplaced and miscoloured has both marks."""
+    """Return the marks of the picture; a thing that is both misplaced and miscoloured has both marks.
+
+    Parameters
+    ----------
+    checked
+        The check.
+
+    Returns
+    -------
+    Marks
+        The ids of the things by mark.
+    """
     table = checked.table
     wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}
     return Marks(

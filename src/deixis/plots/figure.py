@@ -26,7 +26,20 @@ MARGIN = 0.12
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure to a file, making its folder; raise DeixisError where that fails."""
+    """Write a figure to a file, making its folder.
+
+    Parameters
+    ----------
+    figure
+        The figure.
+    path
+        The file; its ending says which format.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
+    """
     import warnings
 
     target = require_picture(path)
@@ -39,7 +52,25 @@ def save(figure: Figure, path: str | Path) -> None:
 
 
 def require_picture(path: str | Path) -> Path:
-    """Return the path of a picture and make its folder; raise DeixisError where the picture cannot be written."""
+    """Check the path of a picture, and make its folder.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    DeixisError
+        If the picture cannot be written there, or its ending is not that of a picture.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     require("matplotlib", f"{path}: drawing a picture")
     target = Path(path)
     if target.suffix.lower() not in (".png", ".svg", ".pdf"):
@@ -54,7 +85,25 @@ def require_picture(path: str | Path) -> Path:
 
 
 def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, Any]:
-    """Return an empty figure that needs no display, and its axes; raises MissingExtraError without matplotlib."""
+    """Return an empty figure that needs no display.
+
+    Parameters
+    ----------
+    width, height
+        Size in inches.
+    subplots
+        Arguments of ``Figure.subplots``.
+
+    Returns
+    -------
+    tuple
+        The figure, and its axes or an array of them.
+
+    Raises
+    ------
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     require("matplotlib", "drawing a picture")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -66,15 +115,38 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     return figure, figure.subplots(**subplots)
 
 
-def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Any]:
-    """Return the axes to draw into, with their figure: those given, or new ones of a size in inches."""
+def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:
+    """Return axes to draw into, with their figure.
+
+    Parameters
+    ----------
+    axes
+        Axes, or None for those of a new figure.
+    width, height
+        Size of a new figure in inches.
+
+    Returns
+    -------
+    tuple
+        Figure and axes.
+    """
     if axes is None:
         return new_figure(width, height)
     return axes.figure.figure, axes
 
 
 def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
-    """Set the labels, colours and title of a table seen from above; its aspect and margins are set before."""
+    """Set the labels, colours and title of a table seen from above; its aspect and margins are set before.
+
+    Parameters
+    ----------
+    axes
+        Axes with the drawn table.
+    scene
+        The scene.
+    title
+        Title, or None.
+    """
     axes.autoscale_view()
     across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
     if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):

@@ -75,15 +75,46 @@ def plot_grounding(found: Grounding, path: str | Path, title: str | None = None)
     """Draw the scene from above with the names found, as PNG, SVG or PDF by the file's ending.
 
     Satisfied facts are grey arrows, violated ones red; interchangeable objects share a colour; things without a name
-    are grey. Raises DeixisError where the file cannot be written or its ending is not that of a picture.
+    are grey.
+
+    Parameters
+    ----------
+    found
+        The grounding.
+    path
+        File of the picture.
+    title
+        Title of the picture.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
     """
     save(answer_figure(found, title=title), path)
 
 
 def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None = None) -> Figure:
-    """Draw a grounding in its own scene, from the side that was recovered where one was.
+    """Draw a grounding in its own scene, from the side that was recovered if one was.
 
-    Raises DeixisError where an engine was called without a scene.
+    Parameters
+    ----------
+    found
+        The grounding.
+    axes
+        Axes to draw into, or None for a new figure.
+    title
+        Title of the picture.
+
+    Returns
+    -------
+    Figure
+        The figure.
+
+    Raises
+    ------
+    DeixisError
+        If the engine was called without a scene.
     """
     from deixis.reasoning.grounding.hypotheses import side_text
     from deixis.workflows.viewpoint import scene_from
@@ -99,7 +130,20 @@ def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None 
 
 
 def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
-    """Draw the boxes of a scene from above, each with its label or id."""
+    """Draw the boxes of a scene from above, each with its label or id.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     figure, axes = canvas(axes, WIDTH, _table_height(scene) + 0.9)
     named = {thing.id: thing.label for thing in scene.objects if thing.label}
     _draw_boxes(axes, scene, named, {}, NO_MARKS, {})
@@ -110,7 +154,26 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
 def grounding_figure(
     found: Grounding, scene: Scene, title: str | None = None, marks: Marks = NO_MARKS, axes: Axes | None = None
 ) -> Figure:
-    """Draw a grounding, with what is marked in it, into axes or into a new figure, which is returned."""
+    """Draw a grounding, with what is marked in it.
+
+    Parameters
+    ----------
+    found
+        The grounding.
+    scene
+        Its scene.
+    title
+        Title of the picture.
+    marks
+        Ids of the things to mark.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     colours = {name: GROUP_COLOURS[i % len(GROUP_COLOURS)] for i, group in enumerate(groups) for name in group}
     keys = _keys(found, groups, marks)

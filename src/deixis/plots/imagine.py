@@ -33,13 +33,45 @@ Shape = tuple[tuple[float, float], ...]
 def plot_table(table: ImaginedTable, kinds: Kinds, path: str | Path, title: str | None = None) -> None:
     """Draw an imagined table from above, as PNG, SVG or PDF by the file's ending.
 
-    Raises DeixisError where the file cannot be written or its ending is not that of a picture.
+    Parameters
+    ----------
+    table
+        The table.
+    kinds
+        The known kinds, which decide the shapes.
+    path
+        File of the picture.
+    title
+        Title of the picture.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
     """
     save(table_figure(table, kinds, title), path)
 
 
 def imagination_figure(found: Imagination, axes: Axes | None = None) -> Figure:
-    """Draw the first example table; raise DeixisError without a table."""
+    """Draw the first example table.
+
+    Parameters
+    ----------
+    found
+        The tables.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+
+    Raises
+    ------
+    DeixisError
+        If there is no table.
+    """
     if not found.tables:
         raise DeixisError(f"{found.script.file}: there is no example table to draw; to_text() says why")
     title = found.script.title or found.script.name
@@ -47,7 +79,24 @@ def imagination_figure(found: Imagination, axes: Axes | None = None) -> Figure:
 
 
 def table_figure(table: ImaginedTable, kinds: Kinds, title: str | None = None, axes: Axes | None = None) -> Figure:
-    """Draw an example table into axes or into a new figure, which is returned; the viewer sits at its lower edge."""
+    """Draw an example table; the viewer sits at its lower edge.
+
+    Parameters
+    ----------
+    table
+        The table.
+    kinds
+        The known kinds, which decide the shapes.
+    title
+        Title of the picture.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     boxes = table.scene.boxes
     if not len(boxes):
         width, height = 0.6, 0.4

@@ -76,14 +76,36 @@ class Box(NamedTuple):
         return (self.right - self.left) * (self.high - self.low)
 
     def shared(self, boxes: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the areas (n,) in common with boxes (n, 4)."""
+        """Return the areas (n,) in common with boxes (n, 4).
+
+        Parameters
+        ----------
+        boxes
+            Least x and y, greatest x and y, shape (n, 4).
+
+        Returns
+        -------
+        ndarray
+            Areas of shape (n,).
+        """
         width = np.minimum(self.right, boxes[:, 2]) - np.maximum(self.left, boxes[:, 0])
         height = np.minimum(self.high, boxes[:, 3]) - np.maximum(self.low, boxes[:, 1])
         common: NDArray[np.float64] = np.maximum(width, 0) * np.maximum(height, 0)
         return common
 
     def in_the_way_of(self, boxes: NDArray[np.float64]) -> int:
-        """Return how many boxes (n, 4) have their middle column behind this one, close above or below."""
+        """Return how many boxes (n, 4) have their middle column behind this one, close above or below.
+
+        Parameters
+        ----------
+        boxes
+            Least x and y, greatest x and y, shape (n, 4).
+
+        Returns
+        -------
+        int
+            The number of boxes.
+        """
         middle = (boxes[:, 0] + boxes[:, 2]) / 2
         reach = 3 * min(self.high - self.low, self.right - self.left)
         apart = np.maximum(self.low - boxes[:, 3], boxes[:, 1] - self.high)
@@ -115,6 +137,10 @@ def write_names(
 
     Parameters
     ----------
+    figure
+        The figure, whose layout is fixed by this.
+    axes
+        Axes with the drawn things.
     things
         What to name: the label is written, or the id of a thing without one. A line break in it starts a new line.
     quiet
@@ -263,8 +289,22 @@ def _leader(place: NamePlace, outline: Box) -> Segment | None:
 
 
 def crosses(segment: Segment, boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which boxes (n, 4) a segment enters, by clipping it to each (Liang and Barsky); touching is not entering.
+    """Say which boxes a segment enters, by clipping it to each (Liang and Barsky); touching is not entering.
 
+    Parameters
+    ----------
+    segment
+        Its two ends.
+    boxes
+        Least x and y, greatest x and y, shape (n, 4).
+
+    Returns
+    -------
+    ndarray
+        True for the boxes that it enters, shape (n,).
+
+    Examples
+    --------
     >>> crosses(((0.0, 0.0), (4.0, 0.0)), np.array([[1.0, -1.0, 2.0, 1.0], [1.0, 1.0, 2.0, 2.0]]))
     array([ True, False])
     """

@@ -32,13 +32,40 @@ LINES = (0.1, 0.25, 0.5, 0.75)
 def plot_relation(relation: Relation, models: RelationModels, path: str | Path) -> None:
     """Write the field around a reference object as PNG, SVG or PDF by the file's ending.
 
-    Raises DeixisError where the file cannot be written or its ending is not that of a picture.
+    Parameters
+    ----------
+    relation
+        The relation.
+    models
+        Models of relation words.
+    path
+        File of the picture.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
     """
     save(relation_figure(relation, models), path)
 
 
 def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the places on each axis, shape (steps,), and the degrees for a subject there, shape (steps, steps)."""
+    """Compute the degree of a relation for a subject at each place around a reference object.
+
+    Parameters
+    ----------
+    relation
+        The relation.
+    models
+        Models of relation words.
+    steps
+        Number of places on each axis.
+
+    Returns
+    -------
+    tuple
+        Coordinates, shape (steps,), and degrees in [0, 1], shape (steps, steps).
+    """
     reach = _reach(relation)
     places = np.linspace(-reach, reach, steps)
     half = np.array([SUBJECT, SUBJECT]) / 2
@@ -52,7 +79,22 @@ def field(relation: Relation, models: RelationModels, steps: int) -> tuple[NDArr
 
 
 def relation_figure(relation: Relation, models: RelationModels, steps: int = 181) -> Figure:
-    """Draw the degrees as a heat map with contours, with the reference object, and the subject in the corner."""
+    """Draw the degrees as a heat map with contours, with the reference object, and the subject in the corner.
+
+    Parameters
+    ----------
+    relation
+        The relation.
+    models
+        Models of relation words.
+    steps
+        Number of places on each axis.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     figure, axes = new_figure(7.4, 6.3)
     places, degrees = field(relation, models, steps)
     shown = axes.contourf(places, places, degrees, levels=np.linspace(0, 1, 41), cmap="Blues")

@@ -54,20 +54,54 @@ Window = tuple[NDArray[np.float64], NDArray[np.float64]]
 def plot_perceived(scene: Scene, path: str | Path) -> None:
     """Draw the points from above, grey where they belong to no thing; beside them the image of an organised cloud.
 
-    Raises SceneError for a scene without its cloud, such as one read from a file.
+    Parameters
+    ----------
+    scene
+        A scene that was just perceived.
+    path
+        File of the picture; its ending says which format.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no cloud, such as one read from a file.
     """
     save(perceived_figure(scene), path)
 
 
 def seen_figure(scene: Scene, axes: Axes | None = None) -> Figure:
-    """Draw a scene: with its points if it was just found in a cloud, else its boxes."""
+    """Draw a scene: with its points if it was just found in a cloud, else its boxes.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     if scene.detection is None or axes is not None:
         return scene_figure(scene, axes)
     return perceived_figure(scene)
 
 
 def perceived_figure(scene: Scene) -> Figure:
-    """Return the picture of :func:`plot_perceived` as a new figure."""
+    """Return the picture of :func:`plot_perceived` as a new figure.
+
+    Parameters
+    ----------
+    scene
+        A scene that was just perceived.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     from deixis.perception.detection.viewpoint import in_frame
     from deixis.perception.errors import SceneError
 
@@ -98,12 +132,33 @@ def perceived_figure(scene: Scene) -> Figure:
 
 
 def plot_recognised(found: Recognised, path: str | Path) -> None:
-    """Draw recognised things from above, each with its name and its probability, or `unknown`."""
+    """Draw recognised things from above, each with its name and its probability, or `unknown`.
+
+    Parameters
+    ----------
+    found
+        The recognised things.
+    path
+        File of the picture; its ending says which format.
+    """
     save(recognised_figure(found), path)
 
 
 def recognised_figure(found: Recognised, axes: Axes | None = None) -> Figure:
-    """Draw recognised things into axes or into a new figure, which is returned."""
+    """Draw recognised things into axes or into a new figure.
+
+    Parameters
+    ----------
+    found
+        The recognised things.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     clouds = [
         (number, found.scene.cloud_of(thing.id).points)
         for number, thing in enumerate(found.scene.objects)
@@ -145,9 +200,23 @@ def _answered(thing: PerceivedObject, found: Recognised) -> str:
 
 
 def window_of(points: NDArray[np.float32], scene: Scene, found: Detected) -> Window:
-    """Return the window of the picture for points (n, 3) in the table's frame: the things and a margin of the table.
+    """Return the window of the picture: the things and a margin of the table.
 
     It is the whole table where nothing is on it, and all points where no table was found.
+
+    Parameters
+    ----------
+    points
+        Points in the table's frame, shape (n, 3), in metres.
+    scene
+        The scene.
+    found
+        Table and points of the detection.
+
+    Returns
+    -------
+    Window
+        Limits of x and of y.
     """
     if scene.objects:
         return _around_boxes(scene)

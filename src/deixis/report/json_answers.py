@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.claims import Claim
@@ -67,7 +66,7 @@ def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
 
 def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
     """Return why a fact does not follow: what excludes it, or a table without it on which all facts hold."""
-    answer: dict[str, Any] = {"fact": str(found.fact), "follows": found.follows is not None}
+    answer: dict[str, Any] = {"fact": fact_to_dict(found.fact), "follows": found.follows is not None}
     if found.follows is not None:
         answer["derivation"] = derivation_to_dict(found.follows)
     if found.against is not None:
@@ -78,7 +77,7 @@ def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
     if found.picture is not None:
         boxes = zip(found.picture.objects, found.picture.boxes.tolist(), strict=True)
         answer["picture"] = [{"id": name, "min": box[0], "max": box[1]} for name, box in boxes]
-        answer["missing"] = [str(order) for order in found.missing]
+        answer["missing_orders"] = [str(order) for order in found.missing]
         answer["known"] = [fact_to_dict(fact) for fact in found.known]
     return answer
 
@@ -170,7 +169,7 @@ def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
     if found.exchanges is not None:
         answer["questions"] = [
             {
-                "question": one.question.text,
+                "text": one.question.text,
                 "bits": round(one.question.bits, 6),
                 "answer": one.answer,
                 "outcome": one.outcome.value,
@@ -204,7 +203,10 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
         "facts": len(layout.facts),
         "categories": list(learned.categories),
         "undecided": list(learned.doubtful),
-        "standing": [asdict(word) for word in learned.standing],
+        "kept_names": [
+            {"perceived": one.thing, "taught": one.taught, "teacher": one.teacher, "grounded": one.grounded}
+            for one in learned.kept_names
+        ],
         "grounding": grounding_to_dict(learned.grounding),
     }
 

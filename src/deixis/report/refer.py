@@ -41,7 +41,7 @@ def reference_to_dict(found: Reference) -> dict[str, Any]:
         "paraphrase": found.paraphrase,
         "frame": None if found.frame is None else str(found.frame),
         "question": None if question is None else {"text": question.text, "yes": list(question.yes)},
-        "turns": [{"text": turn.question.text, "answer": "yes" if turn.yes else "no"} for turn in found.turns],
+        "questions": [{"text": turn.question.text, "answer": "yes" if turn.yes else "no"} for turn in found.turns],
         "notes": list(found.notes),
     }
 

@@ -134,7 +134,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         lines.append("Categories with a new view: " + ", ".join(new))
     if again:
         lines.append("The same view as before, kept once: " + ", ".join(again))
-    lines += [f"{word}." for word in learned.standing]
+    lines += [f"{word}." for word in learned.kept_names]
     if learned.doubtful:
         lines.append("Recorded as not settled, so no view was learned: " + ", ".join(learned.doubtful))
     lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]

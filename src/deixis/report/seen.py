@@ -105,7 +105,7 @@ def recognised_to_dict(found: Recognised) -> dict[str, Any]:
     return {
         "objects": [
             {
-                "object": id,
+                "id": id,
                 "label": answer.label,
                 "probability": round(answer.probability, 6),
                 "unknown": round(answer.unknown, 6),

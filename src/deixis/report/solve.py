@@ -83,7 +83,7 @@ def solved_to_dict(solved: SolvedNetwork) -> dict[str, Any]:
         "contributions": [{"by": c.name, "pairs": c.pairs, "atoms": c.atoms} for c in solved.contributions],
         "conflict": [_constraint(network, c) for network, c in solved.conflict] or None,
         "conflict_minimal": solved.minimal if solved.conflict else None,
-        "boxes": [{"thing": thing, "low": low, "high": high} for thing, (low, high) in _plain(solved)] or None,
+        "boxes": [{"thing": thing, "min": low, "max": high} for thing, (low, high) in _plain(solved)] or None,
         "relations": [_constraint(network, c) for network in solved.shown for c in network.constraints] or None,
         "derivation": None if solved.step is None else _step(solved.step, networks),
     }

@@ -83,7 +83,7 @@ def conflict_lines(conflict: TemporalConflictError) -> list[str]:
 def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dict[str, Any]:
     """Return each fluent with its tightened bounds in seconds; an unknown bound is None."""
     return {
-        "status": chronology.status.value,
+        "verdict": chronology.status.value,
         "exact": chronology.exact,
         "fluents": [
             {
@@ -107,8 +107,8 @@ def _bounds(bounds: Bounds) -> dict[str, Any]:
 
 def held_to_dict(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> dict[str, Any]:
     """Return the ids of the fluents that certainly held, and of all that may have held."""
-    standing = {"status": chronology.status.value, "exact": chronology.exact}
-    return {**standing, "certain": [fluent.id for fluent in certain], "possible": [fluent.id for fluent in possible]}
+    known = {"verdict": chronology.status.value, "exact": chronology.exact}
+    return {**known, "certain": [fluent.id for fluent in certain], "possible": [fluent.id for fluent in possible]}
 
 
 def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
@@ -116,7 +116,7 @@ def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
     names = [relation.name.lower() for relation in chronology.relations(a, b)]
     order = chronology.certain_order(a, b)
     return {
-        "status": chronology.status.value,
+        "verdict": chronology.status.value,
         "exact": chronology.exact,
         "a": a,
         "b": b,
@@ -140,4 +140,4 @@ def conflict_to_dict(conflict: TemporalConflictError) -> dict[str, Any]:
     """Return the statements that contradict each other, and the proof."""
     statements = [{"statement": stated.claim, "source": stated.source} for stated in conflict.statements]
     proof = explanation_to_dict(conflict.explanation)
-    return {"status": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}
+    return {"verdict": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}

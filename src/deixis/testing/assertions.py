@@ -18,7 +18,20 @@ TIME_LIMIT = 30.0
 
 
 def script_of(script: Script | str | Path, folder: Path | None = None) -> Script:
-    """Return a script; a string is the name of a file if it ends in ``.layout``, and else the text itself."""
+    """Return a script that is given as such, by its file, or as a text.
+
+    Parameters
+    ----------
+    script
+        A script; a string is the name of a file if it ends in ``.layout``, and else the text itself.
+    folder
+        Folder that names of files are relative to.
+
+    Returns
+    -------
+    Script
+        The script.
+    """
     from deixis.grammar.script import Script
     from deixis.workflows.read import SCRIPT_ENDING, read_script
 
@@ -30,7 +43,20 @@ def script_of(script: Script | str | Path, folder: Path | None = None) -> Script
 
 
 def scene_of(scene: Scene | str | Path | Mapping[str, Any], folder: Path | None = None) -> Scene:
-    """Return a scene; a string or path is the name of its file."""
+    """Return a scene that is given as such, by its file, or as parsed JSON.
+
+    Parameters
+    ----------
+    scene
+        A scene, the name of its file, or parsed JSON.
+    folder
+        Folder that names of files are relative to.
+
+    Returns
+    -------
+    Scene
+        The scene.
+    """
     from deixis.workflows.read import as_scene
 
     return as_scene(_in(folder, scene) if isinstance(scene, str | Path) else scene)
@@ -104,6 +130,18 @@ def assert_grounds(
 def assert_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact follows from a script in the wide reading, or is stated in it.
 
+    Parameters
+    ----------
+    script
+        A script, the name of its file (``.layout``), or its text.
+    fact
+        The fact, such as ``left(fork, plate)``.
+
+    Returns
+    -------
+    Inference
+        The facts that follow, for further assertions.
+
     Raises
     ------
     AssertionError
@@ -122,6 +160,18 @@ def assert_follows(script: Script | str | Path, fact: str) -> Inference:
 def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
     """Assert that a fact does not follow from a script.
 
+    Parameters
+    ----------
+    script
+        A script, the name of its file (``.layout``), or its text.
+    fact
+        The fact, such as ``left(fork, plate)``.
+
+    Returns
+    -------
+    Inference
+        The facts that follow, for further assertions.
+
     Raises
     ------
     AssertionError
@@ -136,7 +186,23 @@ def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
 
 
 def assert_consistent(script: Script | str | Path) -> Inference:
-    """Assert that a script does not contradict itself; the message of a failure shows the minimal conflict."""
+    """Assert that a script does not contradict itself.
+
+    Parameters
+    ----------
+    script
+        A script, the name of its file (``.layout``), or its text.
+
+    Returns
+    -------
+    Inference
+        The facts that follow, for further assertions.
+
+    Raises
+    ------
+    AssertionError
+        If it contradicts itself; the message shows the minimal conflict.
+    """
     from deixis.report.script import inference_lines
     from deixis.workflows.infer import infer
 
@@ -150,7 +216,23 @@ def assert_consistent(script: Script | str | Path) -> Inference:
 
 
 def assert_contradictory(script: Script | str | Path) -> Inference:
-    """Assert that a script contradicts itself; the message of a failure gives boxes that satisfy it."""
+    """Assert that a script contradicts itself.
+
+    Parameters
+    ----------
+    script
+        A script, the name of its file (``.layout``), or its text.
+
+    Returns
+    -------
+    Inference
+        The minimal conflict, for further assertions.
+
+    Raises
+    ------
+    AssertionError
+        If it does not; the message gives boxes that satisfy it.
+    """
     from deixis.report.imagine import imagination_lines
     from deixis.workflows.imagine import imagine
     from deixis.workflows.infer import infer
@@ -187,6 +269,11 @@ def assert_checks(
         Objects of the layout that must have this fault, and no others.
     extra
         Ids of the things that must be called extra, and no others.
+
+    Returns
+    -------
+    Check
+        The check, for further assertions.
 
     Raises
     ------

@@ -43,7 +43,25 @@ class Expectation:
 
 
 def expectations_in(text: str, file: str) -> Iterator[Expectation]:
-    """Yield the expectations of a script's text; raise ExpectationError for a malformed line."""
+    """Yield the expectations of a script's text.
+
+    Parameters
+    ----------
+    text
+        The script.
+    file
+        Its name, for messages.
+
+    Yields
+    ------
+    Expectation
+        An expectation with its line.
+
+    Raises
+    ------
+    ExpectationError
+        If a line of the block is malformed.
+    """
     start = START.search(text)
     if start is None:
         return
@@ -63,7 +81,22 @@ def expectations_in(text: str, file: str) -> Iterator[Expectation]:
 
 
 def run(expectation: Expectation, script: Script, folder: Path) -> None:
-    """Raise AssertionError unless a script meets an expectation; scenes are looked for in ``folder``."""
+    """Raise AssertionError unless a script meets an expectation.
+
+    Parameters
+    ----------
+    expectation
+        What is expected.
+    script
+        The script.
+    folder
+        Folder that names of scenes are relative to.
+
+    Raises
+    ------
+    AssertionError
+        If the script does not meet it.
+    """
     check = _check(expectation.text)
     assert check is not None, "expectations_in yields only what starts with a known word"
     word, function = check

@@ -44,7 +44,20 @@ def deixis_session(tmp_path: Path) -> Iterator[Session]:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> LayoutFile | None:
-    """Collect a ``.layout`` file that has an expectation block."""
+    """Collect a ``.layout`` file that has an expectation block.
+
+    Parameters
+    ----------
+    file_path
+        A file that pytest found.
+    parent
+        The collector of its folder.
+
+    Returns
+    -------
+    LayoutFile or None
+        The collector of the file, or None for all other files.
+    """
     if file_path.suffix != ".layout" or "expect:" not in file_path.read_text(encoding="utf-8", errors="replace"):
         return None
     return LayoutFile.from_parent(parent, path=file_path)
@@ -54,7 +67,13 @@ class LayoutFile(pytest.File):
     """Layout script with an expectation block."""
 
     def collect(self) -> Iterator[LayoutItem]:
-        """Yield a test for each expectation."""
+        """Yield a test for each expectation.
+
+        Yields
+        ------
+        LayoutItem
+            A test.
+        """
         from deixis.testing.expectations import expectations_in
 
         for expectation in expectations_in(self.path.read_text(encoding="utf-8"), str(self.path)):
@@ -76,7 +95,20 @@ class LayoutItem(pytest.Item):
         run(self.expectation, read_script(self.path), self.path.parent)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """Return the message of a failed expectation without a traceback through Deixis."""
+        """Return the message of a failed expectation without a traceback through Deixis.
+
+        Parameters
+        ----------
+        excinfo
+            The exception of the test.
+        style
+            Style of pytest's tracebacks, which is not used.
+
+        Returns
+        -------
+        str
+            The message.
+        """
         from deixis.errors import DeixisError
 
         if isinstance(excinfo.value, AssertionError | DeixisError):
@@ -84,5 +116,11 @@ class LayoutItem(pytest.Item):
         return str(super().repr_failure(excinfo))
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Return the place of the expectation; pytest counts lines from 0."""
+        """Return the place of the expectation, for pytest.
+
+        Returns
+        -------
+        tuple
+            File, line from 0, and name of the test.
+        """
         return self.path, self.expectation.line - 1, f"{self.path.name}: {self.expectation.text}"

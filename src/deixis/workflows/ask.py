@@ -34,9 +34,32 @@ def ask(
     meaning: Meaning = SHIPPED,
     time_limit: float = DEFAULT_TIME_LIMIT,
 ) -> Asked:
-    """Ground a script with a dialogue that is written to ``out``; ``source`` makes who answers.
+    """Ground a script with a dialogue that is written to a stream.
 
-    The same as :func:`deixis.ground` with ``ask=Dialogue(source, out)``.
+    This is :func:`deixis.ground` with ``ask=Dialogue(source, out)``.
+
+    Parameters
+    ----------
+    script, scene
+        The script and the scene, or their files.
+    source
+        Makes, from the questions' situation, what answers them.
+    out
+        Stream for the questions.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them.
+    time_limit
+        Seconds until the answer, without the time that the answers take.
+
+    Returns
+    -------
+    Asked
+        The grounding, and the questions with their answers.
+
+    Raises
+    ------
+    DeixisError
+        For bad input, as :func:`deixis.ground`.
     """
     found = ground(script, scene, ask=Dialogue(source, out), meaning=meaning, time_limit=time_limit)
     return Asked(found, found.exchanges or ())

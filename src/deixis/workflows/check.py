@@ -72,10 +72,28 @@ def check(
     time_limit: float = DEFAULT_TIME_LIMIT,
     knowledge: KnowledgeStore | None = None,
 ) -> Check:
-    """Return what is wrong with a table: ``layout`` is a script or its file, or the name of a layout in ``knowledge``.
+    """Check a table against a layout.
 
-    Words and sizes are taken as ``knowledge`` has learned them; without it, and where it has no memory, as they are
-    shipped. Raises DeixisError for bad input, as for a name where there is no memory.
+    Parameters
+    ----------
+    layout
+        A script or its file, or the name of a layout in ``knowledge``.
+    scene
+        The table, its file, or parsed JSON.
+    time_limit
+        Seconds for the grounding.
+    knowledge
+        Memory with layouts, words and sizes; without one, words and sizes are taken as they are shipped.
+
+    Returns
+    -------
+    Check
+        The verdict on each role, extra things, violated facts and a SHACL report.
+
+    Raises
+    ------
+    DeixisError
+        If a file is invalid, or there is no layout of that name.
     """
     from deixis.learning.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table

@@ -124,6 +124,16 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
     The first noun of the text names the object, unless a later sentence picks another one (*there is a shelf between
     two doors; it is the door on the left*): the first one is then what *it* stands for. What is said of *it*, *this
     one*, or of the same noun belongs to the object; a clause about something else that mentions it is a relation of it.
+
+    Parameters
+    ----------
+    sentences
+        Parsed sentences, in order.
+
+    Returns
+    -------
+    Query
+        The noun, the properties and the relations of the object.
     """
     parts = [part for sentence in sentences if not sentence.heading for part in _statements(sentence)]
     words = sum(sentence.words for sentence in sentences)

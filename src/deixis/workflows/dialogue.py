@@ -46,7 +46,20 @@ class AnswerSource(Protocol):
     """Source of answers: a person at a terminal, or a file with the truth."""
 
     def answer(self, question: Question, situation: Situation) -> str | None:
-        """Return YES, NO, DONT_KNOW, ABSENT or the id of a thing; None where there is no further answer."""
+        """Answer a question.
+
+        Parameters
+        ----------
+        question
+            The question.
+        situation
+            Scene and groundings that it is about.
+
+        Returns
+        -------
+        str or None
+            YES, NO, DONT_KNOW, ABSENT or the id of a thing; None if there is no further answer.
+        """
         ...
 
 
@@ -65,7 +78,25 @@ class Answers:
     answers: Callable[[Question, Situation], str | None]
 
     def answer(self, question: Question, situation: Situation) -> str | None:
-        """Return the function's answer; raises OracleError for one that the question does not have."""
+        """Return the function's answer.
+
+        Parameters
+        ----------
+        question
+            The question.
+        situation
+            Scene and groundings that it is about.
+
+        Returns
+        -------
+        str or None
+            The answer, or None to end the dialogue.
+
+        Raises
+        ------
+        OracleError
+            If the question does not have this answer.
+        """
         text = self.answers(question, situation)
         if text is None:
             return None
@@ -76,7 +107,18 @@ class Answers:
 
 
 def dialogue_with(answers: Ask) -> Dialogue:
-    """Return a dialogue with a source of answers; a function or a mapping makes a dialogue that writes nothing."""
+    """Return a dialogue with a source of answers.
+
+    Parameters
+    ----------
+    answers
+        A dialogue, which is returned as it is, or a function or a mapping, for a dialogue that writes nothing.
+
+    Returns
+    -------
+    Dialogue
+        The dialogue.
+    """
     if isinstance(answers, Dialogue):
         return answers
     silence = io.StringIO()
@@ -91,9 +133,25 @@ Ask = Dialogue | Mapping[str, str | None] | Callable[[Question, Situation], str 
 
 
 def run(inquiry: Inquiry, source: AnswerSource, out: TextIO, most: float = math.inf) -> Inquiry:
-    """Hold the dialogue, with at most ``most`` questions, write it to ``out``, and return the inquiry after it.
+    """Hold a dialogue, and return the inquiry after it.
 
     The dialogue ends early at an answer after which the groundings must be listed again.
+
+    Parameters
+    ----------
+    inquiry
+        The inquiry before the dialogue.
+    source
+        Source of the answers.
+    out
+        Stream for the questions.
+    most
+        Maximum number of questions.
+
+    Returns
+    -------
+    Inquiry
+        The inquiry with the answers.
     """
     while len(inquiry.exchanges) < most and (question := inquiry.next_question()) is not None:
         number = len(inquiry.exchanges) + 1
@@ -124,7 +182,18 @@ def _remark(inquiry: Inquiry, out: TextIO) -> None:
 
 
 def closing_lines(inquiry: Inquiry) -> list[str]:
-    """Return how many groundings are left, and the objects on which they differ."""
+    """Return how many groundings are left, and the objects on which they differ.
+
+    Parameters
+    ----------
+    inquiry
+        The inquiry after the dialogue.
+
+    Returns
+    -------
+    list of str
+        Lines of text.
+    """
     left, names = inquiry.candidates, inquiry.situation.objects
     count = len(inquiry.exchanges)
     asked = f"{count} question{'' if count == 1 else 's'}"
@@ -144,7 +213,13 @@ class Lines(Protocol):
     """Source of lines to read one by one; an empty text is the end."""
 
     def readline(self) -> str:
-        """Return the next line, or an empty text at the end."""
+        """Return the next line, or an empty text at the end.
+
+        Returns
+        -------
+        str
+            The line with its end.
+        """
         ...
 
 
@@ -156,7 +231,20 @@ class Terminal:
     out: TextIO
 
     def answer(self, question: Question, situation: Situation) -> str | None:
-        """Ask until the person gives a valid answer; return it, or None at the end of input."""
+        """Ask until the person gives a valid answer.
+
+        Parameters
+        ----------
+        question
+            The question.
+        situation
+            Scene and groundings that it is about.
+
+        Returns
+        -------
+        str or None
+            The answer, or None at the end of the input.
+        """
         allowed = _allowed(question, situation)
         while True:
             print(visible_line(f"   {hint(question, situation)} "), end="", file=self.out, flush=True)
@@ -173,7 +261,20 @@ class Terminal:
 
 
 def hint(question: Question, situation: Situation) -> str:
-    """Return the possible answers to a question as a hint; the most likely things are listed with their places."""
+    """Return the possible answers to a question as a hint.
+
+    Parameters
+    ----------
+    question
+        The question.
+    situation
+        Scene and groundings that it is about.
+
+    Returns
+    -------
+    str
+        Text in brackets; it lists the most likely things with their places.
+    """
     if question.kind is not QuestionKind.POINTING:
         third = ", none: one of them is not there" if _may_be_absent(question) else ""
         return f"(yes, no{third}, ?)"
@@ -203,8 +304,22 @@ def _allowed(question: Question, situation: Situation) -> dict[str, str]:
 
 
 def parse_answer(line: str, allowed: Mapping[str, str]) -> str | None:
-    """Return the meaning of a typed line, or None if it has none.
+    """Return the meaning of a typed line.
 
+    Parameters
+    ----------
+    line
+        What was typed.
+    allowed
+        Answer by the lower-case word for it.
+
+    Returns
+    -------
+    str or None
+        The answer, or None if the line has no meaning.
+
+    Examples
+    --------
     >>> parse_answer(" Y ", {"y": "yes"})
     'yes'
     """
@@ -220,7 +335,20 @@ class Oracle:
     out: TextIO
 
     def answer(self, question: Question, situation: Situation) -> str:
-        """Return the true answer; DONT_KNOW, with a line on ``out``, for an object that the truth does not name."""
+        """Return the true answer.
+
+        Parameters
+        ----------
+        question
+            The question.
+        situation
+            Scene and groundings that it is about.
+
+        Returns
+        -------
+        str
+            The answer; DONT_KNOW, with a line on ``out``, for an object that the truth does not name.
+        """
         assignment = np.full(len(situation.objects), UNMATCHED)
         for i in question.about:
             name = situation.objects[i]
@@ -237,7 +365,24 @@ class Oracle:
 def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
     """Read a truth file: a JSON object from names of the script to ids of the scene, or null for absent objects.
 
-    Raises OracleError where it is malformed, names a thing that is not in the scene, or gives one thing to two objects.
+    Parameters
+    ----------
+    file
+        The file.
+    situation
+        Scene and script that it is about.
+    out
+        Stream for objects that the truth does not name.
+
+    Returns
+    -------
+    Oracle
+        The oracle that answers by the truth.
+
+    Raises
+    ------
+    OracleError
+        If the file is malformed, names a thing that is not in the scene, or gives one thing to two objects.
     """
     path = Path(file)
     try:
@@ -254,7 +399,27 @@ def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
 
 
 def checked_truth(data: Any, where: str, situation: Situation) -> dict[str, str | None]:
-    """Return the truth from names to ids; raise OracleError, with its place ``where``, if it is malformed."""
+    """Return the truth from names to ids, checked against a scene and a script.
+
+    Parameters
+    ----------
+    data
+        Parsed JSON.
+    where
+        Name of its place, for messages.
+    situation
+        Scene and script that it is about.
+
+    Returns
+    -------
+    dict
+        Id by name; None for what is absent.
+
+    Raises
+    ------
+    OracleError
+        If the data is malformed.
+    """
     if not isinstance(data, dict) or not all(isinstance(id, str | None) for id in data.values()):
         raise OracleError(f"{where}: a truth file must be a JSON object from names to ids, null for absent objects")
     for name, id in data.items():

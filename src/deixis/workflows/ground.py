@@ -210,7 +210,17 @@ class GroundingRequest:
     def evidence(self, scene: Scene, keep_surface_free: bool = True) -> Evidence:
         """Return the evidence for which thing each name refers to, in the scene as seen from one side.
 
-        ``keep_surface_free`` lets no name but that of the surface be the thing that the others stand on.
+        Parameters
+        ----------
+        scene
+            The scene as seen from one side.
+        keep_surface_free
+            Let no name but that of the surface be the thing that the others stand on.
+
+        Returns
+        -------
+        Evidence
+            Log-likelihood ratios of names and things, and of pairs.
         """
         if self.shortlisted:
             known = shortlisted_evidence(
@@ -255,12 +265,51 @@ def ground(
     ask: Ask | None = None,
     max_questions: int | None = None,
 ) -> Grounding:
-    """Work out which perceived thing each object of a script is.
+    """Find which perceived thing each object of a script refers to.
 
-    ``script`` and ``scene`` may be files; the options are those of :class:`GroundingRequest`. The answer comes within
-    about ``time_limit`` seconds, loading and reading included, proved or not, and says which. Raises DeixisError for
-    bad input, OutOfTimeError or OutOfMemoryError where the limits leave no answer at all.
+    The answer comes within about ``time_limit`` seconds, with loading and reading, and says whether it is proved.
 
+    Parameters
+    ----------
+    script, scene
+        The script and the scene, or their files; a scene may be parsed JSON.
+    engine
+        ``exact``, ``scalable``, ``similarity`` (the paper's), ``blondel`` or ``heymans-singh``.
+    time_limit
+        Seconds until the answer; a person who answers questions is given more time.
+    select
+        Choice among sub-graphs under the paper's engine: ``facts``, or ``similarity`` alone as in the paper.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them (``Session.meaning()``).
+    viewpoint
+        ``stated``: that of the scene; or recovered, by ``quarter`` turns, or ``unknown``, from any angle.
+    memory_limit
+        Gigabytes (10^9 bytes) that the answer may take beyond the program itself.
+    literal
+        True to take words literally, not by degrees.
+    sizes
+        True to take into account how large things usually are.
+    ask
+        Source of answers to questions that tell the likeliest groundings apart: the truth as a mapping from names to
+        ids (None for what is absent), a function of the question and the situation (None ends the dialogue), or a
+        :class:`deixis.workflows.dialogue.Dialogue`. None asks nothing.
+    max_questions
+        Maximum number of questions.
+
+    Returns
+    -------
+    Grounding
+        The match of each object with its posterior probability, the outcome of each fact, and notes.
+
+    Raises
+    ------
+    DeixisError
+        For bad input or settings.
+    OutOfTimeError, OutOfMemoryError
+        If the limits leave no answer.
+
+    Examples
+    --------
     >>> import deixis
     >>> boxes = {"o1": [0.0, 0.0], "o2": [0.4, 0.0], "o3": [0.8, 0.0]}
     >>> things = [{"id": id, "min": [x, y], "max": [x + 0.1, y + 0.1]} for id, (x, y) in boxes.items()]
@@ -291,9 +340,24 @@ def ground(
 
 
 def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) -> Grounding:
-    """Answer a request; ``stage`` accompanies its stages, other than the dialogue.
+    """Answer a request.
 
-    Raises OutOfTimeError or OutOfMemoryError where the request's limits leave no answer at all.
+    Parameters
+    ----------
+    request
+        Script, scene and settings.
+    stage
+        Makes, from its name, the context of a stage, such as a progress bar; the dialogue has none.
+
+    Returns
+    -------
+    Grounding
+        The answer, proved or not.
+
+    Raises
+    ------
+    OutOfTimeError, OutOfMemoryError
+        If the limits leave no answer.
     """
     from deixis.workflows.viewpoint import ground_from_sides, recover_scene
 

@@ -109,10 +109,33 @@ def imagine(
 ) -> Imagination:
     """Lay example tables that satisfy every firm fact of a script in its stated reading, and the others where possible.
 
-    Things have usual sizes of their kind, or with ``any_size`` whatever sizes it takes. The first table of seed 0 is
-    the plain one, with typical sizes; all others are drawn. Each takes at most about ``time_limit`` seconds. Raises
-    SettingError for settings that make no sense.
+    The first table of seed 0 is the plain one, with typical sizes; all others are drawn.
 
+    Parameters
+    ----------
+    script
+        The script.
+    any_size
+        True to allow whatever sizes it takes, not only those usual for the kinds.
+    seed
+        Seed of the random numbers.
+    count
+        Number of tables.
+    time_limit
+        Seconds for each table.
+
+    Returns
+    -------
+    Imagination
+        The tables with the facts that each gives up, or the minimal set of facts and sizes that allows no table.
+
+    Raises
+    ------
+    SettingError
+        If a setting is out of range.
+
+    Examples
+    --------
     >>> from deixis.grammar.parser import parse_script
     >>> found = imagine(parse_script("fork left of plate; knife right of plate"))
     >>> [thing.label for thing in found.tables[0].scene.objects]
@@ -162,7 +185,20 @@ def _pictures(
 
 
 def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
-    """Return every object with its kind, declared or said by its name, and its usual size."""
+    """Return every object with its kind, declared or said by its name, and its usual size.
+
+    Parameters
+    ----------
+    script
+        The script.
+    graph
+        Its relation graph.
+
+    Returns
+    -------
+    tuple of Sized
+        Objects in the order of the graph, each with the kind that is declared or that its name says.
+    """
     kinds = script.ontology.kinds
     found = [kinds[iri] if iri else None for iri in graph.kinds or (None,) * len(graph.nodes)]
     sizes = [script.ontology.sizes.of(kind.iri if kind else None) for kind in found]
@@ -170,7 +206,22 @@ def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
 
 
 def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
-    """Return which things rather lie across: cutlery that is said to lie above something, as for dessert."""
+    """Return which things rather lie across: cutlery that is said to lie above something, as for dessert.
+
+    Parameters
+    ----------
+    graph
+        The relation graph of the script.
+    objects
+        Its objects with their kinds.
+    kinds
+        The known kinds.
+
+    Returns
+    -------
+    list of bool
+        True for each object that lies across.
+    """
     cutlery = kinds.of_word("cutlery")
     above = {fact.subject for fact in graph.facts() if fact.plain and fact.relations[0].word == "top"}
     return [

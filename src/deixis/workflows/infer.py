@@ -75,7 +75,13 @@ class Inference(Answer):
         return self.implications.complete
 
     def inferred(self) -> tuple[Inferred, ...]:
-        """Return the facts that follow without being stated; none where the script contradicts itself."""
+        """Return the facts that follow without being stated.
+
+        Returns
+        -------
+        tuple of Inferred
+            The facts; empty if the script contradicts itself.
+        """
         return tuple(self.each_inferred())
 
     def derive(self, relation: Relation, subject: str, thing: str) -> Derivation | None:
@@ -97,7 +103,13 @@ class Inference(Answer):
         return replace(derivation, rule=Rule.CLAIM, premises=tuple(leaves), source=None)
 
     def each_inferred(self) -> Iterator[Inferred]:
-        """Yield the facts that follow without being stated one by one: there may be millions."""
+        """Yield the facts that follow without being stated, one by one, since there may be millions.
+
+        Yields
+        ------
+        Inferred
+            A fact with the rule that was applied last and the number of stated facts that it rests on.
+        """
         if not self.consistent or not self.decided:
             return
         for entry in self.of_claims:
@@ -147,9 +159,21 @@ LAST_SHARE = 0.1
 
 
 def inference_of(script: Script, time_limit: float = TIME_LIMIT) -> Inference:
-    """Return what follows from a script, and whether it contradicts itself, within about ``time_limit`` seconds.
+    """Return what follows from a script, and whether it contradicts itself.
 
     Only facts that leave a choice take a search, and so need a limit.
+
+    Parameters
+    ----------
+    script
+        The script.
+    time_limit
+        Seconds for the search.
+
+    Returns
+    -------
+    Inference
+        The facts that follow, or the minimal conflict.
     """
     deadline = Deadline.after(time_limit)
     of_claims, implied = _implied(script, time_limit)
@@ -183,7 +207,20 @@ def _implied(script: Script, time_limit: float) -> tuple[tuple[ClaimFact, ...], 
 
 
 def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> bool | None:
-    """Return whether a script can hold, without saying why not; None where the time limit left that open."""
+    """Say whether the facts of a script can all hold, without a reason.
+
+    Parameters
+    ----------
+    script
+        The script, or its file.
+    time_limit
+        Seconds for the search.
+
+    Returns
+    -------
+    bool or None
+        The verdict, or None if the time limit left it open.
+    """
     try:
         read = as_script(script)
         graph = read.graph()
@@ -197,13 +234,46 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
 def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Inference:
     """Infer what follows from a script in the wide reading, and whether it contradicts itself.
 
-    The time limit is for facts that leave a choice; the others need no search.
+    Parameters
+    ----------
+    script
+        The script, or its file.
+    time_limit
+        Seconds for facts that leave a choice; the others need no search.
+
+    Returns
+    -------
+    Inference
+        The facts that follow, each with a derivation, or the minimal conflict.
+
+    Raises
+    ------
+    ScriptError
+        If the script is invalid.
     """
     return inference_of(as_script(script), time_limit)
 
 
 def plain_fact(text: str, name: str) -> Fact:
-    """Return the one plain, firm fact in a text; ``name`` is what an error calls the text. Raises DeixisError."""
+    """Return the one plain, firm fact in a text.
+
+    Parameters
+    ----------
+    text
+        The text, such as ``left(fork, plate)``.
+    name
+        Name of the text in messages.
+
+    Returns
+    -------
+    Fact
+        The fact.
+
+    Raises
+    ------
+    DeixisError
+        If the text holds anything else.
+    """
     facts = parse_script(text, name).facts
     if len(facts) != 1 or not facts[0].plain or facts[0].optional or facts[0].weight < 1:
         raise DeixisError(f"{name}: '{text}' is not one plain, firm fact; write it like 'left(fork, plate)'")
@@ -211,7 +281,22 @@ def plain_fact(text: str, name: str) -> Fact:
 
 
 def require_names(inference: Inference, fact: Fact, name: str) -> None:
-    """Raise UnknownTermError, with the nearest name, unless the script names both objects of a fact."""
+    """Raise UnknownTermError unless the script names both objects of a fact.
+
+    Parameters
+    ----------
+    inference
+        The inference over the script.
+    fact
+        The fact.
+    name
+        Name of the fact's text in the message.
+
+    Raises
+    ------
+    UnknownTermError
+        If it does not; the message suggests the nearest name.
+    """
     nodes = inference.implications.graph.nodes
     for thing in (fact.subject, fact.object):
         if thing not in nodes:

@@ -41,15 +41,40 @@ if TYPE_CHECKING:
 
 
 def is_table(thing: Sized, ontology: Ontology) -> bool:
-    """Return whether a thing is of a kind of table."""
+    """Say whether a thing is of a kind of table.
+
+    Parameters
+    ----------
+    thing
+        The thing with its kind.
+    ontology
+        The known kinds.
+
+    Returns
+    -------
+    bool
+        True for a table.
+    """
     table = ontology.kinds.of_word("table")
     return thing.kind is not None and table is not None and ontology.kinds.is_a(thing.kind, table)
 
 
 def all_on_it(graph: RelationGraph, tables: Sequence[bool]) -> tuple[RelationGraph, ...]:
-    """Return the graph with facts that everything is on the table that the script names; nothing without one table.
+    """Return a graph with the facts that everything is on the table that the script names.
 
     Objects that the script places beside the table, or on such objects, are left out.
+
+    Parameters
+    ----------
+    graph
+        The relation graph of the script.
+    tables
+        True for each node that is a table.
+
+    Returns
+    -------
+    tuple of RelationGraph
+        One graph, or nothing unless there is exactly one table.
     """
     if sum(tables) != 1:
         return ()
@@ -121,7 +146,26 @@ def lay_random(
     cloth: bool = False,
     ontology: Ontology | None = None,
 ) -> LaidScript:
-    """Return a table with so many random things, and the meshes (metres, z up), at random places."""
+    """Lay a table with random things at random places.
+
+    Parameters
+    ----------
+    count
+        Number of things.
+    seed
+        Seed of the kinds, sizes and places.
+    meshes
+        Further things, in metres with z up, by name.
+    cloth
+        True to lay a cloth.
+    ontology
+        The known kinds; default: the shipped ones.
+
+    Returns
+    -------
+    LaidScript
+        The table.
+    """
     require("open3d", "simulating a table")
     require_seed(seed)
     foreign = [
@@ -142,10 +186,35 @@ def lay_script(
 ) -> LaidScript:
     """Lay a table that satisfies every firm fact of a script, with things of their kinds, varied from the seed.
 
-    Everything is turned a little off its axis, unless a fact would no longer hold. ``meshes`` (metres, z up) stand
-    for objects of the script, by name. What is a table is the table's top itself, and everything is on it, unless the
-    script has it elsewhere. Raises NoTableError where there is
-    no such table, TimeIsUpError where that stayed open, SimulationError for a mesh that stands for nothing.
+    Everything is turned a little off its axis, unless a fact would no longer hold. What is a table is the table's top
+    itself, and everything is on it, unless the script has it elsewhere.
+
+    Parameters
+    ----------
+    script
+        The script.
+    seed
+        Seed of the sizes, places and angles.
+    meshes
+        Meshes in metres with z up that stand for objects of the script, by name.
+    cloth
+        True to lay a cloth.
+    time_limit
+        Seconds for the search of places.
+
+    Returns
+    -------
+    LaidScript
+        The table.
+
+    Raises
+    ------
+    NoTableError
+        If no table satisfies the script.
+    TimeIsUpError
+        If the time limit leaves that open.
+    SimulationError
+        If a mesh stands for nothing in the script.
     """
     require("open3d", "simulating a table")
     require_seed(seed)
@@ -167,7 +236,18 @@ def lay_script(
 
 
 def require_seed(seed: int) -> None:
-    """Raise SimulationError unless a seed is a whole number of at least 0."""
+    """Raise SimulationError unless a seed is a whole number of at least 0.
+
+    Parameters
+    ----------
+    seed
+        The seed.
+
+    Raises
+    ------
+    SimulationError
+        If it is not.
+    """
     if not isinstance(seed, Integral) or seed < 0:
         raise SimulationError(f"`seed` must be a whole number of at least 0, got {seed!r}")
 

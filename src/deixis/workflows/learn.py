@@ -33,7 +33,7 @@ class Learned:
     lesson: Lesson
     grounding: Grounding
     seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
-    standing: tuple[KeptName, ...] = ()  # what it would call otherwise than a teacher did
+    kept_names: tuple[KeptName, ...] = ()  # what it would call otherwise than a teacher did
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -56,12 +56,34 @@ def learn(
 ) -> tuple[Learned, ...]:
     """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
 
-    Each is grounded with what the memory had learned before this call; ``time_limit`` is for each grounding.
-    ``progress`` is called with the number of grounded examples and of all.
+    Each is grounded with what the memory had learned before this call. Doubtful and interchangeable matches are kept as
+    such and teach no category; the posterior of each match is kept too, for :meth:`KnowledgeStore.learn_relations`.
+    Sizes are learned at once. A thing that a teacher named keeps that name.
 
-    What is doubtful or interchangeable is kept as such and teaches no category; how sure each match is is kept too, for
-    :meth:`KnowledgeStore.learn_relations`. Sizes are learned at once. What a teacher named stays of that name. Raises
-    DeixisError, having changed nothing, where a script contradicts itself or what was learned before.
+    Parameters
+    ----------
+    examples
+        Pairs of a script and its scene, or of their files.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+    engine
+        Name of the engine.
+    time_limit
+        Seconds for each grounding.
+    progress
+        Called with the number of grounded examples and of all.
+
+    Returns
+    -------
+    tuple of Learned
+        A lesson for each example, with its grounding.
+
+    Raises
+    ------
+    DeixisError
+        If a script contradicts itself or what was learned before; nothing is changed then.
     """
     pairs = list(examples)
     for pair in pairs:
@@ -80,8 +102,8 @@ def learn(
     groups = [views.except_taught(seen) for _, seen in learned]
     new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
     found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views))
-    for (one, _), (new, standing) in zip(learned, groups, strict=True):
-        found.append(replace(one, seen=tuple(left[: len(new)]), standing=standing))
+    for (one, _), (new, kept) in zip(learned, groups, strict=True):
+        found.append(replace(one, seen=tuple(left[: len(new)]), kept_names=kept))
         del left[: len(new)]
     return tuple(found)
 

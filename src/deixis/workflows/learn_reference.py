@@ -131,7 +131,19 @@ def _right(model: Model, examples: Iterable[Example]) -> int:
 def write_reference(model: Model, file: Path, source: str) -> None:
     """Write the weights of a model as JSON, by the names of their features.
 
-    Raises DeixisError if the file cannot be written.
+    Parameters
+    ----------
+    model
+        The model.
+    file
+        The file.
+    source
+        Where the weights come from, as a text in the file.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written.
     """
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.grounding.reference.fitting import named_weights
@@ -147,7 +159,20 @@ def write_reference(model: Model, file: Path, source: str) -> None:
 def read_reference(file: Path) -> Model:
     """Return the model of a file that :func:`write_reference` wrote.
 
-    Raises OntologyError if the file cannot be read or is not a file of weights.
+    Parameters
+    ----------
+    file
+        The file.
+
+    Returns
+    -------
+    Model
+        The model.
+
+    Raises
+    ------
+    OntologyError
+        If the file cannot be read or is not a file of weights.
     """
     try:
         data = json.loads(file.read_text(encoding="utf-8"))

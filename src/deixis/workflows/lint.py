@@ -239,10 +239,22 @@ def _misspelt(names: list[str], known: set[str], declared: set[str], uses: Count
 
 
 def one_letter_away(word: str) -> Iterator[str]:
-    """Yield the words made by exchanging neighbours, or leaving out, changing or adding one letter (Damerau 1964).
+    """Yield the words one edit away (Damerau 1964): neighbours exchanged, or a letter left out, changed or added.
 
     Single letters and numbers as parts of a name are left as they are, since they number things.
 
+    Parameters
+    ----------
+    word
+        A name, with underscores.
+
+    Yields
+    ------
+    str
+        A word, possibly more than once.
+
+    Examples
+    --------
     >>> sorted({"fork", "frok"} & set(one_letter_away("frk"))), "cup_b" in one_letter_away("cup_a")
     (['fork', 'frok'], False)
     """

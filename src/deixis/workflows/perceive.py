@@ -29,12 +29,34 @@ def perceive(
     viewpoint: str = "chair",
     settings: DetectionSettings | None = None,
 ) -> Scene:
-    """Find the table in a cloud and the things on it; ``settings`` tell which table, and what is known of the frame.
+    """Find the table in a point cloud, and the objects on it.
 
     Each object of the scene has its points, so that it can be taught, learned and recognised at once;
-    :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the thing of each of its points, and notes on what
-    is unusual. Raises CloudError for a file that is not a cloud, or has no point; SceneError for a viewpoint that is
-    not a word.
+    :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the object of each of its points, and notes on what
+    is unusual.
+
+    Parameters
+    ----------
+    cloud
+        A cloud in metres, or a file of one, or a depth image.
+    intrinsics
+        File of the camera's intrinsics, for a depth image.
+    viewpoint
+        Name of the side from which the camera looks.
+    settings
+        Which table to choose, and what is known of the camera's frame.
+
+    Returns
+    -------
+    Scene
+        The objects in the frame of the table, in metres.
+
+    Raises
+    ------
+    CloudError
+        If the file is not a cloud, or has no point.
+    SceneError
+        If ``viewpoint`` is not a word.
     """
     if settings is not None and not isinstance(settings, DetectionSettings):
         raise CloudError(f"`settings` must be DetectionSettings, got {settings!r:.60}")
@@ -54,11 +76,28 @@ def perceive(
 
 
 def write_scene(scene: Scene, file: str | Path) -> Scene:
-    """Write a ``.scene.json``, and clouds that are in memory into a folder beside it; return the scene as written.
+    """Write a scene to a ``.scene.json``, and clouds that are in memory into a folder beside it.
 
     A cloud in a file stays where it is, and is named as seen from the scene. The clouds of a scene that is written over
     stay until the new scene is in its place, in one step, and then go: the name of each cloud depends on its content,
-    so at any moment there is a whole scene, old or new. Raises DeixisError where the place cannot be written.
+    so at any moment there is a whole scene, old or new.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    file
+        Name of the file, ending in ``.scene.json``.
+
+    Returns
+    -------
+    Scene
+        The scene as written, with the files of its clouds.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written.
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"`scene` must be a Scene, got {type(scene).__name__}; read_scene makes one")
@@ -107,7 +146,18 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
 
 
 def clouds_folder(scene: Path) -> Path:
-    """Return where the clouds of a scene's things are: ``table.clouds`` beside ``table.scene.json``."""
+    """Return the folder of the clouds of a scene: ``table.clouds`` beside ``table.scene.json``.
+
+    Parameters
+    ----------
+    scene
+        File of the scene.
+
+    Returns
+    -------
+    Path
+        The folder, which need not exist.
+    """
     return scene.with_name(f"{scene.name.removesuffix('.json').removesuffix('.scene')}.clouds")
 
 

@@ -30,12 +30,36 @@ def read_script(
     deadline: Deadline = Deadline.never(),
     english: bool = False,
 ) -> Script:
-    """Read a script from a file, or from ``text``.
+    """Read a script from a file or a text.
 
-    A file ``NAME.txt`` and ``-`` (standard input) hold English; ``text`` is English with ``english``, else a layout.
+    A file ``NAME.txt`` and ``-`` (standard input) hold English.
 
-    Raises ScriptError with every mistake in it, each with file, line and column; ScriptTimeError at the ``deadline``;
-    TypeError unless exactly one of the two is given.
+    Parameters
+    ----------
+    path
+        File of the script.
+    text
+        The script itself, instead of a file.
+    ontology
+        Words of the language; default: the shipped ones.
+    deadline
+        Time limit.
+    english
+        True if ``text`` is English rather than a layout.
+
+    Returns
+    -------
+    Script
+        The facts with their places in the text.
+
+    Raises
+    ------
+    ScriptError
+        If the script has mistakes; the message lists all of them, each with file, line and column.
+    ScriptTimeError
+        If the deadline passes.
+    TypeError
+        Unless exactly one of ``path`` and ``text`` is given.
     """
     if (path is None) == (text is None):
         raise TypeError("read_script takes a path or text=, and one of them only")
@@ -59,7 +83,27 @@ def _looks_like_text(name: str) -> bool:
 
 
 def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = None) -> Scene:
-    """Read a scene from a file, with or without its labels; ``image`` chooses one of several images of the file."""
+    """Read a scene from a file, with or without its labels.
+
+    Parameters
+    ----------
+    file
+        The file.
+    hide_labels
+        True to leave out the labels.
+    image
+        File name or id of the image, in a file with several images.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        If the file is not a scene.
+    """
     from deixis.perception.formats.scene_json import read_scene
 
     scene = read_scene(file, image=image) if image is not None else read_scene(file)
@@ -69,12 +113,48 @@ def load_scene(file: str | Path, hide_labels: bool = False, image: str | None = 
 def as_script(
     script: Script | str | Path, ontology: Ontology | None = None, deadline: Deadline = Deadline.never()
 ) -> Script:
-    """Return the script itself, or the one in the file of that name, read until the deadline."""
+    """Return a script that is given as such or by its file.
+
+    Parameters
+    ----------
+    script
+        A script, or the name of its file.
+    ontology
+        Words of the language; default: the shipped ones.
+    deadline
+        Time limit for reading.
+
+    Returns
+    -------
+    Script
+        The script.
+
+    Raises
+    ------
+    ScriptError
+        If the file has mistakes.
+    """
     return script if isinstance(script, Script) else read_script(script, ontology=ontology, deadline=deadline)
 
 
 def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
-    """Return the scene itself, or the one in the file of that name, or in parsed JSON."""
+    """Return a scene that is given as such, by its file, or as parsed JSON.
+
+    Parameters
+    ----------
+    scene
+        A scene, the name of its file, or parsed JSON.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        If it is not a scene.
+    """
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import Scene
 
@@ -82,15 +162,38 @@ def as_scene(scene: Scene | str | Path | Mapping[str, Any]) -> Scene:
 
 
 def is_script_file(layout: str | Path) -> bool:
-    """Return True if a layout is given as a file rather than by its name."""
+    """Say whether a layout is given as a file rather than by its name.
+
+    Parameters
+    ----------
+    layout
+        Name of a file or of a layout.
+
+    Returns
+    -------
+    bool
+        True for a file.
+    """
     return isinstance(layout, Path) or layout.endswith(SCRIPT_ENDING) or os.sep in layout or is_english(layout)
 
 
 def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
     """Pair scripts with scenes: files alternate; in a folder ``NAME.layout`` goes with ``NAME.scene.json``.
 
-    Raises DeixisError for what does not exist, a script without a scene, a scene in a folder without a script, and a
-    folder without either.
+    Parameters
+    ----------
+    inputs
+        Files and folders.
+
+    Returns
+    -------
+    list of tuple
+        Pairs of a script and its scene.
+
+    Raises
+    ------
+    DeixisError
+        If a file does not exist, a script has no scene, a scene in a folder has no script, or a folder has neither.
     """
     pairs: list[tuple[Path, Path]] = []
     script: Path | None = None
@@ -126,7 +229,26 @@ def _in_folder(folder: Path) -> Iterator[tuple[Path, Path]]:
 def read_english_file(path: str | Path, deadline: Deadline = Deadline.never(), strict: bool = False) -> Script:
     """Read a text in English from a file, whatever its ending, or from standard input (``-``).
 
-    Raises DeixisError for a layout script, ScriptError where nothing was understood or, with ``strict``, not all.
+    Parameters
+    ----------
+    path
+        The file.
+    deadline
+        Time limit.
+    strict
+        True to refuse a text that is not understood whole.
+
+    Returns
+    -------
+    Script
+        The facts, claims and sentences.
+
+    Raises
+    ------
+    DeixisError
+        If the file is a layout script.
+    ScriptError
+        If nothing is understood or, with ``strict``, not all.
     """
     if not is_english(path):
         raise DeixisError(f"{path}: a text in English must be a .txt file or - (standard input); parse reads layouts")

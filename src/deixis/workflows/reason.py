@@ -20,9 +20,22 @@ _STATED = (GraphName.ONTOLOGY, GraphName.LEARNED, GraphName.ASSERTED, GraphName.
 
 
 def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
-    """Read files as one ontology; return its triples, and the usual prefixes with those that the files declare.
+    """Read files as one ontology.
 
-    Raises ImportFormatError, with the place, for a file that cannot be read.
+    Parameters
+    ----------
+    files
+        Files of triples.
+
+    Returns
+    -------
+    tuple
+        The triples, and the usual prefixes with those that the files declare.
+
+    Raises
+    ------
+    ImportFormatError
+        If a file cannot be read; the message names the place.
     """
     found = [triple for number, file in enumerate(files) for triple in _apart(number, read_quads(file))]
     prefixes = dict(PREFIXES)
@@ -43,7 +56,18 @@ def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
 
 
 def read_remembered(memory: SemanticMemory) -> tuple[list[Triple], dict[str, str]]:
-    """Return the stated triples of a memory, without inferred ones, and the usual prefixes."""
+    """Return the stated triples of a memory, without inferred ones.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+
+    Returns
+    -------
+    tuple
+        The triples, and the usual prefixes.
+    """
     found = [triple for name in _STATED for triple in memory.triples(name)]
     return _as_triples(list(with_blank_nodes(found))), dict(PREFIXES)
 

@@ -23,8 +23,26 @@ def recognise(
 ) -> Recognised:
     """Name the things of a scene that have points by the taught categories; without any, all are unknown.
 
-    ``progress`` is called while the taught views are read and calibrated, which takes seconds for many views;
-    ``left_out`` with a line for each damaged view. Raises SceneError for a file that is not a cloud.
+    Parameters
+    ----------
+    scene
+        A scene, the name of its file, or parsed JSON.
+    store
+        The perceptual store.
+    progress
+        Called while the taught views are read and calibrated, which takes seconds for many views.
+    left_out
+        Called with a line for each damaged view.
+
+    Returns
+    -------
+    Recognised
+        The scene with the names, and the recogniser's answer for each thing.
+
+    Raises
+    ------
+    SceneError
+        If a file is not a cloud.
     """
     from deixis.learning.views import recognise as recognise_clouds
 

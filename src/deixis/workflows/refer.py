@@ -117,7 +117,23 @@ def refer(
 
 
 def read_description(text: str) -> Query:
-    """Return the query of a description; raise DescriptionError if it is blank, too long, or not understood."""
+    """Return the query of a description.
+
+    Parameters
+    ----------
+    text
+        One or more English sentences.
+
+    Returns
+    -------
+    Query
+        The noun, the properties and the relations of the object.
+
+    Raises
+    ------
+    DescriptionError
+        If the text is blank, too long, or not understood.
+    """
     from deixis.grammar.english.parse import parse_english
     from deixis.workflows.description import query_of
 
@@ -160,10 +176,23 @@ def _check_words(query: Query, room: Room) -> None:
 def refer_batch(
     lines: Iterable[str], folder: Path, until: float = DECIDED, model: Model | None = None
 ) -> Iterator[dict[str, Any]]:
-    """Yield the answer of each line ``{"text", "scene"}`` as plain data, ``{"error": …}`` for a line that is wrong.
+    """Answer many descriptions, given as lines of JSON.
 
-    Paths of scenes are relative to ``folder`` unless they exist as they are; blank lines are skipped. The questions of
-    lines with an ``oracle`` end at the probability ``until``; ``model`` is used in place of the shipped one.
+    Parameters
+    ----------
+    lines
+        Objects with the keys ``text`` and ``scene``, optionally ``oracle`` and ``id``; blank lines are skipped.
+    folder
+        Folder that scenes are relative to unless they exist as they are named.
+    until
+        Probability at which the questions of lines with an ``oracle`` end.
+    model
+        Model of reference; default: the shipped one.
+
+    Yields
+    ------
+    dict
+        The answer to a line as plain data, or ``{"error": …}`` for a line that is wrong.
     """
     scenes: dict[str, Scene] = {}
     for number, line in enumerate(lines, start=1):
@@ -182,7 +211,27 @@ def _batch_line(line: str, folder: Path, scenes: dict[str, Scene], until: float,
 
 
 def line_of_batch(line: str, required: Sequence[str], others: Sequence[str] = ()) -> dict[str, Any]:
-    """Return the object of a line of JSON, whose ``required`` keys are texts; raise DescriptionError otherwise."""
+    """Return the object of a line of JSON.
+
+    Parameters
+    ----------
+    line
+        The line.
+    required
+        Keys that must be there, with texts.
+    others
+        Other keys that may be there.
+
+    Returns
+    -------
+    dict
+        The parsed object.
+
+    Raises
+    ------
+    DescriptionError
+        If the line is not such an object.
+    """
     form = ", ".join(f'"{key}": …' for key in required)
     try:
         data = json.loads(line)
@@ -199,7 +248,27 @@ def line_of_batch(line: str, required: Sequence[str], others: Sequence[str] = ()
 
 
 def scene_of_line(data: Mapping[str, Any], folder: Path, scenes: dict[str, Scene]) -> Scene:
-    """Return the scene of a line, read once; its path is relative to ``folder`` unless it exists as it is."""
+    """Return the scene of a line, read once.
+
+    Parameters
+    ----------
+    data
+        The parsed line, whose ``scene`` names a file.
+    folder
+        Folder that the file is relative to unless it exists as it is named.
+    scenes
+        Scenes read so far, by name; the scene is added.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        If the file is not a scene.
+    """
     name = data["scene"]
     if not name.strip():
         raise DescriptionError("'scene' must be the path of a scene, got a blank text")
@@ -217,7 +286,18 @@ def shipped_model() -> Model:
 
 
 def model_with(weights: Mapping[str, Array]) -> Model:
-    """Return a model of reference with given weights and the words of the ontology."""
+    """Return a model of reference with given weights and the words of the ontology.
+
+    Parameters
+    ----------
+    weights
+        Weights by the name of their group of features.
+
+    Returns
+    -------
+    Model
+        The model.
+    """
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.grounding.reference.model import Lexis, Model
     from deixis.reasoning.grounding.reference.nouns import Nouns

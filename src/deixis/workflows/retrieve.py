@@ -38,15 +38,33 @@ class Knowledge(Protocol):
     """Learned knowledge, as a session or its knowledge store offers it."""
 
     def meaning(self) -> Meaning:
-        """Return the words and sizes in force."""
+        """Return the words and sizes in force.
+
+        Returns
+        -------
+        Meaning
+            Models of words and ranges of sizes.
+        """
         ...
 
     def layouts(self) -> tuple[LayoutConcept, ...]:
-        """Return the learned layouts."""
+        """Return the learned layouts.
+
+        Returns
+        -------
+        tuple of LayoutConcept
+            One layout for each lesson.
+        """
         ...
 
     def recollection(self) -> Recollection:
-        """Return the lessons with their texts."""
+        """Return the lessons with their texts.
+
+        Returns
+        -------
+        Recollection
+            The lessons with their scenes.
+        """
         ...
 
 
@@ -93,11 +111,34 @@ def retrieve(
 ) -> Retrieval:
     """Rank all known layouts by their similarity to a scene, or all known scenes by their similarity to a script.
 
-    Known are the ``.layout`` scripts or ``.scene.json`` scenes in the folder ``among``, and what ``memory``, an open
-    session, remembers. ``query`` is a scene or a script, or the file of one: a script's name ends in ``.layout``, and
-    in a folder in anything but ``.json``.
-    ``least`` is the minimum similarity of a result. ``left_out`` is called with a line for each unreadable lesson.
-    Raises DeixisError where nothing is known, or a file cannot be read.
+    Parameters
+    ----------
+    query
+        A scene or a script, or the file of one. The name of a script's file ends in ``.layout``.
+    among
+        Folder of ``.layout`` scripts or ``.scene.json`` scenes to compare with.
+    memory
+        An open session, whose layouts or scenes are compared too.
+    top
+        Maximum number of results.
+    least
+        Minimum similarity of a result, in [0, 1].
+    hide_labels
+        True to ignore the labels of scenes.
+    time_limit
+        Seconds for all comparisons.
+    left_out
+        Called with a line for each lesson that cannot be read.
+
+    Returns
+    -------
+    Retrieval
+        The results, best first.
+
+    Raises
+    ------
+    DeixisError
+        If nothing is known, or a file cannot be read.
     """
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)

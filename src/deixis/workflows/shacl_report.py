@@ -20,7 +20,24 @@ from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:
-    """Return whether the scene conforms to the layout's shapes, and the validation report as Turtle."""
+    """Validate a checked scene against the shapes of its layout with pyshacl.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    scene
+        The scene.
+    check
+        The verdicts on the roles.
+    relations
+        Relations of the ontology.
+
+    Returns
+    -------
+    tuple
+        True if the scene conforms, and the validation report as Turtle.
+    """
     import rdflib
     from pyshacl import validate
 
@@ -52,6 +69,22 @@ def satisfied_relations(
     """Yield each relation that a fact of the layout names and that holds between the things in its roles.
 
     A word that only a model decides holds from a degree of one half on, by the shipped models.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    scene
+        The scene.
+    fills
+        Role by the id of the thing that fills it.
+    relations
+        Relations of the ontology.
+
+    Yields
+    ------
+    tuple
+        Id of the subject, relation, and id of the object.
     """
     thing = {role: id for id, role in fills.items()}
     seen, position = scene.relations(relations), {id: i for i, id in enumerate(scene.ids)}

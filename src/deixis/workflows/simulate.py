@@ -57,10 +57,33 @@ class Simulation:
 
 
 def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None = None, seed: int = 0) -> Simulation:
-    """Lay a table as a script says, unless it is laid already, and looks at it; the same seed gives the same cloud.
+    """Lay a table as a script says, and look at it with a simulated depth camera.
 
-    Raises NoTableError where no table satisfies the script, SimulationError for a camera or a seed that cannot be.
+    The same seed gives the same cloud.
 
+    Parameters
+    ----------
+    layout
+        A table that is laid already, a script, or its file.
+    view
+        Camera and sensor; default: a Kinect.
+    seed
+        Seed of the sizes, the places and the noise.
+
+    Returns
+    -------
+    Simulation
+        The cloud in the camera's frame, in metres, with the true scene.
+
+    Raises
+    ------
+    NoTableError
+        If no table satisfies the script.
+    SimulationError
+        If the camera or the seed is invalid.
+
+    Examples
+    --------
     >>> import deixis
     >>> look = simulate(deixis.read_script(text="fork left of plate"), seed=1)
     >>> look.cloud.organised, [thing.label for thing in look.truth.objects], bool((look.points > 100).all())

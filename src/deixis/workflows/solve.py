@@ -50,7 +50,18 @@ class Wish:
     time_limit: float = 60.0
 
     def extended(self, deadline: Deadline) -> Deadline:
-        """Return the deadline for finding the reasons after the verdict."""
+        """Return the deadline for finding the reasons after the verdict.
+
+        Parameters
+        ----------
+        deadline
+            The deadline of the verdict.
+
+        Returns
+        -------
+        Deadline
+            A later deadline.
+        """
         return max(deadline, Deadline.after(LAST_SHARE * self.time_limit))
 
 
@@ -79,10 +90,24 @@ class SolvedNetwork:
 
 
 def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
-    """Return the calculi of ``ra+rcc8``, or of a specification in GQR's format, with notes on them.
+    """Return the calculi of ``ra+rcc8``, or of a specification in GQR's format.
 
-    Raises DeixisError where two are the same, or one is joined to no other, and CalculusFileError where a
-    specification is not a calculus.
+    Parameters
+    ----------
+    text
+        Names of calculi joined by ``+``, or the file of a specification.
+
+    Returns
+    -------
+    tuple
+        The calculi, and notes on them.
+
+    Raises
+    ------
+    DeixisError
+        If two are the same, or one is joined to no other.
+    CalculusFileError
+        If a specification is not a calculus.
     """
     from deixis.reasoning.qualitative.calculi.registry import calculus
 
@@ -109,7 +134,29 @@ Told = Callable[["SolvedNetwork"], None]
 def solve_text(
     text: NetworkText, wish: Wish, progress: Progress | None = None, told: Told = lambda solved: None
 ) -> SolvedNetwork:
-    """Solve one network of a file; raises LimitError where it would not fit in memory."""
+    """Solve one network of a file.
+
+    Parameters
+    ----------
+    text
+        The network with its place in the file.
+    wish
+        What to compute, and the time limit.
+    progress
+        Called during the search.
+    told
+        Called with what is known so far, once the verdict is.
+
+    Returns
+    -------
+    SolvedNetwork
+        The verdict with what was asked for.
+
+    Raises
+    ------
+    LimitError
+        If the network does not fit in memory.
+    """
     solving = _solve_single if len(text.networks) == 1 else _solve_joint
     return solving(text, wish, progress, told)
 

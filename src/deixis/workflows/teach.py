@@ -27,8 +27,34 @@ def teach(
     """Keep the look of a thing in a scene as a view of a category, which is created if it is new.
 
     A word that differs from a known category only by case means that category. Teaching the view again under another
-    word corrects it; it then belongs to no lesson. Raises SceneError where the scene has no such thing, or no cloud of
-    it; SettingError for an invalid name.
+    word corrects it; it then belongs to no lesson.
+
+    Parameters
+    ----------
+    scene
+        A scene, the name of its file, or parsed JSON.
+    object
+        Id of the thing.
+    category
+        Name of the category.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+    teacher
+        Name of the person who teaches.
+
+    Returns
+    -------
+    Taught
+        The view, and the number of views of its category.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no such thing, or no cloud of it.
+    SettingError
+        If the name is invalid.
     """
     scene = as_scene(scene)
     name = views.category_meant(new_category_name(category))

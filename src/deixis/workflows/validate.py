@@ -17,17 +17,59 @@ from deixis.memory.semantic.validation.by_shapes import ShapesReport, validate_b
 
 
 def validate_files(files: Sequence[Path], shapes: Sequence[Path] = (), time_limit: float = 60.0) -> ShapesReport:
-    """Validate the triples of some files, taken together, by the shapes of others, or by those of Deixis.
+    """Validate the triples of some files, taken together, by SHACL shapes.
 
-    Raises ImportFormatError, with the place, for a file that cannot be read, ShapesError for shapes that are not well
-    formed, LimitError where ``time_limit`` (seconds) is up.
+    Parameters
+    ----------
+    files
+        Files of data.
+    shapes
+        Files of shapes; default: those of Deixis.
+    time_limit
+        Seconds until the report.
+
+    Returns
+    -------
+    ShapesReport
+        All results, violations first.
+
+    Raises
+    ------
+    ImportFormatError
+        If a file cannot be read; the message names the place.
+    ShapesError
+        If the shapes are malformed.
+    LimitError
+        If the time limit is reached.
     """
     deadline = Deadline.after(time_limit)
     return validate_by_shapes(_triples(files), _shapes(shapes), deadline)
 
 
 def validate_memory(memory: SemanticMemory, shapes: Sequence[Path] = (), time_limit: float = 60.0) -> ShapesReport:
-    """Validate everything remembered, with the ontology and what was inferred, in the same way."""
+    """Validate everything remembered, with the ontology and what was inferred, by SHACL shapes.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    shapes
+        Files of shapes; default: those of Deixis.
+    time_limit
+        Seconds until the report.
+
+    Returns
+    -------
+    ShapesReport
+        All results, violations first.
+
+    Raises
+    ------
+    ShapesError
+        If the shapes are malformed.
+    LimitError
+        If the time limit is reached.
+    """
     deadline = Deadline.after(time_limit)
     data = [triple for name in (GraphName.ONTOLOGY, GraphName.EPISODES, *UNION) for triple in memory.triples(name)]
     return validate_by_shapes(dict.fromkeys(data), _shapes(shapes), deadline)

@@ -52,11 +52,26 @@ class ViewpointScene:
 def recover_scene(
     evidence_of: Callable[[Scene], Evidence], scene: Scene, any_angle: bool, deadline: Deadline
 ) -> ViewpointScene:
-    """Return the scene as seen from the side from which a script most probably speaks, and notes that say which.
+    """Return the scene as seen from the side from which a script most probably speaks.
 
-    ``evidence_of`` gives the evidence of the script beside the scene as seen from one side.
-    Turned by quarters only, unless ``any_angle``; mirrored where that explains it better. Where no fact compares two
-    things that were found, or most of the circle does as well, nothing tells a side, and the scene stays as it is.
+    A scene is mirrored where that explains the script better. Where no fact compares two things that were found, or
+    most of the circle fits as well, the script tells no side, and the scene stays as it is.
+
+    Parameters
+    ----------
+    evidence_of
+        Function from the scene as seen from one side to the evidence of the script.
+    scene
+        The scene.
+    any_angle
+        True to try all angles, False for quarter turns.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    ViewpointScene
+        The turned scene, the possible viewpoints, and notes that say which.
     """
     evidence = evidence_of(scene)
     indifferent = ViewpointScene(scene, notes=(f"{_NO_VIEWPOINT_NOTE}, and it makes no difference",), evidence=evidence)
@@ -102,10 +117,29 @@ def ground_from_sides(
     deadline: Deadline,
     notes: tuple[str, ...],
 ) -> Grounding:
-    """Ground as seen from the likeliest side, with the probabilities of matches over all sides that are worth a look.
+    """Ground as seen from the likeliest side, with the probabilities of matches over all plausible sides.
 
-    Where nothing tells a side, the map is that of the scene as it stands, with the probabilities from all around. The
-    answer has the viewpoints with the probabilities that its matches rest on.
+    Where the script tells no side, the map is that of the scene as it stands, with the probabilities from all around.
+
+    Parameters
+    ----------
+    evidence_of
+        Function from the scene as seen from one side to the evidence of the script.
+    side
+        The likeliest side and the other viewpoints.
+    engine
+        Name of the engine.
+    select
+        Choice among sub-graphs under the paper's engine.
+    deadline
+        Time limit.
+    notes
+        Notes to put before those of the answer.
+
+    Returns
+    -------
+    Grounding
+        The answer, with the viewpoints and the probabilities that its matches rest on.
     """
     here = side.side
     if here is None:
@@ -124,10 +158,19 @@ def ground_from_sides(
 
 
 def as_weighed(found: Viewpoints, sides: Sequence[tuple[Side, float]]) -> Viewpoints:
-    """Return viewpoints as probable as the posterior of the matches has them, given that the scene is the one meant.
+    """Weight viewpoints by the posterior of their matches, given that the scene is the one that the script describes.
 
-    ``sides`` are those that were grounded from, with their probabilities; other viewpoints are so unlikely that
-    they keep theirs.
+    Parameters
+    ----------
+    found
+        The viewpoints.
+    sides
+        Sides that were grounded from, with their probabilities; other viewpoints are unlikely and keep theirs.
+
+    Returns
+    -------
+    Viewpoints
+        The viewpoints with their new probabilities.
     """
     weighed = {(side.angle, side.mirrored): probability for side, probability in sides}
     total = sum(weighed.values())
@@ -143,7 +186,20 @@ def as_weighed(found: Viewpoints, sides: Sequence[tuple[Side, float]]) -> Viewpo
 
 
 def scene_from(scene: Scene, view: Viewpoint) -> Scene:
-    """Return the scene as seen from a viewpoint."""
+    """Return the scene as seen from a viewpoint.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    view
+        Angle, and whether the scene is mirrored.
+
+    Returns
+    -------
+    Scene
+        The turned scene.
+    """
     seen = _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
     if all(thing.front is None for thing in scene.objects):
         return seen

@@ -22,7 +22,24 @@ if TYPE_CHECKING:
 def keep_lessons(
     lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]], knowledge: KnowledgeStore, views: ViewStore
 ) -> tuple[Taught, ...]:
-    """Write lessons, and the views that each teaches, by its id; return what the views taught, in turn."""
+    """Write lessons, and the views that each teaches, in one step over both stores.
+
+    Parameters
+    ----------
+    lessons
+        The lessons.
+    seen
+        Views by the id of the lesson that teaches them.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Returns
+    -------
+    tuple of Taught
+        What each view taught, in turn.
+    """
     together = [view for lesson in lessons for view in seen.get(lesson.id, ())]
     if not together:
         knowledge.keeping(lessons, {})(None)
@@ -36,7 +53,22 @@ def keep_lessons(
 
 
 def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught:
-    """Write a view that a teacher named; what a lesson taught of it is of no lesson any more."""
+    """Write a view that a teacher named; it then belongs to no lesson.
+
+    Parameters
+    ----------
+    view
+        The view.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Returns
+    -------
+    Taught
+        The view, and the number of views of its category.
+    """
     memory = views.memory(create=True)
     with memory.exclusive():
         change, (taught,) = views.keeping([view])
@@ -46,7 +78,22 @@ def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught
 
 
 def forget_lesson(lesson: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
-    """Take back one lesson, with everything that follows from it alone; its views stay, and belong to no lesson."""
+    """Remove one lesson, with everything that follows from it alone; its views stay, and belong to no lesson.
+
+    Parameters
+    ----------
+    lesson
+        Id of the lesson.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Raises
+    ------
+    UnknownLessonError
+        If there is no such lesson.
+    """
     from deixis.memory.perceptual.records import Batch
     from deixis.memory.semantic.rdf.links import lessons_with, links_of
 
@@ -68,7 +115,21 @@ def forget_lesson(lesson: str, knowledge: KnowledgeStore, views: ViewStore) -> N
 def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
     """Give a category of views another name.
 
-    Raises UnknownCategoryError; RejectedWriteError for a name that is taken.
+    Parameters
+    ----------
+    old, new
+        Its present name and its new one.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Raises
+    ------
+    UnknownCategoryError
+        If there is no category ``old``.
+    RejectedWriteError
+        If the new name is in use.
     """
     memory = views.memory()
     with memory.exclusive():
@@ -77,7 +138,22 @@ def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewSt
 
 
 def merge_categories(source: str, into: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
-    """Make the views of one category views of another. Raises UnknownCategoryError."""
+    """Move the views of one category to another.
+
+    Parameters
+    ----------
+    source, into
+        Category that goes, and category that gets the views.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Raises
+    ------
+    UnknownCategoryError
+        If there is no category ``source``.
+    """
     memory = views.memory()
     with memory.exclusive():
         change = memory.merging(source, into)
@@ -85,7 +161,22 @@ def merge_categories(source: str, into: str, knowledge: KnowledgeStore, views: V
 
 
 def forget_category(name: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
-    """Forget a category with all its views; lessons taught none of these any more. Raises UnknownCategoryError."""
+    """Forget a category with all its views, and that lessons taught them.
+
+    Parameters
+    ----------
+    name
+        Name of the category.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+
+    Raises
+    ------
+    UnknownCategoryError
+        If there is no such category.
+    """
     memory = views.memory()
     with memory.exclusive():
         change = memory.forgetting(name)

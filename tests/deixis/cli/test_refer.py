@@ -30,7 +30,7 @@ def test_an_oracle_answers_questions_in_json() -> None:
     code, out, _ = deixis("refer", "the chair", STUDY, "--oracle", "o9", "--json")
     answer = json.loads(out)
     assert (code, answer["target"], answer["question"]) == (0, "o9", None)
-    assert answer["turns"]
+    assert answer["questions"]
 
 
 def test_a_person_answers_questions(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -63,7 +63,7 @@ def test_fewer_questions_are_asked_for_less_certainty() -> None:
     turns = []
     for until in ("0.95", "0.45"):
         code, out, _ = deixis("refer", "the chair", STUDY, "--oracle", "o9", "--until", until, "--json")
-        turns.append(len(json.loads(out)["turns"]))
+        turns.append(len(json.loads(out)["questions"]))
     assert code == 3
     assert turns[0] > turns[1]
 

@@ -138,7 +138,10 @@ def test_explain_as_json() -> None:
     assert code == 0
     assert len(data["derivation"]["premises"]) == 5
     code, out, _ = deixis(*arguments, "right(salad_fork, soup_spoon)")
-    assert (code, json.loads(out)) == (1, {"fact": "right(salad_fork, soup_spoon)", "derivation": None})
+    answer = json.loads(out)
+    assert (code, answer["derivation"]) == (1, None)
+    assert [answer["fact"][key] for key in ("relation", "subject", "object")] == ["right", "salad_fork", "soup_spoon"]
+    assert "file" not in answer["fact"]
 
 
 def test_what_does_not_follow_is_a_no() -> None:

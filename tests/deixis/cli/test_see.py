@@ -71,7 +71,7 @@ def test_what_was_learned_is_recognised_on_another_table(tables: Path, tmp_path:
         "recognise", tables / "20.scene.json", "--memory", tables / "memory", "--json", "-o", named, "--plot", picture
     )
     assert code == 0
-    answers = {entry["object"]: entry for entry in json.loads(out)["objects"]}
+    answers = {entry["id"]: entry for entry in json.loads(out)["objects"]}
     scene = read_scene(tables / "20.scene.json")
     truth = {match.perceived: name for name, match in ground(FULL, scene).matches.items()}
     assert answers.keys() == truth.keys()
@@ -113,7 +113,7 @@ def test_views_and_categories_can_be_taught_changed_and_removed(tables: Path, tm
     assert deixis("category", "rename", "plate", "dish", *memory)[0] == 0
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"dish": 2}
     entry = json.loads(deixis("recognise", scene, "--json", *memory)[1])["objects"][0]
-    assert (entry["object"], entry["candidates"][0]["category"], entry["candidates"][0]["views"]) == ("o1", "dish", 2)
+    assert (entry["id"], entry["candidates"][0]["category"], entry["candidates"][0]["views"]) == ("o1", "dish", 2)
     assert entry["candidates"][0]["D_C"] == 0
     assert deixis("memory", "verify", *memory)[0] == 0
     views = tmp_path / "views.zip"
@@ -135,14 +135,14 @@ def test_what_a_teacher_named_is_not_overruled_by_a_grounding(tables: Path, tmp_
         assert {"grandmas_platter", "napkin"} < set(session.categories())
         assert "dinner_plate" not in session.categories()
         kept = {view.category: view.metadata["teacher"] for view in session.views().views()}
-    assert [str(word) for word in again.standing] == [
+    assert [str(word) for word in again.kept_names] == [
         f"{plate} stays a view of 'grandmas_platter', as Ada taught; the grounding matched it with 'dinner_plate'"
     ]
     assert len(again.seen) == len(first.seen) - 2
     assert (kept["napkin"], kept["soup_spoon"]) == ("Ada", "grounding")
     code, out = deixis("learn", FULL, tables / "7.scene.json", "--memory", memory)[:2]
     assert code == 0
-    assert f"{again.standing[0]}." in out
+    assert f"{again.kept_names[0]}." in out
 
 
 def test_the_stored_model_of_a_category_matches_its_views(tables: Path, tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def test_boxes_show_how_several_calculi_can_hold_together(tmp_path: Path) -> Non
         assert all(c.relation.bit_count() == 1 for c in shown.constraints)
         assert not any(shown.stated(c.first, c.second) & ~c.relation for c in asked.constraints)
     boxes = json.loads(deixis("solve", path, "--calculus", "ra+rcc8+cd", "--json")[1])["networks"][0]["boxes"]
-    placed = {box["thing"]: (box["low"], box["high"]) for box in boxes}
+    placed = {box["thing"]: (box["min"], box["max"]) for box in boxes}
     assert sorted(placed) == [0, 3, 7, 9]
     assert placed[0][1][0] < placed[7][0][0] and placed[0][0][1] == placed[7][0][1]
     assert out.count("box ") == 4

@@ -63,7 +63,7 @@ def test_the_python_of_the_page(capsys: pytest.CaptureFixture[str]) -> None:
 def test_bounds_as_json() -> None:
     code, out, _ = deixis("time", FILE, "--json")
     answer = json.loads(out)
-    assert (code, answer["status"], answer["exact"]) == (0, "consistent", True)
+    assert (code, answer["verdict"], answer["exact"]) == (0, "consistent", True)
     assert answer["fluents"][3]["start"] == {"lower": 30, "upper": None, "lower_open": True, "upper_open": False}
 
 
@@ -107,7 +107,7 @@ The proof:
 def test_choices_that_cannot_be_made_are_refuted_and_exit_1() -> None:
     code, out, _ = deixis("time", story(one_at_a_time(), end=25), "--json")
     answer = json.loads(out)
-    assert (code, answer["status"], answer["minimal"]) == (1, "inconsistent", True)
+    assert (code, answer["verdict"], answer["minimal"]) == (1, "inconsistent", True)
     assert {f"story.fluents.json: relations[{k}]" for k in range(6)} <= {s["source"] for s in answer["statements"]}
 
 

@@ -12,6 +12,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from schemas import errors_in
 
 from deixis.cli.app import main
 from deixis.experiments.figure6 import Figure6, Points, Spread, run
@@ -74,6 +75,7 @@ def test_the_command_prints_the_same_figures_for_the_same_seed(result: Figure6, 
     with patch.object(sys, "argv", argv), redirect_stdout(out), plot, pytest.raises(SystemExit) as end:
         main()
     data, expected = json.loads(out.getvalue()), json.loads(json.dumps(result.to_dict(), allow_nan=False))
+    assert errors_in("figure6", data) == []
     assert not end.value.code
     assert data.pop("pictures") != expected.pop("pictures")
     assert data == expected

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import deixis
+from schemas import errors_in
 
 from deixis.experiments.open_ended.comparison import by_things, by_views, split_scores
 from deixis.experiments.open_ended.contestants import EQUATIONS, NEAREST, contestants
@@ -206,6 +207,7 @@ def test_the_report_fits_the_page_and_names_seeds_and_skipped(found: OpenEnded) 
     assert max(map(len, text)) <= 120 and "seeds 1 to 2" in text[0]
     assert any("skipped: meshes" in line for line in text)
     data = json.loads(json.dumps(to_dict(found), allow_nan=False))
+    assert errors_in("open_ended", data) == []
     assert data["seeds"] == [1, 2] and len(data["sets"][0]["courses"]) == 4
     assert 0.0 <= data["sets"][0]["courses"][0]["GCA"] <= 1.0
 

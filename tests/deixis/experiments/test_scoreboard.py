@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from schemas import errors_in
 
 from deixis.cli.app import main
 from deixis.deadline import Deadline
@@ -235,6 +236,7 @@ def test_the_command_prints_json_and_draws(monkeypatch: pytest.MonkeyPatch, tmp_
     picture = tmp_path / "board.png"
     data = json.loads(_command("scoreboard", "--quick", "--json", "--plot", str(picture)))
     assert picture.read_bytes().startswith(b"\x89PNG")
+    assert errors_in("scoreboard", data) == []
     assert data["seed"] == 1
     assert {entry["engine"] for entry in data["board"]["groups"]} >= {"exact", "similarity"}
     assert {entry["verdict"] for entry in data["comparisons"]} <= {"", "better", "worse"}

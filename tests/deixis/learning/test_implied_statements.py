@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -85,6 +86,24 @@ def test_queries_find_what_follows_and_why(session: Session) -> None:
     assert ("salad_fork", "dinner_plate") in names or ("dinner_fork", "dinner_plate") in names
     rules = session.query("SELECT DISTINCT ?r { ?s a dx:ImpliedStatement ; dx:rule/a dx:InferenceRule ; dx:rule ?r }")
     assert len(rules.rows) >= 4
+
+
+def test_answers_note_layouts_whose_implications_are_not_stored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(implied_statements, "MAX_IMPLIED", 3)
+    with Session(tmp_path / "memory") as session:
+        session.learn(example("formal_dinner.layout"), example("place_setting.scene.json"))
+        found = session.query(FORKS)
+        (note,) = found.notes
+        assert "may be incomplete: formal_dinner-1" in note
+        assert json.loads(found.to_json())["notes"] == [note]
+        assert json.loads(session.query("ASK { ?s a dx:ImpliedStatement }").to_json())["notes"] == [note]
+        assert session.query("SELECT ?l { ?l rdfs:subClassOf dx:Layout }").notes == ()
+
+
+def test_complete_answers_have_no_notes(session: Session) -> None:
+    assert session.query(FORKS).notes == ()
 
 
 def test_verify_finds_a_missing_implication(session: Session, tmp_path: Path) -> None:

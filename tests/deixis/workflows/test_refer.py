@@ -165,4 +165,4 @@ def test_a_bad_line_of_a_batch_is_an_error_answer(line: str, said: str) -> None:
 def test_a_batch_may_answer_its_questions(tmp_path: Path) -> None:
     line = json.dumps({"text": "the bin", "scene": str(STUDY), "oracle": "o14"})
     (found,) = refer_batch([line, "\n"], tmp_path)
-    assert found["target"] == "o14" and found["turns"]
+    assert found["target"] == "o14" and found["questions"]

@@ -1,0 +1,58 @@
+"""Check that public functions have the sections of their parameters and results, and that the check finds gaps."""
+
+from __future__ import annotations
+
+import pytest
+from documentation.package_reference import packages
+from documentation.sections import SECTIONED, findings, lacks
+
+pytest.importorskip("pygls")
+pytest.importorskip("matplotlib")
+
+
+def test_public_functions_have_their_sections() -> None:
+    assert list(findings()) == []
+
+
+def test_the_sectioned_packages_exist() -> None:
+    assert set(SECTIONED) <= {name for name, _ in packages()}
+
+
+class Shape:
+    def area(self, scale: float) -> float:
+        """Return the area.
+
+        Parameters
+        ----------
+        scale
+            Factor.
+        factor
+            Another name of it.
+
+        Returns
+        -------
+        float
+            The area in square metres.
+        """
+        return scale
+
+
+class Square(Shape):
+    def area(self, scale: float) -> float:
+        """Return the area of the square."""
+        return 2 * scale
+
+
+def test_a_parameter_that_the_function_lacks_is_found() -> None:
+    assert lacks(Shape.area) == ["'Parameters' has factor, which the function does not have"]
+
+
+def test_functions_without_a_result_need_no_returns() -> None:
+    def draw() -> None:
+        """Draw it."""
+
+    assert lacks(draw) == []
+
+
+def test_an_overriding_method_inherits_no_incomplete_sections() -> None:
+    assert lacks(Square.area, Square) == ["'Parameters' lacks scale", "'Returns' is missing"]
