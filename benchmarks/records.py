@@ -125,6 +125,7 @@ RUNS = (
     Run("english", "English", "facts of paragraphs about tables", options="--ground", data=True),
     Run("stepgame", "English", "relative positions after one to ten sentences", options="--sample 20", data=True),
     Run("refer", "English", "objects that descriptions of rooms refer to", data=True),
+    Run("blocks", "English", "coloured blocks that instructions across a table pick", data=True),
     Run("habits", "Learning", "places of unseen things, from examples of where a person puts things", data=True),
     Run("startup", "Command line", "processor time of commands on small jobs"),
 )

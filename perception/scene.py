@@ -22,6 +22,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError, SceneError
 
 if TYPE_CHECKING:
+    from deixis.reasoning.geometry.poses import Poses
     from deixis.reasoning.geometry.rectangle import SceneRelations
     from deixis.reasoning.grounding.reference.room import Room
 
@@ -228,6 +229,8 @@ class Scene(Answer):
         Name of the file for error messages; it does not count in comparisons.
     detection
         Result of the detection, if the objects were detected in a cloud; it does not count in comparisons.
+    speaker, addressee
+        Places (x, y) of those who talk about the scene, *me* and *you*; None if they are unknown.
 
     Raises
     ------
@@ -242,6 +245,8 @@ class Scene(Answer):
     unit: str = "m"
     file: str = field(default="<scene>", compare=False)
     detection: Detected | None = field(default=None, compare=False, repr=False)
+    speaker: tuple[float, float] | None = None
+    addressee: tuple[float, float] | None = None
     _relations: dict[tuple[int, float], SceneRelations] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -472,13 +477,30 @@ class Scene(Answer):
         return directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
 
     @cached_property
+    def poses(self) -> Poses | None:
+        """Fronts and long axes of the objects; None if there are neither fronts nor turned boxes."""
+        from deixis.reasoning.geometry.poses import Poses
+
+        turned = [(i, thing.oriented) for i, thing in enumerate(self.objects) if thing.oriented is not None]
+        if not turned and all(thing.front is None for thing in self.objects):
+            return None
+        places, boxes = [i for i, _ in turned], [box for _, box in turned]
+        known = Poses.of_boxes(self.boxes, self.fronts)
+        return known.with_oriented(
+            places, [box.yaw for box in boxes], [(box.extents[0], box.extents[1]) for box in boxes]
+        )
+
+    @cached_property
     def room(self) -> Room:
         """The geometry that descriptions of one object are compared with (:func:`deixis.refer`)."""
+        from deixis.reasoning.grounding.reference.query import Person
         from deixis.reasoning.grounding.reference.room import Room
 
+        known = {Person.SPEAKER: self.speaker, Person.ADDRESSEE: self.addressee}
+        places = {person: np.array(place) for person, place in known.items() if place is not None}
         labels = [thing.label for thing in self.objects]
         viewer = self.viewpoint != UNKNOWN_VIEWPOINT
-        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer)
+        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer, places)
 
     def __getitem__(self, name: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == name)
@@ -573,9 +595,8 @@ class Scene(Answer):
         if key not in self._relations:
             from deixis.reasoning.geometry.rectangle import scene_relations
 
-            self._relations[key] = scene_relations(
-                self.ids, self.boxes, vocabulary, tolerance=tolerance, deadline=deadline
-            )
+            known = scene_relations(self.ids, self.boxes, vocabulary, tolerance=tolerance, deadline=deadline)
+            self._relations[key] = replace(known, poses=self.poses)
         return self._relations[key]
 
     def graph(self, vocabulary: Relations, tolerance: float = 0.0) -> RelationGraph:

@@ -642,6 +642,8 @@ class Chunker:
         if found is None:
             return None
         end, kind, preposition = found
+        if preposition.degree is not Degree.PLAIN and end == i + 1 and self.norms[end] in ("one", "ones"):
+            return None  # 'the closest one to you'
         if self.norms[at] == "the" and (kind == "ADV" or preposition.degree is Degree.PLAIN):
             return None
         if preposition.relation == "without":

@@ -700,7 +700,9 @@ class NounChunker:
                 return norm in ("gold", "silver", "square", "flat", "orange", "cream") and not self._noun_by_position(
                     at
                 )
-            if self._is_relation(at):
+            if self._is_relation(at) and not (
+                after == "away" and (self._nounish(at + 2) or self.adjective_before_noun(at + 2))
+            ):
                 return False
             if (
                 norm in self._relating
@@ -965,7 +967,7 @@ class NounChunker:
 
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
-        if self._is_unknown_verb(at, nouns):
+        if self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
         if nouns and norm in ORDINALS:
             return False

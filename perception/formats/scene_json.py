@@ -56,7 +56,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 """Accepted units with their lengths in metres; pixels stay pixels."""
 
 MAX_BYTES = 256 * 2**20
-_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows"}
+_SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows", "speaker", "addressee"}
 _OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented", "candidates", "front"}
 _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
@@ -158,6 +158,8 @@ def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Sce
         viewpoint=text(found.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
         unit="px" if unit == "px" else "m",
         file=file,
+        speaker=_place(found.get("speaker"), f"{file}: 'speaker'", UNITS[unit]),
+        addressee=_place(found.get("addressee"), f"{file}: 'addressee'", UNITS[unit]),
     )
     if image is not None:
         raise SceneError(f"{file}: an image ('{shown(image)}') can be chosen in annotation files only; leave it out")
@@ -233,6 +235,13 @@ def _colour(data: Any, where: str) -> Rgb:
     raise SceneError(f"{where}: there is no colour '{shown(said)}'; {told}")
 
 
+def _place(data: Any, where: str, scale: float) -> tuple[float, float] | None:
+    if data is None:
+        return None
+    x, y = _numbers(data, where, scale, (2,))
+    return x, y
+
+
 def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
     entry = mapping(data, where)
     unknown = sorted(set(entry) - known, key=str)
@@ -286,7 +295,9 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         if thing.front is not None:
             entry["front"] = list(thing.front)
         objects.append(entry)
-    return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, "objects": objects}
+    people = {"speaker": scene.speaker, "addressee": scene.addressee}
+    placed = {person: list(place) for person, place in people.items() if place is not None}
+    return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, **placed, "objects": objects}
 
 
 def scene_text(scene: Scene) -> str:

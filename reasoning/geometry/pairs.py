@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
+from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import require_boxes
 from deixis.reasoning.kernel import njit
 
@@ -40,6 +41,8 @@ class PairGeometry:
     boxes: Array  # (n, 2, d): the subjects
     objects: Array  # (m, 2, d)
     crowd: Array  # (n, m): share of the other things closer to one of the two than its partner is; mean over both
+    subject_poses: Poses | None = None  # of the n subjects; None: axes along the sides of the boxes, no fronts
+    object_poses: Poses | None = None  # of the m objects
 
     def __len__(self) -> int:
         return len(self.boxes)
@@ -49,9 +52,15 @@ class PairGeometry:
         """Geometry of the reversed pairs, shape (m, n); this object itself for all pairs of n boxes."""
         if self.objects is self.boxes:
             return self
-        other = PairGeometry(self.objects, self.boxes, self.crowd.T)
+        other = PairGeometry(self.objects, self.boxes, self.crowd.T, self.object_poses, self.subject_poses)
         other.__dict__["reverse"] = self
         return other
+
+    @cached_property
+    def poses(self) -> tuple[Poses, Poses]:
+        """Poses of the subjects and of the objects; by the sides of the boxes where they are not known."""
+        subjects = Poses.of_boxes(self.boxes) if self.subject_poses is None else self.subject_poses
+        return subjects, Poses.of_boxes(self.objects) if self.object_poses is None else self.object_poses
 
     @cached_property
     def _corners(self) -> tuple[Array, Array, Array, Array]:
@@ -142,9 +151,10 @@ class PairBlocks:
 
     boxes: Array
     nearer: NDArray[np.uint16 | np.uint32]
+    poses: Poses | None = None
 
     @classmethod
-    def of(cls, boxes: Array, deadline: Deadline = Deadline.never()) -> PairBlocks:
+    def of(cls, boxes: Array, deadline: Deadline = Deadline.never(), poses: Poses | None = None) -> PairBlocks:
         """Return the blocks of valid boxes.
 
         Parameters
@@ -153,6 +163,8 @@ class PairBlocks:
             Least and greatest corners, shape (n, 2, d).
         deadline
             Time limit.
+        poses
+            Fronts and long axes of the things, where they are known.
 
         Returns
         -------
@@ -177,7 +189,7 @@ class PairBlocks:
             for row, count in zip(distance, nearer[start : start + rows], strict=True):
                 count[:] = np.searchsorted(np.sort(row), row, side="left")
         np.fill_diagonal(nearer, 0)
-        return cls(boxes, nearer)
+        return cls(boxes, nearer, poses)
 
     def block(self, subjects: slice, objects: slice) -> PairGeometry:
         """Return the pairs of these subjects with these objects.
@@ -197,7 +209,8 @@ class PairBlocks:
         others = max(len(self.boxes) - 2, 1)
         counts = self.nearer[subjects, objects].astype(np.float64) + self.nearer[objects, subjects].T
         known = self.boxes[subjects]
-        return PairGeometry(known, known if subjects == objects else self.boxes[objects], counts / (2 * others))
+        poses = (None, None) if self.poses is None else (self.poses[subjects], self.poses[objects])
+        return PairGeometry(known, known if subjects == objects else self.boxes[objects], counts / (2 * others), *poses)
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,9 +223,12 @@ class Surroundings:
 
     boxes: Array
     distances: NDArray[np.float32]
+    poses: Poses | None = None
 
     @classmethod
-    def of(cls, boxes: Array, everything: Array, deadline: Deadline = Deadline.never()) -> Surroundings:
+    def of(
+        cls, boxes: Array, everything: Array, deadline: Deadline = Deadline.never(), poses: Poses | None = None
+    ) -> Surroundings:
         """Return the surroundings of some boxes of a scene.
 
         Parameters
@@ -223,6 +239,8 @@ class Surroundings:
             All boxes of the scene, shape (m, 2, d), with these among them.
         deadline
             Time limit.
+        poses
+            Fronts and long axes of the boxes, where they are known.
 
         Returns
         -------
@@ -244,7 +262,7 @@ class Surroundings:
                 )
             some = PairGeometry(boxes[start : start + rows], spread, np.zeros((0, 0)))
             distances[start : start + rows] = np.sort(some.distance.astype(np.float32), axis=1)
-        return cls(boxes, distances)
+        return cls(boxes, distances, poses)
 
     def block(self, subjects: slice, objects: slice) -> PairGeometry:
         """Return the pairs of these subjects with these objects.
@@ -282,7 +300,10 @@ class Surroundings:
         """
         known, others = self.boxes[subjects], other.boxes[objects]
         crowd = np.empty((len(known), len(others)))
-        pairs = PairGeometry(known, others, crowd)
+        poses = [
+            None if side.poses is None else side.poses[some] for side, some in ((self, subjects), (other, objects))
+        ]
+        pairs = PairGeometry(known, others, crowd, *poses)
         apart = np.ascontiguousarray(pairs.distance, dtype=np.float32)
         shares_nearer(self.distances[subjects], other.distances[objects], apart, crowd)
         return pairs
@@ -317,13 +338,15 @@ def shares_nearer(subjects, objects, apart, crowd):  # type: ignore[no-untyped-d
             crowd[p, q] = known / max(total, 1)
 
 
-def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
+def pair_geometry(boxes: NDArray[np.float64], poses: Poses | None = None) -> PairGeometry:
     """Compute the geometry of all pairs of boxes.
 
     Parameters
     ----------
     boxes
         Least and greatest corners, shape (n, 2, d), d = 2 or 3.
+    poses
+        Poses of the n things; None for axes along the sides of the boxes, and no fronts.
 
     Returns
     -------
@@ -344,7 +367,7 @@ def pair_geometry(boxes: NDArray[np.float64]) -> PairGeometry:
     """
     boxes = np.asarray(boxes, dtype=np.float64)
     require_boxes(boxes)
-    return PairBlocks.of(boxes).block(slice(0, len(boxes)), slice(0, len(boxes)))
+    return PairBlocks.of(boxes, poses=poses).block(slice(0, len(boxes)), slice(0, len(boxes)))
 
 
 def _sizes(boxes: Array) -> Array:

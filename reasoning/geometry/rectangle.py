@@ -25,6 +25,7 @@ from deixis.ontology.graph import PaperGraph, RelationGraph
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.allen import allen_relations
+from deixis.reasoning.geometry.poses import Poses
 
 ROW_CELLS = 1 << 18
 """Maximum number of pairs that are related at a time."""
@@ -122,6 +123,7 @@ class SceneRelations:
     names: NDArray[np.int8]  # (n, n): relation indices, -1 on the diagonal
     boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
+    poses: Poses | None = None  # of the n objects; None: axes along the sides of the boxes, no fronts
 
     @classmethod
     def from_graph(cls, graph: RelationGraph) -> SceneRelations:
@@ -212,6 +214,7 @@ class SceneRelations:
             self.names[np.ix_(order, order)],
             None if self.boxes is None else self.boxes[order],
             tuple(self.kinds[i] for i in order) if self.kinds else (),
+            None if self.poses is None else self.poses[order],
         )
 
     def graph(self) -> RelationGraph:

@@ -12,6 +12,7 @@ from deixis.answers import Answer, count
 from deixis.ontology.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
 from deixis.ontology.relation import Relation
+from deixis.reasoning.grounding.reference.answer import Frame
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -62,6 +63,18 @@ class FactOutcome:
     degree: float
     perceived: tuple[str, str] | None
     seen: Relation | None
+
+
+@dataclass(frozen=True, slots=True)
+class FrameOfFact:
+    """Frame of reference in which a stated direction was taken, for the things that its objects are matched to.
+
+    ``probability`` is that of the frame among those in which the direction may be meant.
+    """
+
+    fact: Fact
+    frame: Frame
+    probability: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +155,8 @@ class Grounding(Answer):
     viewpoints
         Viewpoints from which the script may be spoken, most probable first; None where their recovery was not
         requested.
+    frames
+        Frames of reference of the stated directions, in the order in which they were stated.
     scene
         The scene, for pictures; None where an engine was called directly.
     """
@@ -166,6 +181,7 @@ class Grounding(Answer):
     gap: float = math.inf
     exchanges: tuple[Exchange, ...] | None = None
     viewpoints: tuple[Viewpoint, ...] | None = None
+    frames: tuple[FrameOfFact, ...] = ()
     scene: object | None = field(default=None, compare=False)
 
     def summary(self) -> str:

@@ -17,12 +17,14 @@ from deixis.reasoning.grounding.alternatives import (
     left_out_objects,
     left_out_things,
 )
-from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome, Pivotal, Standing
+from deixis.reasoning.grounding.answer import FactOutcome, FrameOfFact, Grounding, Outcome, Pivotal, Standing
 from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.evidence.pair_features import HEADINGS
 from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
+from deixis.reasoning.grounding.reference.answer import Frame
 from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
 from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
 from deixis.reasoning.grounding.symmetry import interchangeable
@@ -90,6 +92,7 @@ def ground(
         interchangeable=groups,
         graph_similarity=alignment.graph_similarity,
         outcomes=outcomes,
+        frames=_frames(in_order, outcomes),
         proved_best=alignment.proved_best,
         finished=alignment.finished,
         gap=alignment.gap,
@@ -156,6 +159,33 @@ def _outcomes(evidence: Evidence, alignment: Alignment, stated: NDArray[np.int64
             )
         )
     return tuple(outcomes[place] for place in np.argsort(stated[evidence.facts]).tolist())
+
+
+DIRECTIONS = frozenset(HEADINGS) | {"in_front", "behind"}
+"""Words whose frame is the viewer's, unless the object's own front gives them one."""
+
+AIMS = frozenset({"facing", "faced_by", "pointing", "pointed_at_by"})
+"""Words whose frame is the front or the long axis of a thing."""
+
+
+def _frames(evidence: Evidence, outcomes: tuple[FactOutcome, ...]) -> tuple[FrameOfFact, ...]:
+    """Return the frames of reference of the stated directions between matched things."""
+    scene, found = evidence.scene, []
+    if scene.boxes is None or not evidence.meaning.graded:
+        return ()
+    for outcome in outcomes:
+        word = outcome.fact.relations[0].word
+        if outcome.perceived is None or not (word in DIRECTIONS or word in AIMS or word == "opposite"):
+            continue
+        if word in AIMS:
+            found.append(FrameOfFact(outcome.fact, Frame.OBJECT, 1.0))
+            continue
+        share = 0.0
+        if word not in HEADINGS:
+            share = float(evidence.frame_shares(word)[tuple(map(scene.index, outcome.perceived))])
+        seen = Frame.TABLE if word == "opposite" else Frame.VIEWER
+        found.append(FrameOfFact(outcome.fact, Frame.OBJECT if share > 0.5 else seen, max(share, 1 - share)))
+    return tuple(found)
 
 
 def _matches(

@@ -187,6 +187,18 @@ Degrees = Iterator[tuple[tuple[str, ...], Array, float]]
 """Objects (one to three), the degrees for the things that they may be, and the share of the evidence that counts."""
 
 
+def between_degrees(centres: Array) -> Array:
+    """Return the degrees of *between* for triples (subject, first, second) of centres (n, 2), shape (n, n, n)."""
+    way = centres[None, :, :] - centres[:, None, :]  # from first to second
+    length = np.maximum((way**2).sum(axis=2), 1e-12)
+    off = centres[:, None, None, :] - centres[None, :, None, :]
+    share = (off * way[None]).sum(axis=3) / length
+    across = np.abs(off[..., 0] * way[None, ..., 1] - off[..., 1] * way[None, ..., 0]) / length
+    # prototype: the middle three fifths; one half: level with one of them, or off by two fifths of their distance
+    along = np.interp(share, (-0.25, 0.0, 0.2, 0.8, 1.0, 1.25), (EXTREME, BORDER, 0.0, 0.0, BORDER, EXTREME))
+    return np.asarray(np.exp(along + np.interp(across, (0.15, 0.4, 1.0), (0.0, BORDER, EXTREME))))
+
+
 class ClaimDegrees:
     """Degrees of claims in one scene."""
 
@@ -317,15 +329,7 @@ class ClaimDegrees:
             than_second = np.exp(_more_log(d[None, :, :] - d[:, :, None], self.distances))
             to_second = np.exp(_more_log(d[:, None, :] - d[:, :, None], self.distances))
             return np.asarray((than_second + to_second) / 2)
-        c = self.centres
-        way = c[None, :, :] - c[:, None, :]  # from first to second
-        length = np.maximum((way**2).sum(axis=2), 1e-12)
-        off = c[:, None, None, :] - c[None, :, None, :]
-        share = (off * way[None]).sum(axis=3) / length
-        across = np.abs(off[..., 0] * way[None, ..., 1] - off[..., 1] * way[None, ..., 0]) / length
-        # prototype: the middle three fifths; one half: level with one of them, or off by two fifths of their distance
-        along = np.interp(share, (-0.25, 0.0, 0.2, 0.8, 1.0, 1.25), (EXTREME, BORDER, 0.0, 0.0, BORDER, EXTREME))
-        return np.asarray(np.exp(along + np.interp(across, (0.15, 0.4, 1.0), (0.0, BORDER, EXTREME))))
+        return between_degrees(self.centres)
 
     def _arrangement(self, claim: Claim) -> Degrees:
         term, subjects = claim.relation, claim.subjects

@@ -31,10 +31,11 @@ from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
 from deixis.reasoning.grounding.evidence.claims import ClaimTables, claim_tables
 from deixis.reasoning.grounding.evidence.colours import colour_evidence
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.degrees import WordDegrees, frame_shares, log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import FactEvidence, FactTables, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
+from deixis.reasoning.grounding.evidence.pair_features import OWN_WORDS
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.memory_budget import different_facts
@@ -303,6 +304,7 @@ class Evidence:
                 self.meaning.models,
                 names=self.scene.names,
                 everything=None if self.whole is None else self.whole.boxes,
+                poses=self.scene.poses,
                 deadline=self.deadline.earlier(laying_out),
             )
             if len(boxes) <= MAX_KEPT_THINGS:
@@ -356,7 +358,7 @@ class Evidence:
         graph, known = self.description, {}
         for place, edge in enumerate(self.facts.tolist()):
             relations = graph.vocabulary.members(int(graph.relation_sets[edge]))
-            if not any(relation.by_model for relation in relations):
+            if not any(relation.by_model or self._may_be_own(relation) for relation in relations):
                 continue
             key = int(graph.relation_sets[edge]), bool(graph.affirmed[edge])
             if key not in known:
@@ -369,22 +371,32 @@ class Evidence:
         if self.scene.boxes is None:
             return np.full((n, n), 0.5)
         degrees, crisp = self._word_degrees, self.description.vocabulary.degrees
-        best = np.zeros((n, n))
+        best, undecided = np.zeros((n, n)), np.ones((n, n), dtype=np.bool_)
         for relation in relations:
+            undecided &= relation.by_model and degrees.undecided(relation.word)
             by_name = np.where(self.scene.names >= 0, crisp[relation.index][self.scene.names], 0.0)
+            if self._may_be_own(relation):  # it holds in the viewer's frame, or in that of the object
+                by_name = np.maximum(by_name, degrees.held_by_front(relation.word))
             best = np.maximum(best, degrees.of(relation) if relation.by_model else by_name)
         if not positive:
-            undecided = best == 1.0 if all(self._says_nothing(relation) for relation in relations) else False
             return np.where((best < HELD_FROM) | undecided, 1.0, 0.0)
-        return np.where(best >= HELD_FROM, best, 0.0)
+        return np.where(undecided, 1.0, np.where(best >= HELD_FROM, best, 0.0))
 
-    def _says_nothing(self, relation: Relation) -> bool:
-        return relation.by_model and not (self.meaning.models or shipped_models()).of(relation).terms
+    def _may_be_own(self, relation: Relation) -> bool:
+        """Return whether a word that is not decided by its model alone has a frame of some thing of the scene."""
+        poses = self.scene.poses
+        return relation.word in OWN_WORDS and poses is not None and bool(poses.fronted.any())
+
+    def frame_shares(self, word: str) -> NDArray[np.float64]:
+        """Return the probability that a word is meant in the frame of a thing with a front, shape (n2, n2)."""
+        assert self.scene.boxes is not None
+        pairs = pair_geometry(self.scene.boxes, self.scene.poses)
+        return frame_shares(pairs, word, self.meaning.models or shipped_models())
 
     @cached_property
     def _word_degrees(self) -> WordDegrees:
         assert self.scene.boxes is not None
-        return WordDegrees(pair_geometry(self.scene.boxes), self.meaning.models or shipped_models())
+        return WordDegrees(pair_geometry(self.scene.boxes, self.scene.poses), self.meaning.models or shipped_models())
 
     def total(self, assignment: NDArray[np.int64]) -> float:
         """Return the sum of degrees times weights, plus the log-likelihood ratios of labels of the matches."""
@@ -410,7 +422,9 @@ class Evidence:
         if scene.boxes is None:
             raise GraphError("a scene without boxes cannot be seen from another side")
         boxes = turned(scene.boxes, angle, mirrored)
-        return replace(self, scene=scene_relations(scene.nodes, boxes, scene.vocabulary, scene.kinds))
+        poses = None if scene.poses is None else scene.poses.turned(angle, mirrored)
+        relations = scene_relations(scene.nodes, boxes, scene.vocabulary, scene.kinds)
+        return replace(self, scene=replace(relations, poses=poses))
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
         """Return a copy with the objects (``rows``) and the things (``columns``) in another order."""

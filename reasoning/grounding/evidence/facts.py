@@ -32,6 +32,7 @@ from deixis.ontology.models.relations import SAYING, RelationModels
 from deixis.ontology.relation import Relation, Relations
 from deixis.reasoning.errors import OutOfTimeError, SettingError
 from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry, Surroundings
+from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio, saying_degree
 from deixis.reasoning.grounding.evidence.literalness import LITERAL, literal_share
@@ -160,6 +161,7 @@ class FactEvidence:
         saying: bool = True,
         names: NDArray[np.integer] | None = None,
         everything: NDArray[np.float64] | None = None,
+        poses: Poses | None = None,
         deadline: Deadline = Deadline.never(),
     ) -> FactEvidence:
         """Build the evidence of a description for boxes.
@@ -178,6 +180,8 @@ class FactEvidence:
             Exact relations of the pairs as indices, shape (n2, n2), where they are already known.
         everything
             All boxes of the scene, shape (n, 2, d), where ``boxes`` are only some of them.
+        poses
+            Poses of the n2 things; None for axes along the sides of the boxes, and no fronts.
         deadline
             End of the time limit.
 
@@ -198,7 +202,12 @@ class FactEvidence:
             names = box_relations(np.asarray(boxes, dtype=np.float64), description.vocabulary).names
         names, boxes = names[np.ix_(order, order)], np.asarray(boxes[order], dtype=np.float64)
         require_boxes(boxes)
-        nearer = PairBlocks.of(boxes, deadline) if everything is None else Surroundings.of(boxes, everything, deadline)
+        posed = None if poses is None else poses[order]
+        nearer: PairBlocks | Surroundings
+        if everything is None:
+            nearer = PairBlocks.of(boxes, deadline, posed)
+        else:
+            nearer = Surroundings.of(boxes, everything, deadline, posed)
 
         def compared(known: RelationModels) -> _FactRatios:
             return _FactRatios(nearer, names, SaidFacts(known, description.vocabulary, saying, distinct), deadline)

@@ -23,8 +23,8 @@ Order = NDArray[np.int64]
 LITERAL = 0.9
 """Share of the facts of a literal speaker that are meant literally; a graded speaker means none literally."""
 
-LITERAL_PRIOR = 0.2
-"""Prior probability that a speaker is literal."""
+LITERAL_PRIOR = 0.02
+"""Prior probability that a speaker is literal: a long description by a program overcomes it, one sentence does not."""
 
 SEARCH_EFFORT, FULL_EFFORT_OBJECTS = 0.05, 30
 """Effort of the scalable search up to this number of objects; larger descriptions get less effort per object."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.geometry.pairs import PairGeometry
+from deixis.reasoning.geometry.poses import MIN_STRETCH, coaxial
 
 Array = NDArray[np.float64]
 View = Mapping[str, Array]
@@ -181,14 +182,74 @@ def _compared(measure: Callable[[Array], Array]) -> Callable[[PairGeometry], Vie
 
 
 def _coaxial(pairs: PairGeometry) -> Array:
-    """Return how far the long axes agree, in [-1, 1]: 1 for thin parallel boxes, -1 for crossing ones."""
-    first, second = (_extents(boxes)[:, :2] for boxes in (pairs.boxes, pairs.objects))
-    stretch = [
-        np.divide(e[:, 0] - e[:, 1], e.sum(axis=1), out=np.zeros(len(e)), where=e.sum(axis=1) > 0)
-        for e in (first, second)
-    ]
-    product: Array = stretch[0][:, None] * stretch[1][None, :]
-    return np.sign(product) * np.sqrt(np.abs(product))
+    """Return how far the long axes agree, in [-1, 1]: 1 for thin parallel things, -1 for crossing ones."""
+    return coaxial(*pairs.poses)
+
+
+UNKNOWN_AIM = -1.0
+"""Value of ``aim`` for pairs whose orientation is unknown."""
+
+
+def _bearing(pairs: PairGeometry) -> Array:
+    """Return unit vectors from the subjects to the objects, shape (n, m, 2); 0 for things at one place."""
+    first, second = (boxes[:, :, :2].mean(axis=1) for boxes in (pairs.boxes, pairs.objects))
+    apart = second[None] - first[:, None]
+    length = np.linalg.norm(apart, axis=2, keepdims=True)
+    result: Array = np.divide(apart, length, out=np.zeros_like(apart), where=length > 0)
+    return result
+
+
+def _aim(cosine: Array, known: NDArray[np.bool_]) -> View:
+    return {"aim": np.where(known, np.arccos(np.clip(cosine, -1.0, 1.0)), UNKNOWN_AIM)}
+
+
+def _facing(pairs: PairGeometry) -> View:
+    """Return the angle between the subject's front and the direction to the object."""
+    poses, bearing = pairs.poses[0], _bearing(pairs)
+    cosine = np.einsum("nmd,nd->nm", bearing, np.nan_to_num(poses.fronts))
+    return _aim(cosine, poses.fronted[:, None] & bearing.any(axis=2))
+
+
+def _pointing(pairs: PairGeometry) -> View:
+    """Return the angle between the subject's front, or either end of its long axis, and the direction to the object."""
+    poses, bearing = pairs.poses[0], _bearing(pairs)
+    fronted = poses.fronted
+    ends = np.abs(np.einsum("nmd,nd->nm", bearing, poses.axes))
+    ahead = np.einsum("nmd,nd->nm", bearing, np.nan_to_num(poses.fronts))
+    known = fronted | (poses.stretch >= MIN_STRETCH)
+    return _aim(np.where(fronted[:, None], ahead, ends), known[:, None] & bearing.any(axis=2))
+
+
+def _opposite(pairs: PairGeometry) -> View:
+    """Return the angle by which two things miss being on opposite sides of the middle of the scene."""
+    first, second = (boxes[:, :, :2].mean(axis=1) for boxes in (pairs.boxes, pairs.objects))
+    middle = pairs.poses[0].middle
+    apart = [side - middle for side in (first, second)]
+    lengths = [np.linalg.norm(side, axis=1) for side in apart]
+    size = np.maximum(lengths[0][:, None], lengths[1][None, :])
+    known = np.minimum(lengths[0][:, None], lengths[1][None, :]) > 0.2 * size  # neither is in the middle
+    product = np.maximum(lengths[0][:, None] * lengths[1][None, :], 1e-12)
+    return _aim(-(apart[0] @ apart[1].T) / product, known)
+
+
+OWN_WORDS = frozenset({"in_front", "behind"})
+"""Words that are judged by the viewer, or by the front of the object."""
+
+
+def own_frame(pairs: PairGeometry, word: str) -> View | None:
+    """Return the features of a word in the frames of things with a front; None if the word has no such frame.
+
+    *In front of* and *behind* are judged by the front of the object, *opposite* by the fronts of both. ``aim`` is
+    unknown for pairs whose fronts are not known.
+    """
+    if word in OWN_WORDS:
+        reverse = _facing(pairs.reverse)["aim"].T
+        aim = np.where(reverse >= 0, np.pi - reverse, reverse) if word == "behind" else reverse
+        return {"aim": aim, "gap": pairs.gap}
+    if word == "opposite":
+        there, back = _facing(pairs)["aim"], _facing(pairs.reverse)["aim"].T
+        return {"aim": np.where((there >= 0) & (back >= 0), np.maximum(there, back), UNKNOWN_AIM)}
+    return None
 
 
 def _vertical_gap(pairs: PairGeometry) -> Array | None:
@@ -260,6 +321,9 @@ GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
     "stacked": _support,
     "along": lambda pairs: {"gap": pairs.gap, "coaxial": _coaxial(pairs)},
     "across": lambda pairs: {"gap": pairs.gap, "coaxial": _coaxial(pairs)},
+    "facing": _facing,
+    "pointing": _pointing,
+    "opposite": _opposite,
     "parallel": lambda pairs: {"coaxial": _coaxial(pairs)},
     "aligned": _alignment,
     "level_with": _level,
@@ -269,12 +333,14 @@ GRADED_VIEWS: Mapping[str, Callable[[PairGeometry], View]] = {
     "wider": _compared(lambda extents: extents[:, 0]),
 }
 """Features of words beside the ten. ``excess`` is the difference of a measure of both as a share of the sum,
-``coaxial`` the agreement of their long axes, ``lateral`` an offset across, ``lift`` a vertical gap and ``depth`` the
-share of the object's height that the subject reaches down."""
+``coaxial`` the agreement of their long axes, ``aim`` an angle in radians (``UNKNOWN_AIM`` if unknown), ``lateral`` an
+offset across, ``lift`` a vertical gap and ``depth`` the share of the object's height that the subject reaches down."""
 
 REVERSED = {
     "below": "above",
     "containing": "inside",
+    "faced_by": "facing",
+    "pointed_at_by": "pointing",
     "leaned_on_by": "leaning",
     "crossed_by": "across",
     "stacked_under": "stacked",

@@ -8,7 +8,7 @@ model with latent landmarks and viewers, whose weights are fitted by maximum lik
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -25,8 +25,16 @@ from deixis.reasoning.grounding.reference.likelihood import (
     log_sum,
     weighted,
 )
-from deixis.reasoning.grounding.reference.properties import property_features
-from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer, readings
+from deixis.reasoning.grounding.reference.properties import SIDES, called_by, property_features
+from deixis.reasoning.grounding.reference.query import (
+    Description,
+    Person,
+    Property,
+    Query,
+    Relation,
+    Viewer,
+    readings,
+)
 from deixis.reasoning.grounding.reference.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
 from deixis.reasoning.grounding.reference.room import Room
 
@@ -41,6 +49,15 @@ IMPOSSIBLE = -30.0
 
 MAX_UNKNOWN_LANDMARKS = 40
 """Maximum number of objects that a landmark may be in a scene without labels for it."""
+
+PERSPECTIVES = {Person.ADDRESSEE: 0.75, Person.SPEAKER: 0.25}
+"""Share of descriptions whose sides are those of a person, where both are known and no perspective is stated."""
+
+PLACES = {"left": "left", "right": "right", "in_front": "front", "behind": "back", "corner": "corner", "edge": "edge"}
+PLACES |= {"middle": "middle"}
+"""Places in a scene that relations to the scene as a whole tell."""
+
+OPPOSITES = {"left": "right", "right": "left", "front": "back", "back": "front", "near": "far", "far": "near"}
 
 MISNAMED = 0.005
 """Share of descriptions whose noun names none of the objects that it may name, so that any object is meant."""
@@ -114,7 +131,10 @@ class Model:
     def unused(self, query: Query, room: Room) -> float:
         """Return the share of a description that is not used: words not understood, landmarks not in the room."""
         relations = query.target.relations
-        unseen = sum(any(self._unseen(one, room) for one in relation.arguments) for relation in relations)
+        unseen = sum(
+            any(self._unseen(one, room) for one in relation.arguments) and not places_of(relation)
+            for relation in relations
+        )
         return 1 - query.understood + unseen / (1 + len(relations))
 
     def _keep(self, said: object, what: str, compute: Callable[[], Kept]) -> Kept:
@@ -133,7 +153,7 @@ class Model:
             said,
             f"noun of {among.tobytes()!r}",
             lambda: (
-                rival_groups(room, among),
+                self._rivals(said, room, among),
                 self._noun_features(said, room)[among],
                 self.lexis.number_fit(said.plural, room)[among],
             ),
@@ -159,6 +179,18 @@ class Model:
                 found = found + score
         return found
 
+    def _rivals(self, said: Description, room: Room, among: Indices) -> tuple[Indices, ...]:
+        """Return the groups of objects that compete: those with one label, then those that have the said colour too.
+
+        *The tallest red cup* is compared with the red cups, and a blue cup with all cups.
+        """
+        groups = rival_groups(room, among)
+        for prop in said.properties:
+            if prop.positive and (called := called_by(prop.word, room, self.lexis.colours)) is not None:
+                parts = (group[called[among[group]]] for group in groups)
+                groups = (*groups, *(part for part in parts if len(part)))
+        return groups
+
     def _property(self, said: Property, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
         def measured() -> tuple[str, Array] | None:
             known = property_features(said, room, among, rivals, self.lexis.colours)
@@ -174,10 +206,13 @@ class Model:
         if not said.arguments:
             return None
         if any(self._unseen(argument, room) for argument in said.arguments):
-            if (unlisted := UNLISTED.get(said.arguments[0].noun)) is None:
-                return None
-            instead = self._keep(said, "instead", lambda: replace(unlisted, positive=said.positive))
-            return self._property(instead, room, among, rivals)
+            if (unlisted := UNLISTED.get(said.arguments[0].noun)) is not None:
+                instead = self._keep(said, "instead", lambda: replace(unlisted, positive=said.positive))
+                return self._property(instead, room, among, rivals)
+            places = self._keep(said, "places", lambda: places_of(said))
+            scores = (self._property(one, room, among, rivals) for one in places)
+            known = [one for one in scores if one is not None]
+            return sum(known[1:], known[0]) if known else None
         family, sign = RELATIONS.get(said.name, ANY_RELATION)
         if family == "between":
             score = self._between(said, room, among, rivals)
@@ -289,7 +324,9 @@ class Model:
             return self._stated(query.viewer, room)
         if room.viewer:
             away = room.views[:, 1] > 1 - 1e-9
-            return constant(np.log(np.where(away, 0.95, 0.05 / max(len(away) - 1, 1))))
+            return constant(np.log(np.where(away, 0.95 / away.sum(), 0.05 / max((~away).sum(), 1))))
+        if room.headings:
+            return constant(_people(room, room.headings))
         if any(RELATIONS.get(relation.name, ("", 0))[0] in VIEWED for relation in query.target.relations):
             return constant(np.zeros(len(room.views)))
         features = self._keep(query, "viewer", lambda: self._seen_from(query, room))
@@ -303,6 +340,12 @@ class Model:
         return result
 
     def _stated(self, viewer: Viewer, room: Room) -> Score:
+        if viewer.person is not None:
+            if viewer.person in room.headings:
+                return constant(_people(room, [viewer.person]))
+            return self._viewer(self._keep(viewer, "anyone", lambda: Query(Description(""))), room)
+        if self._unseen(viewer.landmark, room):
+            return self._viewer(self._keep(viewer, "anyone", lambda: Query(Description(""))), room)
         landmarks = self._landmarks(viewer.landmark, room)
         own = log_shares(self._description(viewer.landmark, room, landmarks), 1)
         own = log_sum(own + constant(np.array(-np.log(len(own.value)))), 0)
@@ -322,12 +365,36 @@ class Model:
         return weighted((room.views @ apart.T)[:, :, None], "towards", self.weights)
 
 
+def places_of(said: Relation) -> tuple[Property, ...]:
+    """Return the places in the scene that a relation to a landmark outside it tells.
+
+    *On the left side of the table* is on the left, where the table itself is not an object of the scene, and *closest
+    to the left edge of it* is leftmost.
+    """
+    words = [one.word for argument in said.arguments for one in argument.properties if one.word in SIDES]
+    if said.name in PLACES:
+        words.append(PLACES[said.name])
+    if said.name == "far":
+        words = [OPPOSITES[word] for word in words if word in OPPOSITES]
+    return tuple(Property("position", word, said.degree, positive=said.positive) for word in dict.fromkeys(words))
+
+
 def rival_groups(room: Room, among: Indices) -> tuple[Indices, ...]:
     """Return the positions of objects with the same label; objects without labels compete with all of these."""
     groups: dict[str | None, list[int]] = {}
     for position, index in enumerate(among):
         groups.setdefault(room.labels[index], []).append(position)
     return tuple(np.array(group) for group in groups.values())
+
+
+def _people(room: Room, among: Iterable[Person]) -> Array:
+    """Return log probabilities of the views if one of some people is the viewer, shape (v,)."""
+    shares = np.full(len(room.views), 0.05 / len(room.views))
+    chances = {person: PERSPECTIVES[person] for person in among}
+    for place, person in enumerate(room.headings, start=len(room.views) - len(room.headings)):
+        shares[place] += 0.95 * chances.get(person, 0.0) / sum(chances.values())
+    result: Array = np.log(shares)
+    return result
 
 
 def stacked(features: Mapping[str, Array]) -> Array:

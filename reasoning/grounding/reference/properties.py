@@ -6,12 +6,13 @@ Features are arrays that broadcast to (v, x): viewer and candidate.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.colours import Colours
-from deixis.reasoning.grounding.reference.query import Property
+from deixis.reasoning.grounding.reference.query import Person, Property
 from deixis.reasoning.grounding.reference.room import Room
 
 Array = NDArray[np.float64]
@@ -20,7 +21,10 @@ Features = Mapping[str, Array]
 
 
 Rivals = tuple[Indices, ...]
-"""Positions of the candidates that compete with each other, such as all chairs; a partition of the candidates."""
+"""Positions of the candidates that compete with each other, such as all chairs, and then all red chairs.
+
+Each candidate is compared within the last group that it is in.
+"""
 
 
 def order(values: Array, rivals: Rivals) -> Features:
@@ -29,6 +33,7 @@ def order(values: Array, rivals: Rivals) -> Features:
     greatest[:] = 1.0
     for group in rivals:
         if len(group) == 1:
+            standard[:, group], greatest[:, group], rank[:, group], lead[:, group] = 0.0, 1.0, 0.0, 0.0
             continue
         among = values[:, group]
         best = among.max(axis=1, keepdims=True)
@@ -190,13 +195,21 @@ SIDES: dict[str, tuple[int, float]] = {
 
 MIDDLE = frozenset({"middle", "centre", "center", "central"})
 
+VIVID = 25.0
+"""Chroma in CIELAB from which on the mean colour of an object tells its colour term well."""
+
 LIGHTNESS: dict[str, float] = {"dark": -1.0, "light": 1.0, "bright": 1.0, "pale": 1.0}
 
 
-def side_values(room: Room, candidates: Indices, axis: int, sign: float) -> Array:
-    """Return the coordinates of candidates along an axis of each view, times the sign, shape (v, x)."""
-    right = np.stack([room.views[:, 1], -room.views[:, 0]], axis=1)
-    heading = right if axis == 0 else room.views
+FLAT = {"high": "back", "upper": "back", "top": "back", "topmost": "back", "up": "back"}
+FLAT |= {"low": "front", "lower": "front", "bottom": "front", "bottommost": "front", "down": "front"}
+"""Sides of a scene that is seen from above, where all objects are at one height."""
+
+
+def side_values(room: Room, candidates: Indices, axis: int, sign: float, person: Person | None = None) -> Array:
+    """Return the coordinates of candidates along an axis of each view of a person, times the sign, shape (v, x)."""
+    views = room.heading(person)
+    heading = np.stack([views[:, 1], -views[:, 0]], axis=1) if axis == 0 else views
     result: Array = sign * heading @ room.centres[candidates, :2].T / room.scale
     return result
 
@@ -206,6 +219,9 @@ def property_features(
 ) -> tuple[str, Features] | None:
     """Return the name of the weights of a property and its features, or None if nothing in a scene shows it."""
     word = said.word
+    if word in FLAT and room.is_flat:
+        word = FLAT[word]
+        said = replace(said, word=word)
     if said.dimension == "rank" or said.rank is not None:
         return _ranked(said, room, candidates, rivals)
     if (term := colours.of_word(word)) is not None:
@@ -224,12 +240,25 @@ def property_features(
         }
     if word in SIDES:
         axis, sign = SIDES[word]
-        name = ("side", "depth")[axis]
-        return name, order(side_values(room, candidates, axis, sign), rivals)
+        seen = room.viewer or said.person in room.headings  # the weights of depth are for an unknown viewer
+        name = "side" if axis == 0 or seen else "depth"
+        return name, order(side_values(room, candidates, axis, sign, said.person), rivals)
     if word in SIZES:
         measure, sign = SIZES[word]
         return f"{measure}{degree}", order(sign * MEASURES[measure](room)[candidates][None], rivals)
     return None
+
+
+def called_by(word: str, room: Room, colours: Colours) -> NDArray[np.bool_] | None:
+    """Return which objects are vivid and likely to be called by a word for a colour; None for another word."""
+    from deixis.reasoning.grounding.evidence.colours import colour_evidence
+
+    term = colours.of_word(word)
+    if term is None or np.isnan(room.colours).all():
+        return None
+    vivid = np.linalg.norm(room.lab[:, 1:], axis=1) > VIVID
+    result: NDArray[np.bool_] = vivid & (colour_evidence([term.iri], room.colours, colours)[0] > 0)
+    return result
 
 
 def _ranked(said: Property, room: Room, candidates: Indices, rivals: Rivals) -> tuple[str, Features]:
@@ -238,7 +267,7 @@ def _ranked(said: Property, room: Room, candidates: Indices, rivals: Rivals) -> 
         measure, sign = SIZES[said.word]
         return "rank", placed(sign * MEASURES[measure](room)[candidates][None], rivals, place)
     axis, sign = SIDES.get(said.word, (0, -1.0))
-    return "rank", placed(side_values(room, candidates, axis, sign), rivals, place)
+    return "rank", placed(side_values(room, candidates, axis, sign, said.person), rivals, place)
 
 
 def _colour(prototype: tuple[int, int, int], room: Room, candidates: Indices, rivals: Rivals) -> Features:

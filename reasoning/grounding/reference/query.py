@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from enum import StrEnum
+
+
+class Person(StrEnum):
+    """Someone who takes part in the conversation: *me* and *you*."""
+
+    SPEAKER = "speaker"
+    ADDRESSEE = "addressee"
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,7 +20,8 @@ class Property:
 
     ``dimension`` is the kind of the property (``colour``, ``size``, ``height``, ``length``, ``width``, ``position``,
     ``rank``) and ``word`` its value (``red``, ``tall``, ``left``). ``rank`` is the place in an order, counted from 1
-    (-1 for the last). ``degree`` is ``plain``, ``comparative`` or ``superlative``.
+    (-1 for the last). ``degree`` is ``plain``, ``comparative`` or ``superlative``. ``person`` is the one whose place
+    it is judged from (*closest to you*, *on my left*), None for the viewer of the whole description.
     """
 
     dimension: str
@@ -20,6 +29,7 @@ class Property:
     degree: str = "plain"
     rank: int | None = None
     positive: bool = True
+    person: Person | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +99,15 @@ def readings(said: Description) -> Iterator[Description]:
 class Viewer:
     """The viewer of a description: *facing the window*, *from the door*, *as you enter through the door*.
 
-    ``stance`` is ``facing`` (the viewer looks at ``landmark``), ``from`` (the viewer looks from it into the room) or
-    ``towards`` (the viewer looks from ``landmark`` at ``target``).
+    ``stance`` is ``facing`` (the viewer looks at ``landmark``), ``from`` (the viewer looks from it into the room),
+    ``towards`` (the viewer looks from ``landmark`` at ``target``) or ``person`` (``person`` looks at the scene: *from
+    your point of view*).
     """
 
     stance: str
     landmark: Description
     target: Description | None = None
+    person: Person | None = None
 
 
 @dataclass(frozen=True, slots=True)

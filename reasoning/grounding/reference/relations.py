@@ -29,7 +29,8 @@ class Pairs:
     candidates, landmarks
         Indices of objects, shapes (x,) and (a,).
     rivals
-        Positions of the candidates that compete with each other, such as all chairs; a partition of the candidates.
+        Positions of the candidates that compete with each other, such as all chairs, and then all red chairs; each
+        candidate is compared within the last group that it is in.
     """
 
     room: Room
@@ -53,9 +54,8 @@ class Pairs:
         """Return the share of the rivals with a lesser value, of arrays of shape (v, x, a)."""
         found = np.zeros(values.shape)
         for group in self.rivals:
-            if len(group) > 1:
-                among = values[:, group]
-                found[:, group] = among.argsort(axis=1).argsort(axis=1) / (len(group) - 1)
+            among = values[:, group]
+            found[:, group] = among.argsort(axis=1).argsort(axis=1) / max(len(group) - 1, 1)
         return found
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from deixis.reasoning.grounding.reference.query import Person
 
 Array = NDArray[np.float64]
 
@@ -36,6 +38,8 @@ class Room:
         Unit vectors in the plane, shape (n, 2); NaN if unknown.
     viewer
         Whether the y axis points away from a viewer; False if the viewpoint is unknown.
+    places
+        Where the speaker and the addressee are in the plane, if it is known, shape (2,).
     """
 
     ids: tuple[str, ...]
@@ -44,6 +48,7 @@ class Room:
     colours: Array
     fronts: Array
     viewer: bool = False
+    places: Mapping[Person, Array] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -54,6 +59,7 @@ class Room:
         colours: Array | None = None,
         fronts: Array | None = None,
         viewer: bool = False,
+        places: Mapping[Person, Array] | None = None,
     ) -> Room:
         """Return a room of boxes with 2 or 3 axes, with unknown colours and fronts where none are given."""
         n = len(ids)
@@ -61,7 +67,7 @@ class Room:
             boxes = np.concatenate([boxes, np.zeros((n, 2, 1))], axis=2)
         colours = np.full((n, 3), np.nan) if colours is None else colours
         fronts = np.full((n, 2), np.nan) if fronts is None else fronts
-        return cls(tuple(ids), boxes.astype(np.float64), tuple(labels), colours, fronts, viewer)
+        return cls(tuple(ids), boxes.astype(np.float64), tuple(labels), colours, fronts, viewer, places or {})
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -101,6 +107,11 @@ class Room:
         """Length by which distances are divided: the median diagonal of the objects within the room."""
         inside = self.extents[~self.surrounds] if not self.surrounds.all() else self.extents
         return max(float(np.median(np.linalg.norm(inside, axis=1))), 1e-9)
+
+    @cached_property
+    def is_flat(self) -> bool:
+        """True if all objects are at one height, so that *top* is the far side of the scene."""
+        return float(np.ptp(self.centres[:, 2])) < 0.1 * self.scale
 
     @cached_property
     def gaps(self) -> Array:
@@ -158,8 +169,23 @@ class Room:
 
     @cached_property
     def views(self) -> Array:
-        """Directions in which a viewer may look, unit vectors of shape (v, 2)."""
-        return circle(VIEWERS)
+        """Directions in which a viewer may look, unit vectors of shape (v, 2); those of known people come last."""
+        return np.concatenate([circle(VIEWERS), *self.headings.values()])
+
+    @cached_property
+    def headings(self) -> Mapping[Person, Array]:
+        """Direction in which each person whose place is known looks at the scene, unit vectors of shape (1, 2)."""
+        apart = {person: self.middle - place for person, place in self.places.items()}
+        return {person: (way / max(float(np.linalg.norm(way)), 1e-9))[None] for person, way in apart.items()}
+
+    def heading(self, person: Person | None) -> Array:
+        """Return the directions in which a person may look, shape (1 or v, 2).
+
+        People sit opposite each other unless the places of both are known. Without any known place, each is the viewer.
+        """
+        if person is None or not self.headings:
+            return self.views
+        return self.headings[person] if person in self.headings else -next(iter(self.headings.values()))
 
     @cached_property
     def inward(self) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deixis.ontology.kinds import with_article
-from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
+from deixis.reasoning.grounding.reference.query import Description, Person, Property, Query, Relation, Viewer
 
 WORDS = {
     "left": "to the left of",
@@ -42,6 +42,8 @@ DEGREES = {
     ("far", "superlative"): "farthest from",
     ("far", "comparative"): "farther from",
 }
+
+PRONOUNS = {Person.SPEAKER: ("me", "my"), Person.ADDRESSEE: ("you", "your")}
 
 ORDINALS = {1: "first", 2: "second", 3: "third", 4: "fourth", 5: "fifth", -1: "last"}
 
@@ -82,6 +84,8 @@ def noun_phrase(said: Description) -> str:
 
 
 def _is_place(said: Property) -> bool:
+    if said.person is not None:
+        return True
     return said.dimension in {"position", "rank"} and said.degree == "plain"
 
 
@@ -107,9 +111,25 @@ def _graded(word: str, ending: str) -> str:
 
 
 def _place(said: Property) -> str:
+    if said.person is not None:
+        return _from_person(said, said.person)
     if said.rank is not None:
         return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from the {said.word}"
     return PLACES.get(said.word, f"at the {said.word}")
+
+
+def _from_person(said: Property, person: Person) -> str:
+    """Return a place as a person sees it: *closest to you*, *second closest to me*, *on your left*."""
+    whom, whose = PRONOUNS[person]
+    if said.word in {"near", "far"}:
+        degree = "superlative" if said.rank is not None and said.degree == "plain" else said.degree
+        near = DEGREES.get((said.word, degree), {"near": "near", "far": "far from"}[said.word])
+        rank = "" if said.rank in {None, 1} else f"{ORDINALS.get(said.rank or 0, f'number {said.rank}')} "
+        return f"{rank}{near} {whom}"
+    if said.rank is not None:
+        return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from {whose} {said.word}"
+    far = "far " if said.degree == "superlative" else ""
+    return f"on {whose} {far}{said.word}" if said.word in {"left", "right"} else f"at {whose} {said.word}"
 
 
 def _relation(said: Relation) -> str:
@@ -124,6 +144,8 @@ def _relation(said: Relation) -> str:
 
 
 def _viewer(said: Viewer) -> str:
+    if said.person is not None:
+        return f"from {PRONOUNS[said.person][1]} point of view"
     landmark = noun_phrase(said.landmark)
     if said.stance == "towards" and said.target is not None:
         return f"looking from {landmark} to {noun_phrase(said.target)}"

@@ -36,6 +36,9 @@ def relate(
         float | None, typer.Option(metavar="LENGTH", help="Unit of distance: near is up to 1, medium up to 3.")
     ] = None,
     matrix: Annotated[bool, typer.Option("--matrix", help="Print a matrix with subjects in rows.")] = False,
+    words: Annotated[
+        bool, typer.Option("--words", help="Also the words that people would accept, with their probabilities.")
+    ] = False,
     image: Image = None,
     as_json: AsJson = False,
 ) -> None:
@@ -47,8 +50,10 @@ def relate(
     from deixis.workflows.read import load_scene
 
     chosen = of or []
-    if len(chosen) > 2 or (matrix and chosen):
-        raise SettingError("--of may be given once (subject) or twice (subject, object), and excludes --matrix")
+    if len(chosen) > 2 or (matrix and (chosen or words)):
+        raise SettingError(
+            "--of may be given once (subject) or twice (subject, object); --matrix excludes --of and --words"
+        )
     if len(chosen) == 2 and chosen[0] == chosen[1]:
         raise SettingError(f"--of must name two different things, got '{chosen[0]}' twice")
     if axis is not None and calculus not in ALONG_AN_AXIS and calculus in RELATED:
@@ -56,7 +61,13 @@ def relate(
     seen = load_scene(scene, image=image)
     codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     related = Related(calculus, seen.ids, codes)
+    fitting = None
+    if words:
+        from deixis.reasoning.grounding.evidence.scene_words import scene_words
+
+        fitting = scene_words(seen.boxes, seen.poses)
+    subject, other = (*chosen, None, None)[:2]
     if as_json:
-        sys.stdout.writelines(f"{line}\n" for line in json_lines(related, *chosen))
+        sys.stdout.writelines(f"{line}\n" for line in json_lines(related, subject, other, fitting))
     else:
-        print_lines(matrix_lines(related) if matrix else pair_lines(related, *chosen))
+        print_lines(matrix_lines(related) if matrix else pair_lines(related, subject, other, fitting))

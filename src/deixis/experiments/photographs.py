@@ -1,9 +1,9 @@
 """Read descriptions of photographs (Visual Relationship Detection, Lu et al. 2016) as descriptions and boxes.
 
-Each image with four or more related objects becomes a scene (its boxes, y turned up, without labels) and a description:
-the annotators' statements, in the words that the layout language has, about objects called as the annotators called
-them, and numbered (``person_1``), of the kinds that these names stand for. The truth is the box that each object refers
-to. The data is read from ``$DEIXIS_DATA/vrd``.
+Each image with four or more objects that the ten exact words relate becomes a scene (its boxes, y turned up, without
+labels) and a description: the statements of the annotators about these objects, in the words of the layout language.
+The objects are called as the annotators called them, and numbered (``person_1``), of the kinds that these names stand
+for. The truth is the box that each object refers to. The data is read from ``$DEIXIS_DATA/vrd``.
 """
 
 from __future__ import annotations
@@ -19,10 +19,13 @@ from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.models.relations import FAMILIES
 from deixis.ontology.tbox import Ontology
 
 FOLDER = "vrd"
 MIN_OBJECTS = 4
+"""Least number of objects that the ten exact words relate in a photograph."""
+
 WORDS = {
     "on": "on",
     "on the top of": "on",
@@ -33,7 +36,23 @@ WORDS = {
     "beneath": "bottom",
     "on the left of": "left",
     "on the right of": "right",
+    "near": "near",
+    "by": "near",
+    "next to": "next_to",
+    "beside": "next_to",
+    "adjacent to": "next_to",
+    "in the front of": "in_front",
+    "behind": "behind",
+    "in": "inside",
+    "inside": "inside",
+    "touch": "touching",
+    "contain": "containing",
 }
+"""Words of the layout language for the predicates of the annotators that have one."""
+
+
+End = tuple[int, ...]
+"""Category and box of an object in the annotations: ymin, ymax, xmin, xmax in pixels."""
 
 
 class PhotographError(DeixisError, ValueError):
@@ -71,16 +90,23 @@ def photographs(folder: Path, ontology: Ontology) -> Iterator[Photograph]:
 
 
 def _photograph(entries: list[Any], predicates: list[str], words: list[str], ontology: Ontology) -> Photograph:
-    boxes: dict[tuple[int, ...], str] = {}
-    facts: dict[tuple[str, str, str], None] = {}
+    stated: dict[tuple[str, End, End], None] = {}
     for entry in entries:
         word = WORDS.get(predicates[entry["predicate"]])
-        ends = [(entry[end]["category"], *entry[end]["bbox"]) for end in ("subject", "object")]
-        if word is not None and ends[0] != ends[1]:
-            subject, other = (boxes.setdefault(end, f"{words[end[0]].replace(' ', '_')}_{len(boxes)}") for end in ends)
-            facts[word, subject, other] = None
+        subject, other = ((entry[end]["category"], *entry[end]["bbox"]) for end in ("subject", "object"))
+        if word is not None and subject != other:
+            stated[word, subject, other] = None
+    boxes: dict[End, str] = {}
+    for word, *ends in stated:
+        if word in FAMILIES:
+            for end in ends:
+                boxes.setdefault(end, f"{words[end[0]].replace(' ', '_')}_{len(boxes)}")
     relations, names = ontology.relations, list(boxes.values())
-    stated = [Fact(subject, (relations[word],), other) for word, subject, other in facts]
+    facts = [
+        Fact(boxes[subject], (relations[word],), boxes[other])
+        for word, subject, other in stated
+        if subject in boxes and other in boxes
+    ]
     kinds = [kind.iri if (kind := ontology.of_name(name)[0]) else None for name in names]
     corners = [[[x0, -y1], [x1, -y0]] for _, y0, y1, x0, x1 in boxes]
-    return Photograph(RelationGraph.from_facts(relations, names, stated, kinds=kinds), np.array(corners, dtype=float))
+    return Photograph(RelationGraph.from_facts(relations, names, facts, kinds=kinds), np.array(corners, dtype=float))

@@ -20,6 +20,10 @@ MIN_PROBABILITY_LEAD = 0.02
 """Lead in probability from which another thing is reported as likelier; above the error of sampling."""
 
 
+FRAMES = {"object": "by the thing's own front or axis", "table": "across the middle of the scene"}
+"""Wording of the frames of reference other than the viewer's."""
+
+
 def grounding_lines(found: Grounding) -> list[str]:
     """Return the matches, the interchangeable names, the violated facts, what was left out, and the qualifications."""
     from deixis.reasoning.grounding.answer import Outcome
@@ -48,6 +52,8 @@ def grounding_lines(found: Grounding) -> list[str]:
     rest = "".join(f", {number} {words[outcome]}" for outcome, number in counts.items() if number)
     lines += ["", f"Facts: {len(found.outcomes)} stated, {len(found.satisfied)} satisfied" + rest]
     lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
+    own = [one for one in found.frames if one.frame in FRAMES]
+    lines += [f"    {one.fact}: {FRAMES[one.frame]} (probability {one.probability:.2f})" for one in own[:MAX_LISTED]]
     if found.fits is not None:
         lines.append(f"The description fits this scene with probability {_probability(found.fits).strip()}.")
     left_out = (*found.unmatched_objects, *found.unmatched_perceived)

@@ -138,6 +138,10 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
             "waived": [outcome_to_dict(entry) for entry in found.of(Outcome.WAIVED)],
             "open": [outcome_to_dict(entry) for entry in found.of(Outcome.OPEN)],
         },
+        "frames": [
+            {"fact": fact_to_dict(one.fact), "frame": one.frame.value, "probability": _rounded(one.probability)}
+            for one in found.frames
+        ],
         "pivotal": None if found.pivotal is None else pivotal,
         "probabilities": {
             "standing": found.probabilities.value,

@@ -9,20 +9,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from deixis.reasoning.grounding.evidence.scene_words import SceneWords
     from deixis.reasoning.qualitative.relate import Related
 
 
-def pair_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
-    """Yield a line for every ordered pair: subject, relation, object."""
+def pair_lines(
+    related: Related, subject: str | None = None, object: str | None = None, words: SceneWords | None = None
+) -> Iterator[str]:
+    """Yield a line for every ordered pair: subject, relation, object, and the likely words with their probabilities."""
+    place = {name: i for i, name in enumerate(related.ids)}
+    wide_object = max((len(related.ids[i]) for i in related.places(object)), default=0)
     rows, columns = related.places(subject), related.places(object)
     wide = max((len(related.ids[i]) for i in rows), default=0)
     mid = max((_widest(related, i, columns) for i in rows), default=0)
     empty = True
     for a, sign, b in related.pairs(subject, object):
         empty = False
-        yield f"{a:<{wide}}  {sign:<{mid}}  {b}"
+        if words is None:
+            yield f"{a:<{wide}}  {sign:<{mid}}  {b}"
+        else:
+            said = ", ".join(f"{word} {share:.2f}" for word, share in words.of(place[a], place[b]).items())
+            yield f"{a:<{wide}}  {sign:<{mid}}  {b:<{wide_object}}  {said}".rstrip()
     if empty:
         yield "There are no pairs."
+    for i, j, k, share in words.triples() if words is not None else ():
+        if (subject is None or i in related.places(subject)) and (object is None or place[object] in (j, k)):
+            yield f"{related.ids[i]:<{wide}}  between {related.ids[j]} and {related.ids[k]} {share:.2f}"
 
 
 def _widest(related: Related, row: int, columns: range) -> int:
@@ -51,8 +63,11 @@ def _row(head: str, cells: Sequence[str], first: int, widths: list[int]) -> str:
     return "  ".join((f"{head:<{first}}", *padded)).rstrip()
 
 
-def json_lines(related: Related, subject: str | None = None, object: str | None = None) -> Iterator[str]:
+def json_lines(
+    related: Related, subject: str | None = None, object: str | None = None, words: SceneWords | None = None
+) -> Iterator[str]:
     """Yield the calculus, the objects, and every ordered pair, as the lines of one JSON object."""
+    place = {name: i for i, name in enumerate(related.ids)}
     ids = {name: _json(name) for name in related.ids}
     signs = {sign: _json(sign) for sign in related.signs}
     head = json.dumps({"calculus": related.calculus, "objects": list(related.ids)}, indent=2, ensure_ascii=False)
@@ -60,9 +75,21 @@ def json_lines(related: Related, subject: str | None = None, object: str | None 
     previous = '  "pairs": ['
     for a, sign, b in related.pairs(subject, object):
         yield previous
-        yield f'    {{\n      "subject": {ids[a]},\n      "relation": {signs[sign]},\n      "object": {ids[b]}'
+        said = ""
+        if words is not None:
+            known = {word: round(share, 4) for word, share in words.of(place[a], place[b]).items()}
+            said = f',\n      "words": {json.dumps(known)}'
+        yield f'    {{\n      "subject": {ids[a]},\n      "relation": {signs[sign]},\n      "object": {ids[b]}{said}'
         previous = "    },"
-    yield '  "pairs": []' if previous != "    }," else "    }\n  ]"
+    end = "" if words is None else ","
+    yield ('  "pairs": []' if previous != "    }," else "    }\n  ]") + end
+    if words is not None:
+        between = [
+            {"subject": related.ids[i], "objects": [related.ids[j], related.ids[k]], "probability": round(share, 4)}
+            for i, j, k, share in words.triples()
+            if (subject is None or related.ids[i] == subject) and (object is None or place[object] in (j, k))
+        ]
+        yield f'  "between": {json.dumps(between, ensure_ascii=False)}'
     yield "}"
 
 

@@ -8,7 +8,8 @@ from typing import TypeVar
 
 from deixis.grammar.english.entities import plain_noun
 from deixis.grammar.english.tree import Adjective, NounPhrase, Predicate, Sentence, Viewpoint
-from deixis.reasoning.grounding.reference.query import Description, Property, Query, Relation, Viewer
+from deixis.grammar.english.words import ORDINALS
+from deixis.reasoning.grounding.reference.query import Description, Person, Property, Query, Relation, Viewer
 
 SURROUNDINGS = frozenset(
     {
@@ -94,6 +95,27 @@ EMPTY = frozenset(
 )
 """Nouns that say nothing of the kind."""
 
+PERSONS = {"me": Person.SPEAKER, "i": Person.SPEAKER, "myself": Person.SPEAKER, "us": Person.SPEAKER}
+PERSONS |= {"you": Person.ADDRESSEE, "yourself": Person.ADDRESSEE}
+"""Pronouns for those who take part in the conversation."""
+
+STANDPOINTS = frozenset(
+    {"view", "point of view", "viewpoint", "perspective", "vantage point", "position", "standpoint"}
+)
+STANDPOINTS |= {"point", "side", "end", "place", "seat", "eye", "body", "robot"}
+"""Nouns for the place of the person who owns it (*from your point of view*, *closest to my side*)."""
+
+FROM_PERSON = {
+    "near": "near",
+    "next_to": "near",
+    "in_front": "near",
+    "touching": "near",
+    "against": "near",
+    "on": "near",
+}
+FROM_PERSON |= {"left": "left", "right": "right", "far": "far", "opposite": "far", "behind": "far"}
+"""Side of the scene, as a person sees it, of what stands in a relation to that person."""
+
 WALL_RELATIONS = {"on": "near", "against": "near", "along": "near", "touching": "near", "opposite": "opposite"}
 """Relations to a wall that something singles out (*on the wall with the window*), with the relation to that thing."""
 
@@ -166,8 +188,22 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
             other_nouns=target.other_nouns or told.other_nouns,
             relations=_distinct((*target.relations, *told.relations, *relations)),
         )
-    target = _with_own_noun(target, viewer)
+    target = replace(_with_own_noun(target, viewer), properties=_ordered(target.properties))
     return Query(_with_nouns(target, viewer, context), viewer, understood)
+
+
+def _ordered(properties: tuple[Property, ...]) -> tuple[Property, ...]:
+    """Give a rank without an order that of another property: *the second closest one*, *the first one on your left*."""
+    ranked = next((one for one in properties if one.rank is not None and one.word in ORDINALS), None)
+    if ranked is None:
+        return properties
+    sides = [one for one in properties if one.rank is None and one.positive and one.dimension == "position"]
+    graded = next((one for one in sides if one.degree == "superlative" or one.word in {"near", "close"}), None)
+    by = graded or next((one for one in sides if one.word in {"left", "right", "front", "back"}), None)
+    if by is None:
+        return properties
+    ordered = replace(by, dimension="rank", degree="plain", rank=ranked.rank)
+    return tuple(ordered if one is ranked else one for one in properties if one is not graded)
 
 
 def _with_own_noun(target: Description, viewer: Viewer | None) -> Description:
@@ -180,7 +216,7 @@ def _with_own_noun(target: Description, viewer: Viewer | None) -> Description:
         own = tuple(one for one in group.properties if one.degree == "plain" and one.dimension != "position")
         rest = (*(one for one in target.relations if one is not among), *group.relations)
         return replace(target, noun=group.noun, properties=_distinct((*target.properties, *own)), relations=rest)
-    if viewer is not None:  # 'facing the windows, the one on the right'
+    if viewer is not None and viewer.person is None:  # 'facing the windows, the one on the right'
         looked = viewer.target or viewer.landmark
         if looked.noun not in SURROUNDINGS | {"wall"}:
             return replace(target, noun=looked.noun)
@@ -207,7 +243,7 @@ def _with_nouns(target: Description, viewer: Viewer | None, context: Description
             return told
         if context is not None and told == Description(""):
             return context
-        if viewer is not None and told == Description(""):
+        if viewer is not None and viewer.person is None and told == Description(""):
             return viewer.target or viewer.landmark
         return replace(told, noun=target.noun)
 
@@ -423,6 +459,9 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             continue
         for phrase, told in landmarks:
             positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
+            if (person := _person(phrase)) is not None:
+                properties += _from_person(replace(predicate, positive=positive), phrase, name, person)
+                continue
             if told.noun == "wall" and told.relations:  # 'the wall with the window': the window says where
                 placed = WALL_RELATIONS.get(name, name)
                 relations.append(
@@ -444,6 +483,28 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
                     continue
                 relations.append(Relation(name, (told,), degree, positive, predicate.reversed))
     return tuple(properties), tuple(relations)
+
+
+def _person(phrase: NounPhrase) -> Person | None:
+    """Return the person that *you*, *your side* or *the left of you* stands for; None for other phrases."""
+    if phrase.pronoun is not None:
+        return PERSONS.get(phrase.pronoun)
+    owner = phrase.owner or phrase.of
+    if owner is not None and owner.pronoun in PERSONS and phrase.head.casefold() in STANDPOINTS | PARTS:
+        return PERSONS[owner.pronoun]
+    return None
+
+
+def _from_person(said: Predicate, phrase: NounPhrase, name: str, person: Person) -> list[Property]:
+    """Return the properties that stand for a relation to a person: *closest to you*, *in front of me*."""
+    word = FROM_PERSON.get(name)
+    sides = [word for word in phrase.head.casefold().split() if word in {"left", "right"}]
+    sides += [one.word for one in phrase.adjectives if one.word in {"left", "right"}]
+    if word is None and not sides:
+        return []
+    rank = None if said.value is None else said.value.rank
+    degree = str(said.degree)
+    return [Property("position", side, degree, rank, said.positive, person) for side in sides or [word or "near"]]
 
 
 def _is_chosen(wall: Description, said: Predicate) -> bool:
@@ -473,8 +534,9 @@ def _place(said: Predicate) -> list[Property]:
         words = [said.relation, *said.part.split()]
     words = [part for word in words for part in (word.split("_") if word.startswith(("top_", "bottom_")) else [word])]
     known = {"in_front": "front", "behind": "back", "above": "high", "below": "low", "under": "low", "far": "far"}
-    degree = str(said.degree)
-    return [Property("position", known.get(word, word), degree, positive=said.positive) for word in words]
+    degree, owner = str(said.degree), said.viewpoint.own if said.viewpoint is not None else None
+    person = None if owner is None else _person(owner)
+    return [Property("position", known.get(word, word), degree, None, said.positive, person) for word in words]
 
 
 def _viewers(sentence: Sentence) -> Iterator[Viewer]:
@@ -486,10 +548,17 @@ def _viewers(sentence: Sentence) -> Iterator[Viewer]:
     for predicate in predicates:
         if predicate.viewpoint is not None and (found := _viewer(predicate.viewpoint)) is not None:
             yield found
+        if predicate.relation == "from" and len(predicate.arguments) == 1:
+            (phrase,) = predicate.arguments
+            if (person := _person(phrase)) is not None:
+                yield Viewer("person", Description(""), person=person)
 
 
 def _viewer(said: Viewpoint) -> Viewer | None:
-    """Return the viewer of a viewpoint; None for one that tells no direction (*to your left*)."""
+    """Return the viewer of a viewpoint; None for one that tells no direction."""
+    for phrase in (said.own, said.at):
+        if phrase is not None and (person := _person(phrase)) is not None:
+            return Viewer("person", Description(""), person=person)
     at = said.at if said.at is not None and _noun(said.at) not in SURROUNDINGS | {""} else None
     facing = said.facing if said.facing is not None and _noun(said.facing) not in SURROUNDINGS | {""} else None
     if facing is not None:

@@ -16,6 +16,7 @@ SCENE = example("place_setting.scene.json")
 PROMISED = {
     "engine": str,
     "matches": list,
+    "frames": list,
     "unmatched_objects": list,
     "unmatched_perceived": list,
     "interchangeable": list,

@@ -27,6 +27,17 @@ def test_pairs_are_printed_in_rectangle_algebra_by_default(table: Path) -> None:
     assert deixis("relate", table) == (0, "fork   <,d   plate\nplate  >,di  fork\n", "")
 
 
+def test_words_are_said_with_probabilities(table: Path) -> None:
+    code, out, _ = deixis("relate", table, "--words", "--of", "fork", "--of", "plate")
+    assert code == 0
+    assert {"left", "near", "next_to", "shorter"} <= set(out.replace(",", " ").split())
+    code, out, _ = deixis("relate", table, "--words", "--json")
+    answer = json.loads(out)
+    assert answer["pairs"][0]["words"]["left"] > 0.5
+    assert "right" not in answer["pairs"][0]["words"]
+    assert answer["between"] == []
+
+
 @pytest.mark.parametrize(
     ("name", "options", "relation"),
     [
@@ -92,7 +103,8 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
         (("--of", "frok"), "nothing here is called 'frok'; did you mean 'fork'?"),
         (("--of", "fork", "--of", "spoon"), "nothing here is called 'spoon'"),
         (("--of", "a", "--of", "b", "--of", "c"), "--of may be given once"),
-        (("--matrix", "--of", "fork"), "excludes --matrix"),
+        (("--matrix", "--of", "fork"), "--matrix excludes --of"),
+        (("--matrix", "--words"), "--matrix excludes --of"),
         (("--calculus", "distance"), "`reference` must be a length"),
         (("--calculus", "allen", "--axis", "q"), "`axis` must be x, y or z, got 'q'"),
         (("--image", "x.jpg"), "an image ('x.jpg') can be chosen in annotation files only"),

@@ -12,6 +12,7 @@ from source_tree import ROOT
 
 import deixis
 from deixis.perception.errors import SceneError
+from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.answer import Question
 from deixis.workflows.refer import refer_batch
@@ -166,3 +167,46 @@ def test_a_batch_may_answer_its_questions(tmp_path: Path) -> None:
     line = json.dumps({"text": "the bin", "scene": str(STUDY), "oracle": "o14"})
     (found,) = refer_batch([line, "\n"], tmp_path)
     assert found["target"] == "o14" and found["questions"]
+
+
+@pytest.fixture(scope="module")
+def across() -> deixis.Scene:
+    """Return six blocks between the speaker, at the near side, and the addressee, at the far side."""
+    low = np.array([(x, y) for y in (0.0, 0.2) for x in (0.0, 0.3, 0.6)])
+    scene = deixis.Scene.from_boxes(low, low + 0.05, labels=["block"] * 6, viewpoint="unknown")
+    colours = [(220, 30, 30), (30, 60, 210), (220, 30, 30)] * 2
+    objects = tuple(replace(one, colour=colour) for one, colour in zip(scene.objects, colours, strict=True))
+    return replace(scene, objects=objects, speaker=(0.3, -1.0), addressee=(0.3, 1.2))
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("Pick up the blue block closest to me.", "o2"),
+        ("Pick up the blue block closest to you.", "o5"),
+        ("the blue block farthest from you", "o2"),
+        ("the red block closest to you on your left", "o6"),
+        ("the red block closest to you on my left", "o4"),
+        ("the red block closest to me on the left side of the table, from your point of view", "o3"),
+        ("the second closest blue block to me", "o5"),
+    ],
+)
+def test_people_across_a_table_see_it_from_two_sides(across: deixis.Scene, text: str, target: str) -> None:
+    assert deixis.refer(text, across).target == target
+
+
+def test_a_scene_keeps_the_places_of_people(across: deixis.Scene) -> None:
+    again = deixis.read_scene(scene_to_dict(across))
+    assert (again.speaker, again.addressee) == ((0.3, -1.0), (0.3, 1.2))
+
+
+def test_without_known_people_both_are_the_viewer(across: deixis.Scene) -> None:
+    alone = replace(across, viewpoint="chair", speaker=None, addressee=None)
+    assert deixis.refer("the blue block closest to you", alone).target == "o2"
+    assert deixis.refer("the blue block closest to me", alone).target == "o2"
+
+
+def test_on_a_flat_scene_the_top_is_the_far_side(across: deixis.Scene) -> None:
+    alone = replace(across, viewpoint="chair", speaker=None, addressee=None)
+    assert deixis.refer("the blue block at the top", alone).target == "o5"
+    assert deixis.refer("the lowest blue block", alone).target == "o2"

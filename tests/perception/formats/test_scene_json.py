@@ -183,6 +183,7 @@ def test_a_2d_box_cannot_have_an_oriented_one() -> None:
         read_scene(one(oriented=oriented))
 
 
+SCENE_KEYS = "addressee, frame, objects, shows, speaker, unit, viewpoint"
 KEYS = "candidates, cloud, colour, confidence, front, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
@@ -194,8 +195,8 @@ CATALOGUE: list[tuple[Any, str]] = [
     ({}, "'objects' is missing; add the list of the objects"),
     ({"objects": None}, "'objects' must be a list, got null"),
     ({"objects": {}}, "'objects' must be a list, got an object"),
-    ({"object": []}, "'object' is not a key here; the keys are frame, objects, shows, unit, viewpoint"),
-    ({"objects": [], "Frame": "x"}, "'Frame' is not a key here; the keys are frame, objects, shows, unit, viewpoint"),
+    ({"object": []}, f"'object' is not a key here; the keys are {SCENE_KEYS}"),
+    ({"objects": [], "Frame": "x"}, f"'Frame' is not a key here; the keys are {SCENE_KEYS}"),
     ({"objects": [], "unit": "inch"}, "unknown unit 'inch'; use one of m, cm, mm, px"),
     ({"objects": [], "unit": 1}, "'unit' must be a string, got a number"),
     ({"objects": [], "unit": None}, "'unit' must be a string, got null"),
@@ -204,6 +205,7 @@ CATALOGUE: list[tuple[Any, str]] = [
     ({"objects": [], "viewpoint": {}}, "'viewpoint' must be a string, got an object"),
     ({"objects": [BOX, 7]}, "objects[1] must be an object {…}, got a number"),
     ({"objects": [None]}, "objects[0] must be an object {…}, got null"),
+    ({"objects": [], "speaker": [1]}, "'speaker' must be a list of 2 numbers"),
     (without("id"), "objects[0]: 'id' is missing"),
     (without("min"), "objects[0]: 'min' is missing"),
     (without("max"), "objects[0]: 'max' is missing"),

@@ -14,7 +14,7 @@ from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.facts import FactEvidence, fact_tables
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, MAX_JUDGED_OBJECTS, literal_share
+from deixis.reasoning.grounding.evidence.literalness import LITERAL, LITERAL_PRIOR, MAX_JUDGED_OBJECTS, literal_share
 from deixis.reasoning.grounding.matching.problem import Problem
 
 R = default_ontology().relations
@@ -48,9 +48,9 @@ def test_what_nothing_makes_true_literally_is_not_meant_so() -> None:
     assert judged(RelationGraph.from_facts(R, names, facts), boxes) < 0.2
 
 
-def test_where_nothing_is_said_one_speaker_in_five_is_literal() -> None:
+def test_where_nothing_is_said_the_share_is_the_prior() -> None:
     silent = RelationGraph.from_facts(R, ["a", "b"], [])
-    assert judged(silent, np.array([[[0.0, 0], [1, 1]]] * 2)) == pytest.approx(LITERAL / 5)
+    assert judged(silent, np.array([[[0.0, 0], [1, 1]]] * 2)) == pytest.approx(LITERAL * LITERAL_PRIOR)
 
 
 def test_the_order_of_listing_changes_no_table() -> None:

@@ -14,6 +14,7 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import Surroundings, pair_geometry
 from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.evidence import literalness
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence, without_facts
 from deixis.reasoning.grounding.evidence.facts import fact_tables
 from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED, Meaning
@@ -55,7 +56,7 @@ def test_a_block_of_pairs_has_the_ratios_of_the_tables(meaning: Meaning) -> None
     weighing = _Weighing(said, boxes, np.arange(40), meaning, Deadline.never())
     rows, columns = np.array([3, 17, 5]), np.array([8, 3, 30, 12])
     if meaning.graded:
-        known = fact_tables(said, boxes, literal=0.18)
+        known = fact_tables(said, boxes, literal=literalness.LITERAL * literalness.LITERAL_PRIOR)
         tables, kinds = known.tables, known.kinds
     else:
         scene = scene_relations([f"o{p:02}" for p in range(40)], boxes, RELATIONS)
@@ -65,7 +66,7 @@ def test_a_block_of_pairs_has_the_ratios_of_the_tables(meaning: Meaning) -> None
         ratios = weighing.ratios(fact, rows, columns)
         expected = np.exp(tables[kinds[fact]][np.ix_(rows, columns)])
         expected[rows[:, None] == columns] = 0.0
-        assert np.allclose(ratios, expected, rtol=0.02)
+        assert np.allclose(ratios, expected, rtol=0.05)  # crowding is estimated
 
 
 def test_surroundings_of_a_small_scene_are_all_its_things() -> None:

@@ -1,0 +1,92 @@
+"""Orientation of things in the plane: fronts, and long axes modulo half a turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+MIN_STRETCH = 0.2
+"""Least stretch of a thing with a clear long axis: its sides are as 3 to 2."""
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Orientation of n things as seen from above.
+
+    Parameters
+    ----------
+    fronts
+        Unit vectors from each thing to its front, shape (n, 2); NaN if it has none or it is unknown.
+    axes
+        Unit vectors along the long sides, shape (n, 2); a vector and its opposite mean the same axis.
+    stretch
+        (a - b) / (a + b) of the long side a and the short side b, shape (n,); 0 for squares and disks, without an axis.
+    middle
+        Middle of the scene, shape (2,).
+    """
+
+    fronts: Array
+    axes: Array
+    stretch: Array
+    middle: Array
+
+    @classmethod
+    def of_boxes(cls, boxes: Array, fronts: Array | None = None) -> Poses:
+        """Return the poses of axis-aligned boxes, shape (n, 2, d), with unknown fronts by default.
+
+        >>> Poses.of_boxes(np.array([[[0.0, 0.0], [3.0, 1.0]]])).stretch.tolist()
+        [0.5]
+        """
+        extents = boxes[:, 1, :2] - boxes[:, 0, :2]
+        total = extents.sum(axis=1)
+        difference = extents[:, 0] - extents[:, 1]
+        stretch = np.divide(np.abs(difference), total, out=np.zeros(len(boxes)), where=total > 0)
+        axes = np.where((difference >= 0)[:, None], [1.0, 0.0], [0.0, 1.0])
+        return cls(np.full((len(boxes), 2), np.nan) if fronts is None else fronts, axes, stretch, _middle(boxes))
+
+    def with_oriented(self, places: list[int], yaws: list[float], extents: list[tuple[float, float]]) -> Poses:
+        """Return the poses in which some things have turned boxes: the angle and the length of their first side."""
+        axes, stretch = self.axes.copy(), self.stretch.copy()
+        for place, yaw, (first, second) in zip(places, yaws, extents, strict=True):
+            angle = yaw if first >= second else yaw + math.pi / 2
+            axes[place] = math.cos(angle), math.sin(angle)
+            stretch[place] = abs(first - second) / (first + second) if first + second > 0 else 0.0
+        return replace(self, axes=axes, stretch=stretch)
+
+    def __getitem__(self, some: Any) -> Poses:
+        """Return the poses of some things, by a slice or an array of positions."""
+        return replace(self, fronts=self.fronts[some], axes=self.axes[some], stretch=self.stretch[some])
+
+    def turned(self, angle: float, mirrored: bool = False) -> Poses:
+        """Return the poses in a scene mirrored left to right, then turned counter-clockwise about the origin."""
+        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        flip = np.diag([-1.0, 1.0]) if mirrored else np.eye(2)
+        return replace(
+            self, fronts=self.fronts @ flip @ turn, axes=self.axes @ flip @ turn, middle=self.middle @ flip @ turn
+        )
+
+    @property
+    def fronted(self) -> NDArray[np.bool_]:
+        """True for things with a known front, shape (n,)."""
+        known: NDArray[np.bool_] = np.logical_not(np.isnan(self.fronts).any(axis=1))
+        return known
+
+
+def _middle(boxes: Array) -> Array:
+    if not len(boxes):
+        return np.zeros(2)
+    middle: Array = (boxes[:, 0, :2].min(axis=0) + boxes[:, 1, :2].max(axis=0)) / 2
+    return middle
+
+
+def coaxial(first: Poses, second: Poses) -> Array:
+    """Return how far long axes agree, in [-1, 1], shape (n, m): 1 for thin parallel things, -1 for crossing ones."""
+    cosine = np.clip(first.axes @ second.axes.T, -1.0, 1.0)
+    result: Array = (2 * cosine**2 - 1) * np.sqrt(first.stretch[:, None] * second.stretch[None, :])
+    return result
