@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, without_facts
+from deixis.reasoning.grounding.matching.coincidences import discounted
 from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
 from deixis.reasoning.grounding.matching.posterior import BOUND_CELLS, Posterior, log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -303,6 +304,7 @@ def _maps_of(
         if weight + total >= enough and (not seen or not deadline.passed):
             found = posterior(problem, deadline, start=best, chains=not known.memory_limited)
             total = log_total(found, value)
+            found = discounted(problem, found)
             if known.whole is not None:
                 found, total = _of_shortlist(found, known.whole), total + _log_outside(known)
         seen.append((weight + value, weight + total, known, found))

@@ -42,9 +42,7 @@ DEFAULT_TIME_LIMIT = 10.0
 """Default time limit of grounding, in seconds."""
 
 DECIDED = 0.99
-"""Minimum probability of a decided match. Where things are missing, somewhat fewer decided matches are right than this
-probability says, because an extra thing may fit everything that is said of an absent object
-(docs/explanation/scoreboard.md)."""
+"""Minimum probability of a decided match."""
 
 DECIDED_LOWER_BOUND = 0.975
 """Minimum of a decided match's probability minus the error of that probability."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
+from deixis.reasoning.grounding.matching.coincidences import discounted
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
@@ -78,5 +79,5 @@ def leave_one_out(
         known = exact_posterior(rest, deadline, start=found.assignment) if probable else None
         probability = np.full(len(assignment), np.nan)
         if known is not None:
-            probability = known.marginals[np.arange(len(assignment)), found.assignment]
+            probability = discounted(rest, known).marginals[np.arange(len(assignment)), found.assignment]
         yield WithoutFact(fact, found.assignment, better, probability)

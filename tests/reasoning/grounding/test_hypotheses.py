@@ -37,6 +37,8 @@ from deixis.reasoning.grounding.hypotheses import (
     Verdict,
     weigh,
 )
+from deixis.reasoning.grounding.matching.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 MakeGraph = Callable[..., RelationGraph]
@@ -94,9 +96,14 @@ def by_enumeration(evidence: Evidence) -> tuple[float, NDArray[np.float64]]:
     weights, marginals = [], []
     for side in STATED_SIDES:
         there = evidence.seen_from(side.angle, side.mirrored)
-        read = [(weight, *summed(one.problem)) for weight, one in there.label_readings]
-        total = float(np.logaddexp.reduce([weight + one for weight, one, _ in read]))
-        marginals.append(sum(math.exp(weight + one - total) * shares for weight, one, shares in read))
+        read = [(weight, known.problem, *summed(known.problem)) for weight, known in there.label_readings]
+        total = float(np.logaddexp.reduce([weight + one for weight, _, one, _ in read]))
+        marginals.append(
+            sum(
+                math.exp(weight + one - total) * discounted(known, Posterior(shares, True, 0.0)).marginals
+                for weight, known, one, shares in read
+            )
+        )
         weights.append(math.log(side.prior) + FACTS_POWER * (total - alone))
     odds = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
     weights.append(
