@@ -5,7 +5,9 @@ intersection over union above 0.5, and the share of whole objects, some of which
 simulator: the share of the 12 things of a formal setting that are found in this way, and the share found with the box's
 centre, as seen from above, within a centimetre of the true one; and hard cases (``hard_tables.py``). Seconds are of
 processor time. ``--seeds N`` simulates N tables (50), from seed 0 or ``--first`` on; ``--hard N`` as many of each hard
-case (4); ``--quick`` two and one. LCCP is built against the library if that is installed (Debian: libpcl-dev).
+case (4); ``--quick`` two and one. ``--single N`` instead shows detection N views of each of 22 generated single things,
+and of each mesh of ``tabletop-meshes``, without a table. LCCP is built against the library if that is installed
+(Debian: libpcl-dev).
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from __future__ import annotations
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -25,10 +28,17 @@ from numpy.typing import NDArray
 from peers import lccp_pcl
 from records import command_line, mean, recorded, share
 
+from deixis.experiments.open_ended.things import FOLDER, listed_meshes
 from deixis.grammar.parser import read_layout
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud
+from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.detection.detect import detect
+from deixis.perception.detection.shown import Shows
+from deixis.perception.simulator import tableware
+from deixis.perception.simulator.blocks import block
+from deixis.perception.simulator.size import Size
+from deixis.perception.simulator.views import views_of
 from deixis.workflows.lay_table import lay_script
 from deixis.workflows.simulate import Simulation, simulate
 
@@ -227,6 +237,35 @@ def odd_clouds(seed: int) -> None:
         print(line, flush=True)
 
 
+def single_things(views: int, seed: int) -> None:
+    """Print what detection takes views of single things for, from random directions: generated, and of other makers."""
+    sizes = [Size(0.04, 0.04, 0.02), Size(0.1, 0.1, 0.05), Size(0.2, 0.12, 0.02), Size(0.3, 0.18, 0.02)]
+    made = [(f"block of {100 * one.width:g} cm", block(one, np.random.default_rng(seed))) for one in sizes]
+    made += [(name, tableware.make(name, seed=seed).mesh) for name in tableware.FORMS]
+    print_verdicts("generated", made, views, seed)
+    folder = data_folder(FOLDER)
+    if folder is not None:
+        print_verdicts("other makers'", [(name, mesh) for _, name, mesh in listed_meshes(folder)], views, seed)
+
+
+def print_verdicts(said: str, things: list[tuple[str, Mesh]], views: int, seed: int) -> None:
+    """Print how many views of things are taken as one object, as a table or as something else, and of which things."""
+    taken: Counter[str] = Counter()
+    wrong: dict[str, Counter[str]] = {}
+    for number, (name, mesh) in enumerate(things):
+        for cloud in views_of(mesh, views, seed=seed + number):
+            found = detect(cloud)
+            verdict = str(found.shows) if found.shows is not Shows.OBJECT or len(found.boxes) == 1 else "pieces"
+            taken[verdict] += 1
+            if verdict != Shows.OBJECT:
+                wrong.setdefault(name, Counter())[verdict] += 1
+    total = taken.total()
+    print(f"{total} views of {len(things)} {said} things, taken as: {dict(taken.most_common())}", flush=True)
+    for name, verdicts in wrong.items():
+        print(f"    {name}: {dict(verdicts)}")
+    share(f"views of {said} single things taken as one object", taken[Shows.OBJECT], total)
+
+
 def _truth(cloud: PointCloud) -> Labels:
     assert cloud.labels is not None
     return cloud.labels
@@ -249,8 +288,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--hard", type=int, default=4, help="number of tables of each hard case")
+    parser.add_argument("--single", type=int, metavar="N", help="only N views of each of many single things")
     parser.add_argument("--quick", action="store_true")
     with recorded(parser) as given:
+        if given.single is not None:
+            single_things(given.single, given.first)
+            return
         folder = data_folder("mosd-tabletop")
         with tempfile.TemporaryDirectory() as built:
             compared = methods(Path(built))

@@ -44,6 +44,9 @@ COMMANDS = {
     "infer, 12 objects": f"infer {DINNER}",
     "infer, 12 objects with choices": "infer choices.layout",
     "infer, 50 objects": "infer row.layout",
+    "lint, 12 objects": f"lint {DINNER}",
+    "read, 4 sentences": "read table.txt",
+    "refer": f"refer knife {SECOND}",
     "relation": "relation left",
     "relate, 5 points": "relate five.scene.json --calculus ra",
     "solve, 5 points": "solve five.csp --calculus point",
@@ -55,6 +58,8 @@ COMMANDS = {
     "time": f"time {example('serving.fluents.json')}",
     "ground, 12 objects": f"ground {DINNER} {SETTING}",
     "check, 12 objects": f"check formal_dinner {SECOND}",
+    "ground, a text": f"ground table.txt {SECOND}",
+    "check, a text": f"check table.txt {SECOND}",
     "learn, 12 objects": f"learn {DINNER} {LABELLED} --memory learned-{{run}}",
     "retrieve": f"retrieve {SECOND}",
     "learn-relation, 12 objects": f"learn-relation {DINNER} {LABELLED} -o learned.ttl",
@@ -67,7 +72,11 @@ COMMANDS = {
     "reason, HermiT": "reason kitchen.ttl --engine hermit",
     "simulate, 3 things": "simulate --random 3",
 }
-"""A small typical job of every command except those that ask, tell a story or run experiments."""
+"""A small typical job of every command except those that ask, tell a story, run experiments or serve an editor."""
+
+TEXT = """The dinner plate is in the middle. The fork is to the left of the plate, and the knife is to its right.
+The glass is above the knife. There is a napkin on the plate.
+"""
 
 GROUNDING = ("ground", "check", "learn", "retrieve", "learn-relation")
 
@@ -121,6 +130,7 @@ def prepare(folder: Path) -> None:
         "@prefix ex: <urn:ex:> . ex:Cup rdfs:subClassOf ex:Vessel . ex:Vessel a owl:Class . ex:c a ex:Cup .\n",
         encoding="utf-8",
     )
+    (folder / "table.txt").write_text(TEXT, encoding="utf-8")
     x, y = (axis.ravel() for axis in np.mgrid[-0.3:0.3:0.01, 0.5:1.1:0.01])
     block = (abs(x) < 0.05) & (abs(y - 0.8) < 0.05)
     seen = np.stack([x, y, np.where(block, -0.64, -0.7)], axis=1).astype(np.float32)
@@ -151,7 +161,7 @@ def main() -> None:
             for run in range(options.runs + 1):
                 for name in costs:
                     found = cost(BESIDE[name] if name in BESIDE else deixis(chosen[name], run), folder)
-                    if found.code not in (0, 1):
+                    if found.code not in (0, 1, 3):
                         raise SystemExit(f"{name}: exit code {found.code}")
                     if run > 0:
                         costs[name].append(found)

@@ -91,8 +91,8 @@ class FurtherKinds(Protocol):
 class Kinds:
     """All kinds, by IRI and by word: those of the TBox, and those of the lexicon.
 
-    Most scripts need only the TBox. The lexicon (``nouns``) is read at the first word or IRI that the TBox does not
-    know. Iteration and ``len`` cover the TBox.
+    Most scripts need only the TBox. The lexicon (``nouns``) is read at the first word that it lists (``listed``), or at
+    the first IRI that the TBox does not know. Iteration and ``len`` cover the TBox.
 
     >>> from deixis.ontology.tbox import default_ontology
     >>> kinds = default_ontology().kinds
@@ -102,10 +102,16 @@ class Kinds:
     True
     """
 
-    def __init__(self, kinds: tuple[Kind, ...], nouns: Callable[[], FurtherKinds] | None = None) -> None:
+    def __init__(
+        self,
+        kinds: tuple[Kind, ...],
+        nouns: Callable[[], FurtherKinds] | None = None,
+        listed: Callable[[], frozenset[str]] | None = None,
+    ) -> None:
         self._all = kinds
         self._by_iri = {kind.iri: kind for kind in kinds}
         self._nouns = nouns
+        self._listed = listed
         self._heads: dict[str, tuple[tuple[Kind, ...], str]] = {}
 
     def __iter__(self) -> Iterator[Kind]:
@@ -178,7 +184,11 @@ class Kinds:
         ['Glass', 'Spectacles']
         """
         plain = spaced(word)
-        return self.every_word.get(plain) or self.every_word.get(plain.replace(" ", ""), ())
+        joined = plain.replace(" ", "")
+        if "every_word" not in vars(self) and self._listed is not None and self._listed().isdisjoint((plain, joined)):
+            known = self.words.get(plain) or self.words.get(joined)
+            return () if known is None else (known,)
+        return self.every_word.get(plain) or self.every_word.get(joined, ())
 
     def head_noun(self, noun: str) -> tuple[tuple[Kind, ...], str]:
         """Return all kinds that the longest known end of a noun stands for, and the words before this end.

@@ -110,6 +110,9 @@ class Ontology:
         return self._usual_kind(noun), colour
 
     def _usual_kind(self, noun: str) -> Kind | None:
+        known = self.kinds.words.get(spaced(noun))
+        if known is not None:  # without reading the lexicon
+            return known
         senses, before = self.kinds.head_noun(noun)
         end = spaced(noun)[len(before) :].strip()
         if len(senses) < 2 or end in self.kinds.words:
@@ -160,9 +163,15 @@ def load_ontology(*extra: str) -> Ontology:
 
         return read_nouns(kinds.words)
 
+    @lru_cache(maxsize=1)
+    def listed() -> frozenset[str]:
+        from deixis.ontology.lexicon.nouns import listed_words
+
+        return listed_words(kinds.words)
+
     return Ontology(
         Relations(tuple(relations)),
-        Kinds(tuple(kinds), nouns),
+        Kinds(tuple(kinds), nouns, listed),
         _hedges(triples),
         sizes_from_triples(triples, nouns),
         colours,

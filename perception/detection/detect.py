@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -94,7 +95,13 @@ class Detection:
         return Scene(tuple(things), frame=frame, viewpoint=viewpoint, file=file, detection=self)
 
 
-def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Detection:
+FINDING_TABLE, SEPARATING = DETECTION_STAGES = ("looking for the table", "separating the objects")
+"""Stages of a detection, in order."""
+
+
+def detect(
+    cloud: PointCloud, settings: DetectionSettings | None = None, stage: Callable[[str], None] | None = None
+) -> Detection:
     """Detect a table in a cloud and the objects on it.
 
     A cloud without a table, an empty table, and further tables are reported in the notes of the detection.
@@ -105,6 +112,8 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
         Points in metres; its labels are ignored.
     settings
         Options and thresholds; the default ones if None.
+    stage
+        Called with the name of each of ``DETECTION_STAGES`` that begins.
 
     Raises
     ------
@@ -139,10 +148,13 @@ def detect(cloud: PointCloud, settings: DetectionSettings | None = None) -> Dete
     view = View(points, kept, cloud.organised, camera_pose_of(cloud, settings))
     if len(points) >= settings.least_points and is_small(points, settings):
         return _alone(cloud, view, settings)
+    begin = stage or (lambda name: None)
+    begin(FINDING_TABLE)
     seen = list(islice(tables(view, settings), settings.table + 1))
     if len(seen) < settings.table and settings.table > 1:
         nothing = _nothing(cloud, view, settings, _no_table(settings, len(seen)))
         return replace(nothing, shows=Shows.TABLE) if len(seen) == 1 else nothing
+    begin(SEPARATING)
     found = _on_table(cloud, seen[settings.table - 1], settings) if seen else None
     alone = settings.table == 1 and len(points) >= settings.least_points
     if alone and not _has_objects(found, seen, settings) and is_one_object(points, settings, len(seen)):

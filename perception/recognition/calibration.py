@@ -4,7 +4,9 @@ The threshold makes the fewest wrong decisions between known and unknown (Youden
 that a thing is known at all is Platt's (1999), a sigmoid of the logarithm of the least ND: 1 / (1 + (ND / even)^doubt).
 The probability of each category, given that the thing is known, is a conditional logit (McFadden 1974):
 P(c) ~ ND(c)^-choice. Both are fitted by likelihood; a normal prior on the logarithms of the parameters keeps them near
-the shipped ones while held-out views are few.
+the shipped ones while held-out views are few. Views of one thing are correlated, so that the likelihood of n views
+counts as that of n / d independent ones, where d is their design effect. Otherwise, many views of few things make the
+fit too certain.
 
 Some things look like another category, however near the distances are: a share of ``slips`` is spread over all answers
 as if nothing had been seen, so that no answer is more certain than the held-out answers justify.
@@ -196,7 +198,7 @@ def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SH
     if min(len(known), len(unknown)) < MIN_HELD_OUT_ANSWERS:
         return start
     threshold = best_threshold(known.min(axis=1), unknown.min(axis=1), prior_unknown)
-    fitted = _fitted(known, truth, unknown, prior_unknown, start)
+    fitted = _fitted(known, truth, unknown, prior_unknown, start, 1 / held.design_effect)
     return replace(fitted, threshold=threshold, known=len(known), unknown=len(unknown))
 
 
@@ -211,9 +213,10 @@ def calibrate_jointly(
     known, truth = held[0].as_known
     if min(len(known), len(held[0].as_unknown)) < MIN_HELD_OUT_ANSWERS:
         return start
-    weights = _fitted_weights(start.logs([each.as_known[0] for each in held]), truth, start)
+    weights = _fitted_weights(start.logs([each.as_known[0] for each in held]), truth, start, 1 / held[0].design_effect)
     started = replace(start, weights=weights)
-    return calibrate(HeldOut(started.mean([each.normalised for each in held]), held[0].truth), prior_unknown, started)
+    joint = replace(held[0], normalised=started.mean([each.normalised for each in held]))
+    return calibrate(joint, prior_unknown, started)
 
 
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
@@ -291,8 +294,13 @@ def _mean_logs(logs: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArr
     return result
 
 
-def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: Calibration) -> tuple[float, ...]:
-    """Return the most probable weights of b descriptors, given the logarithms (b, k, c) of the ND of known views."""
+def _fitted_weights(
+    logs: NDArray[np.float64], truth: NDArray[np.int64], start: Calibration, worth: float
+) -> tuple[float, ...]:
+    """Return the most probable weights of b descriptors, given the logarithms (b, k, c) of the ND of known views.
+
+    ``worth`` is the number of independent views that each view counts as.
+    """
     from scipy.optimize import minimize
 
     ratios = np.log(np.array(start.weights) / start.weights[0])[1:]
@@ -307,7 +315,7 @@ def _fitted_weights(logs: NDArray[np.float64], truth: NDArray[np.int64], start: 
         utilities = -np.exp(values[0]) * _mean_logs(logs, weights_of(values[1:]))
         named = utilities[rows, truth] - np.logaddexp.reduce(utilities, axis=1)
         apart = np.concatenate([[values[0] - np.log(start.choice)], values[1:] - ratios])
-        return float(-np.maximum(named, -50.0).sum() + 0.5 * np.square(apart / widths).sum())
+        return float(-worth * np.maximum(named, -50.0).sum() + 0.5 * np.square(apart / widths).sum())
 
     found = minimize(loss, np.concatenate([[np.log(start.choice)], ratios]), method="Nelder-Mead").x
     return tuple(weights_of(found[1:]).tolist())
@@ -327,13 +335,17 @@ def _fitted(
     unknown: NDArray[np.float64],
     prior_unknown: float,
     start: Calibration,
+    worth: float,
 ) -> Calibration:
-    """Return ``start`` with the most probable even, doubt, choice and slips."""
+    """Return ``start`` with the most probable even, doubt, choice and slips.
+
+    ``worth`` is the number of independent views that each view counts as.
+    """
     from scipy.optimize import minimize
 
     first = np.log([start.even, start.doubt, start.choice, max(start.slips, MIN_SLIPS) / (1 - start.slips)])
     widths = np.array([PRIOR_WIDTH, PRIOR_WIDTH, PRIOR_WIDTH, SLIPS_WIDTH])
-    count, rows = len(known) + len(unknown), np.arange(len(known))
+    count, rows = worth * (len(known) + len(unknown)), np.arange(len(known))
     blind_named, blind_none = _blind(known)[rows, truth], _blind(unknown)[:, -1]
 
     def slips_of(logit: float) -> float:

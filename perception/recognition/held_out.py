@@ -14,6 +14,10 @@ from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.settings import RecognitionSettings
 from deixis.perception.recognition.spread import spreads
 
+CORRELATION = 0.6
+"""Correlation between the log-probabilities of the right answers to two views of one thing: the mean over the
+simulator's tableware, 0.4 for known and 0.75 for unknown things (benchmarks/bench_naming.py --correlation)."""
+
 MAX_HELD_OUT = 400
 """Maximum number of views that are held out, distributed evenly over the categories."""
 
@@ -32,10 +36,24 @@ class HeldOut:
 
     ``truth`` is the category of each view; its ND to that category excludes all views of the same thing, and is inf if
     no others remain. This ND is corrected for the missing thing by the factor that :func:`shortening` describes.
+    ``things`` has one number for all views of a thing; by default, each view shows a thing of its own.
     """
 
     normalised: NDArray[np.float64]  # (v, c)
     truth: NDArray[np.int64]  # (v,)
+    things: NDArray[np.int64] | None = None  # (v,)
+
+    @property
+    def design_effect(self) -> float:
+        """Number of views that are worth one independent view, at least 1 (Kish 1965).
+
+        It is 1 + (m - 1) r for m views of a thing and a correlation r between the answers to two of them; m is the
+        mean over views.
+        """
+        if self.things is None or not len(self.things):
+            return 1.0
+        counts = np.unique(self.things, return_counts=True)[1]
+        return float(1 + (np.square(counts).sum() / counts.sum() - 1) * CORRELATION)
 
     @property
     def as_known(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -103,7 +121,13 @@ def hold_out(
     truth = np.array([number for number, _ in chosen], np.int64)
     things = np.array([len(np.unique(category.shown)) for category in categories], np.float64)[truth]
     rows[np.arange(len(rows)), truth] *= (things / np.maximum(things - 1, 1)) ** -shortening(fewer)
-    return HeldOut(rows, truth)
+    shown = {one: number for number, one in enumerate(dict.fromkeys(_thing(categories, *each) for each in chosen))}
+    return HeldOut(rows, truth, np.array([shown[_thing(categories, *each)] for each in chosen], np.int64))
+
+
+def _thing(categories: Sequence[InstanceCategory], number: int, place: int) -> tuple[int, int]:
+    """Return the category of a view and the number of its thing there."""
+    return number, int(categories[number].shown[place])
 
 
 def shortening(fewer: Sequence[tuple[int, float]]) -> float:

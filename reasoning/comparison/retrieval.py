@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 from deixis.deadline import Deadline
 from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen
 from deixis.reasoning.errors import SettingError
+
+Progress = Callable[[int, int], None]
+"""Callback with the number of comparisons made, and the number of all candidates."""
 
 BOUND_TOLERANCE = 1e-5
 """Largest amount by which a bound may be below a similarity because of rounding."""
@@ -27,6 +30,7 @@ def rank_layouts(
     comparison: Comparison,
     top: int = 10,
     deadline: Deadline = Deadline.never(),
+    progress: Progress | None = None,
 ) -> list[Likeness]:
     """Rank layouts by their similarity to a scene.
 
@@ -42,6 +46,8 @@ def rank_layouts(
         Maximum number of results, at least 1.
     deadline
         Time at which each comparison returns its best grounding so far, not proved to be the best.
+    progress
+        Called with the number of layouts compared, and that of all.
 
     Returns
     -------
@@ -53,7 +59,7 @@ def rank_layouts(
     SettingError
         If ``top`` is less than 1.
     """
-    return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline)
+    return _ranked([(layout, scene) for layout in layouts], comparison, top, deadline, progress)
 
 
 def rank_scenes(
@@ -62,6 +68,7 @@ def rank_scenes(
     comparison: Comparison,
     top: int = 10,
     deadline: Deadline = Deadline.never(),
+    progress: Progress | None = None,
 ) -> list[Likeness]:
     """Rank scenes by their similarity to a layout.
 
@@ -77,6 +84,8 @@ def rank_scenes(
         Maximum number of results, at least 1.
     deadline
         Time at which each comparison returns its best grounding so far, not proved to be the best.
+    progress
+        Called with the number of scenes compared, and that of all; those whose bound is too small are not compared.
 
     Returns
     -------
@@ -88,11 +97,15 @@ def rank_scenes(
     SettingError
         If ``top`` is less than 1.
     """
-    return _ranked([(layout, scene) for scene in scenes], comparison, top, deadline)
+    return _ranked([(layout, scene) for scene in scenes], comparison, top, deadline, progress)
 
 
 def _ranked(
-    pairs: Sequence[tuple[Described, Seen]], comparison: Comparison, top: int, deadline: Deadline
+    pairs: Sequence[tuple[Described, Seen]],
+    comparison: Comparison,
+    top: int,
+    deadline: Deadline,
+    progress: Progress | None,
 ) -> list[Likeness]:
     """Compare the pair of the largest bound next, until no bound reaches the similarity of the last result."""
     if top < 1:
@@ -107,6 +120,8 @@ def _ranked(
             heapq.heappush(open_, (max(bound, -assignment_bound(comparison, *pairs[k])), k, True))
             continue
         found.append(comparison.likeness(*pairs[k], deadline))
+        if progress is not None:
+            progress(len(found), len(pairs))
         if len(found) >= top:
             least = sorted((one.similarity for one in found), reverse=True)[top - 1]
     return sorted(found, key=lambda one: (-one.similarity, one.layout, one.scene))[:top]

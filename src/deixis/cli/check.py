@@ -23,9 +23,9 @@ from deixis.cli.common import (
     print_written,
     require_plot,
     tell_of_compiling,
-    working,
 )
 from deixis.cli.completion import complete_layouts
+from deixis.cli.progress import time_bar
 
 
 def check(
@@ -54,7 +54,7 @@ def check(
     require_plot(plot)
     seen = load_scene(scene, hide_labels, image)
     tell_of_compiling()
-    with Session(memory) as session, working("grounding"):
+    with Session(memory) as session, time_bar("grounding", time_limit):
         checked = run(layout, seen, time_limit, None if no_memory else session.knowledge_store)
     if report is not None:
         report.parent.mkdir(parents=True, exist_ok=True)

@@ -18,8 +18,8 @@ from deixis.cli.common import (
     require_plot,
     require_scene_name,
     require_writable,
-    working,
 )
+from deixis.cli.progress import stage_bar
 
 
 def perceive(
@@ -47,16 +47,16 @@ def perceive(
     from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.formats.scene_json import scene_to_dict
     from deixis.report.seen import scene_lines, shows_line
+    from deixis.workflows.perceive import STAGES, write_scene
     from deixis.workflows.perceive import perceive as run
-    from deixis.workflows.perceive import write_scene
 
     require_plot(plot)
     if labels is not None and labels.suffix != ".npy":
         raise DeixisError(f"{labels}: the name of a file of labels must end in .npy")
     require_scene_name(out)
     require_writable([out, labels, plot], [cloud, intrinsics])
-    with working("looking for the table"):
-        scene = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up))
+    with stage_bar(*STAGES) as begin:
+        scene = run(cloud, intrinsics, viewpoint, DetectionSettings(table=table, up=up), begin)
     found = scene.detection
     assert found is not None
     seen = bool(found.table is not None or scene.objects)

@@ -21,8 +21,8 @@ from deixis.cli.common import (
     print_lines,
     print_note,
     tell_of_compiling,
-    working,
 )
+from deixis.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from deixis.session import Session
@@ -54,7 +54,7 @@ def retrieve(
     from deixis.workflows.retrieve import retrieve as run
 
     tell_of_compiling()
-    with _remembering(memory, no_memory) as session, working("comparing"):
+    with _remembering(memory, no_memory) as session, progress_bar("comparing") as progress:
         retrieved = run(
             query,
             among,
@@ -64,6 +64,7 @@ def retrieve(
             hide_labels=hide_labels,
             time_limit=time_limit,
             left_out=lambda why: print_note(f"left out: {why}"),
+            progress=progress,
         )
     if as_json:
         print_json(retrieval_to_dict(retrieved))

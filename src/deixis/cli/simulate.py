@@ -17,8 +17,8 @@ from deixis.cli.common import (
     print_written,
     require_scene_name,
     require_writable,
-    working,
 )
+from deixis.cli.progress import stage_bar
 
 if TYPE_CHECKING:
     from deixis.perception.clouds.mesh import Mesh
@@ -73,8 +73,10 @@ def simulate(
     lens = KINECT if intrinsics is None else read_intrinsics(intrinsics)
     view = CameraSetup(camera_height, camera_back, math.radians(azimuth), lens, sensor)
     try:
-        with working("laying the table"):
-            found = run(_laid(layout, random, seed, meshes, cloth), view, seed)
+        with stage_bar("laying the table", "looking at the table") as begin:
+            laid = _laid(layout, random, seed, meshes, cloth)
+            begin("looking at the table")
+            found = run(laid, view, seed)
     except NoTableError as error:
         print_json({"simulated": False, "reason": str(error)}) if as_json else print_lines([str(error)])
         raise typer.Exit(NO) from error

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import os
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +14,16 @@ from deixis.errors import DeixisError
 from deixis.memory.owner import rename
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
-from deixis.perception.detection.detect import detect
+from deixis.perception.detection.detect import DETECTION_STAGES, detect
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.formats.scene_json import scene_text
 from deixis.perception.scene import Scene
+
+READING = "reading the cloud"
+
+STAGES = (READING, *DETECTION_STAGES)
+"""Stages of perceiving a cloud, in order."""
 
 _NUMBERED = re.compile(r"o\d+")
 _CLOUD = re.compile(r"o\d+(-[0-9a-f]{8}|\.new)\.pcd")
@@ -28,8 +34,11 @@ def perceive(
     intrinsics: str | Path | None = None,
     viewpoint: str = "chair",
     settings: DetectionSettings | None = None,
+    stage: Callable[[str], None] | None = None,
 ) -> Scene:
     """Find the table in a point cloud, and the objects on it.
+
+    ``stage`` is called with the name of each of ``STAGES`` that begins.
 
     Each object of the scene has its points, so that it can be taught, learned and recognised at once;
     :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the object of each of its points, and notes on what
@@ -67,10 +76,12 @@ def perceive(
     if not isinstance(viewpoint, str) or not viewpoint.strip() or not viewpoint.isprintable():
         raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
     if isinstance(cloud, PointCloud):
-        return detect(cloud, settings).scene(viewpoint)
+        return detect(cloud, settings, stage).scene(viewpoint)
+    if stage is not None:
+        stage(READING)
     seen = read_cloud(cloud, intrinsics)
     try:
-        return detect(seen, settings).scene(viewpoint, str(cloud))
+        return detect(seen, settings, stage).scene(viewpoint, str(cloud))
     except CloudError as error:
         raise CloudError(f"{cloud}: {error}") from error
 

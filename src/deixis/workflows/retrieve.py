@@ -17,7 +17,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen, seen
-from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
+from deixis.reasoning.comparison.retrieval import Progress, rank_layouts, rank_scenes
 from deixis.reasoning.grounding.evidence.labels import category_of
 from deixis.reasoning.grounding.evidence.meaning import Meaning
 
@@ -108,6 +108,7 @@ def retrieve(
     hide_labels: bool = False,
     time_limit: float = TIME_LIMIT,
     left_out: LeftOut | None = None,
+    progress: Progress | None = None,
 ) -> Retrieval:
     """Rank all known layouts by their similarity to a scene, or all known scenes by their similarity to a script.
 
@@ -129,6 +130,8 @@ def retrieve(
         Seconds for all comparisons.
     left_out
         Called with a line for each lesson that cannot be read.
+    progress
+        Called with the number of layouts or scenes compared, and that of all.
 
     Returns
     -------
@@ -146,13 +149,13 @@ def retrieve(
         query = read_script(str(query)) if _is_script_file(str(query)) else read_scene(query)
     if isinstance(query, Script):
         layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
-        ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline)
+        ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline, progress)
         found = [_retrieved(one.scene, one, layout, scenes[one.scene]) for one in ranked if one.similarity >= least]
         return Retrieval(tuple(found), len(scenes), query.file, least)
     scene = query if isinstance(query, Scene) else read_scene(query)
     asked = _seen(scene.file, scene.without_labels() if hide_labels else scene)
     layouts = _known_layouts(memory, folder)
-    ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline)
+    ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline, progress)
     found = [_retrieved(one.layout, one, layouts[one.layout], asked) for one in ranked if one.similarity >= least]
     return Retrieval(tuple(found), len(layouts), scene.file, least)
 

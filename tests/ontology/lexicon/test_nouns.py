@@ -7,7 +7,8 @@ import re
 import pytest
 
 from deixis.errors import OntologyError
-from deixis.ontology.lexicon.nouns import read_nouns
+from deixis.ontology.kinds import spaced
+from deixis.ontology.lexicon.nouns import listed_words, read_nouns
 from deixis.ontology.tbox import default_ontology, load_ontology
 
 KINDS = default_ontology().kinds
@@ -65,6 +66,19 @@ def test_the_file_is_read_at_the_first_word_that_the_tbox_lacks() -> None:
     assert "every_word" not in vars(kinds)
     assert kinds.of_word("ottoman") is not None
     assert "every_word" in vars(kinds)
+
+
+def test_senses_are_the_same_before_and_after_the_file_is_read() -> None:
+    known = {spaced(word) for word in KINDS.every_word}
+    words = {*known, *(word.replace(" ", "") for word in known), "no such word", "dinner plates"}
+    fresh = load_ontology().kinds
+    listed = listed_words(fresh.words)
+    early = {word: fresh.senses(word) for word in words if listed.isdisjoint((word, word.replace(" ", "")))}
+    assert "every_word" not in vars(fresh)
+    assert len(early) > 100
+    assert all(
+        [kind.iri for kind in found] == [kind.iri for kind in KINDS.senses(word)] for word, found in early.items()
+    )
 
 
 def test_words_of_the_tbox_keep_their_usual_meaning() -> None:
