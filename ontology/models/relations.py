@@ -20,10 +20,6 @@ SAYING = "saying"
 """Name of the model of the pairs that people mention at all, in whatever relation."""
 
 
-UNDECIDED = "undecided"
-"""Name of the model of the words that boxes say nothing about, such as *facing*."""
-
-
 class Trend(IntEnum):
     """Direction in which the values of a term must go for the word to keep its meaning."""
 
@@ -163,6 +159,9 @@ GRADED_FAMILIES: Mapping[str, str] = {
     "pointed_at_by": "pointing",
 }
 """Model of each word in the graded reading."""
+
+ORIENTED = frozenset({"facing", "pointing"})
+"""Models of words that say nothing of things without a known orientation."""
 
 MODEL_OF_WORD: Mapping[str, str] = {**FAMILIES, **GRADED_FAMILIES}
 """Model of every word that has one."""

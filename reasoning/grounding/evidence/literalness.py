@@ -55,7 +55,7 @@ def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline 
     >>> there, order = np.array([[[0, 1], [0, 0]]], np.float32), np.arange(2)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), there, np.zeros((2, 2)), np.full(2, -9.0))
     >>> round(literal_share((problem, replace(problem, tables=3 * there)), order), 2)
-    0.58
+    0.12
     """
     worth = [
         _best_value(_part(problem, objects), deadline) if len(problem.ends) and not deadline.passed else 0.0

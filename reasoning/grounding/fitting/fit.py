@@ -21,8 +21,8 @@ from deixis.ontology.models.relations import (
     FAMILIES,
     GRADED_FAMILIES,
     MODEL_OF_WORD,
+    ORIENTED,
     SAYING,
-    UNDECIDED,
     Provenance,
     RelationModel,
     RelationModels,
@@ -212,12 +212,16 @@ def take_out(
 
 
 def _examples(scenes: Iterable[SaidPairs]) -> dict[str, float]:
-    """Return the weight of the stated words of each family with at least one; *facing* and its like have none."""
+    """Return the weight of the stated words of each family with at least one; words without a model have none.
+
+    Nor have *facing* and its like where no orientation is known.
+    """
     weights: dict[str, float] = {}
     for scene in scenes:
         for word, weight in zip(scene.words, scene.weights.tolist(), strict=True):
-            family = MODEL_OF_WORD.get(word, UNDECIDED)
-            if family != UNDECIDED and weight > 0:
+            family = MODEL_OF_WORD.get(word)
+            unseen = family in ORIENTED and scene.pairs.subject_poses is None
+            if family is not None and not unseen and weight > 0:
                 weights[family] = weights.get(family, 0.0) + weight
     return weights
 

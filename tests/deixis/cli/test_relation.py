@@ -60,7 +60,7 @@ def test_a_word_is_shown_with_readings_inverse_and_graded_model() -> None:
     assert "wide        x < m; y any" in lines
     assert any(line.startswith("exact       x < m; y o fi di s = si d f oi") for line in lines)
     assert any("model 'horizontal', shipped, from prototypes" in line for line in lines)
-    assert any(line.strip().startswith("deviation") and "0.785398: 0.5" in line for line in lines)
+    assert any(line.strip().startswith("deviation") and "0.785398: 0.7" in line for line in lines)
 
 
 def test_json_has_the_parameters() -> None:

@@ -103,7 +103,7 @@ def test_forgetting_a_lesson_takes_back_what_it_taught(tmp_path: Path) -> None:
 
 
 def test_forgetting_one_of_many_lessons_looks_at_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bound the difference to the words of the other lessons by a quarter of what the contradicting lesson changes."""
+    """Bound the difference to the words of the other lessons by two fifths of what the contradicting lesson changes."""
     shifts = [number / 10 for number in range(FEW_SCENES + 5)]
     gone = [(read_script(text="layout tea; spoon left of dinner_plate"), table(0.05))]
     with taught(tmp_path / "memory", *shifts) as session:
@@ -123,7 +123,7 @@ def test_forgetting_one_of_many_lessons_looks_at_no_other(tmp_path: Path, monkey
     assert now["horizontal"].provenance.lessons == anew["horizontal"].provenance.lessons
     assert len(now["horizontal"].provenance.lessons) == FEW_SCENES + 5
     values = [np.concatenate([term.values for term in models["horizontal"].terms]) for models in (before, now, anew)]
-    assert np.abs(values[1] - values[2]).max() < 0.25 * np.abs(values[0] - values[2]).max()
+    assert np.abs(values[1] - values[2]).max() < 0.4 * np.abs(values[0] - values[2]).max()
 
 
 def test_after_a_reset_the_lessons_can_teach_again(tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_what_is_doubtful_is_recorded_and_teaches_nothing(taught: Path) -> None:
 def test_a_category_says_which_lessons_showed_it(taught: Path) -> None:
     with Session(taught) as session:
         rows = session.query(
-            f"SELECT ?lesson {{ ?m dx:category <{LEARNED}category/napkin> ; prov:wasGeneratedBy ?lesson }} "
+            f"SELECT ?lesson {{ ?m dx:category <{LEARNED}category/dinner_plate> ; prov:wasGeneratedBy ?lesson }} "
             "ORDER BY ?lesson"
         ).rows
         assert [str(row[0]) for row in rows] == [

@@ -54,7 +54,7 @@ def test_an_oracle_settles_who_is_who_in_few_questions(script: str, tmp_path: Pa
     asked = [line for line in err.splitlines() if line[:1].isdigit()]
     assert len(asked) <= 7
     questions = json.loads(out)["questions"]
-    assert [f"{n}. {one['question']}" for n, one in enumerate(questions, 1)] == [line.split("   ")[0] for line in asked]
+    assert [f"{n}. {one['text']}" for n, one in enumerate(questions, 1)] == [line.split("   ")[0] for line in asked]
     assert all(one["outcome"] == "resolved" and one["answer"] and one["bits"] > 0 for one in questions)
 
 
