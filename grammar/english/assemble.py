@@ -49,7 +49,18 @@ class Assembly:
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
-        """Return the verb of a main clause such as *it could be that*, and the clause without it."""
+        """Return the verb of a main clause such as *it could be that*, and the clause without it.
+
+        Parameters
+        ----------
+        segment
+            Clause that may have such a main clause before it.
+
+        Returns
+        -------
+        tuple
+            Verb of the main clause, or None if it has none, and the rest of the clause.
+        """
         for i, chunk in enumerate(segment.chunks):
             if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
                 return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
@@ -59,7 +70,19 @@ class Assembly:
         return None, segment
 
     def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:
-        """Take in a parsed clause that stands after the joint ``link``."""
+        """Take in a parsed clause that stands after the joint ``link``.
+
+        Parameters
+        ----------
+        built
+            Parsed clause.
+        link
+            Joint before the clause, such as ``and`` or ``if``; empty for the first clause.
+        start, end
+            First and last character of the clause in the text, counted from 0, the end exclusive.
+        hedge
+            Verb of the main clause that the clause depends on (*it could be that*), or None.
+        """
         span = (start, end)
         frame = self._frame(built, link, span)
         if frame is not None:
@@ -136,7 +159,13 @@ class Assembly:
             self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
 
     def finish(self) -> Found:
-        """Return the clauses; a single noun phrase without a clause is the fragment of the sentence."""
+        """Return the clauses; a single noun phrase without a clause is the fragment of the sentence.
+
+        Returns
+        -------
+        Found
+            Clauses, fragment and viewpoint. What is left without a meaning is noted as misunderstood.
+        """
         fragment = None
         rest = self.fragments
         if self.sought is not None:

@@ -79,12 +79,33 @@ class Built:
 
 
 def union(first: Span, last: Span) -> Span:
-    """Return the span from the start of one to the end of another."""
+    """Return the span from the start of one to the end of another.
+
+    Parameters
+    ----------
+    first, last
+        Spans in the same text, in any order.
+
+    Returns
+    -------
+    Span
+        Smallest span that contains both.
+    """
     return min(first[0], last[0]), max(first[1], last[1])
 
 
 def misunderstood(span: Span, reason: str, suggestion: str | None = None) -> None:
-    """Note a phrase that has no meaning."""
+    """Note a phrase that has no meaning.
+
+    Parameters
+    ----------
+    span
+        Place of the phrase in the text.
+    reason
+        Why it has no meaning, for the message.
+    suggestion
+        Advice or a wording that would be understood, or None.
+    """
     notes.get().append(Misunderstood(span, reason, suggestion))
 
 
@@ -522,7 +543,19 @@ class Builder(Transformer[Any, Built]):
 
 
 def flat(verb: Verb) -> list[Predicate]:
-    """Return what a verb says of its subject as one list; alternatives after *or* are left out."""
+    """Return what a verb says of its subject as one list; alternatives after *or* are left out.
+
+    Parameters
+    ----------
+    verb
+        Verb with what it says.
+
+    Returns
+    -------
+    list of Predicate
+        Predicates of the subject. Negation and adverbs of the verb are carried over to each; predicates after *but*
+        keep their own.
+    """
     found: list[Predicate] = []
     contrasted: list[Predicate] = []
     for part in verb.said:
@@ -781,7 +814,20 @@ _DIRECTIONAL = frozenset(
 
 
 def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tuple[Predicate, ...]:
-    """Return predicates as one list; a participle gives its meaning to the phrase after it."""
+    """Return predicates as one list; a participle gives its meaning to the phrase after it.
+
+    Parameters
+    ----------
+    parts
+        Predicates of each part of a coordination or a sequence of phrases, in the order of the text.
+    check
+        True to leave out *apart*, and *to* where it names no place, which is noted as misunderstood.
+
+    Returns
+    -------
+    tuple of Predicate
+        Predicates without those that only stood for a participle.
+    """
     flat_parts = [predicate for part in parts for predicate in part]
     found: list[Predicate] = []
     i = 0
@@ -1032,7 +1078,18 @@ def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tu
 
 
 def viewpoint_of(predicates: tuple[Predicate, ...]) -> Viewpoint | None:
-    """Return the viewpoint that predicates of *you* state: *you are facing the bed*, *standing at the door*."""
+    """Return the viewpoint that predicates of *you* state: *you are facing the bed*, *standing at the door*.
+
+    Parameters
+    ----------
+    predicates
+        Predicates of the person who looks.
+
+    Returns
+    -------
+    Viewpoint or None
+        Place and direction of the viewer; None if the predicates name neither.
+    """
     at = facing = back = None
     nested = [p for predicate in predicates for argument in predicate.arguments for p in argument.predicates]
     if (

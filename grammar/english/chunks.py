@@ -219,7 +219,13 @@ class Chunker:
         self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
 
     def run(self) -> list[Chunk]:
-        """Return the chunks of the sentence; every word is in one of them."""
+        """Return the chunks of the sentence; every word is in one of them.
+
+        Returns
+        -------
+        list of Chunk
+            Chunks in the order of the text.
+        """
         at, end = 0, len(self.words)
         while at < end:
             chunk = self._chunk(at)

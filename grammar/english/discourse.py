@@ -202,7 +202,13 @@ class Discourse:
         self.story = past >= MIN_PAST_OF_STORY and past >= len(tenses) / 2
 
     def read(self) -> list[Draft]:
-        """Read all sentences; return the drafts of what they state."""
+        """Read all sentences; return the drafts of what they state.
+
+        Returns
+        -------
+        list of Draft
+            Facts and claims about entities, which have no names yet, in the order of the text.
+        """
         for number, sentence in enumerate(self.sentences):
             self.references.sentence = number
             self.references.start, self.end = sentence.span
@@ -1159,7 +1165,18 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
 
 
 def condition_of(sentence: Sentence) -> str | None:
-    """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*."""
+    """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*.
+
+    Parameters
+    ----------
+    sentence
+        Parsed sentence.
+
+    Returns
+    -------
+    str or None
+        Text of the condition with single spaces, or None for a sentence that does not begin with one.
+    """
     first = sentence.text.split(None, 1)[:1]
     if not first or first[0].casefold() not in ("if", "unless", "whenever", "assuming", "suppose"):
         return None
@@ -1171,6 +1188,16 @@ def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
 
     A surface noun that is said to be somewhere itself is an object; the noun of a place (*corner of the tray*) goes
     before others.
+
+    Parameters
+    ----------
+    sentences
+        All sentences of the text.
+
+    Returns
+    -------
+    str or None
+        Last word of the surface that the text mentions most.
     """
     counts: dict[str, int] = {}
     objects: set[str] = set()

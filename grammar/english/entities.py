@@ -53,7 +53,13 @@ class Entity:
         return found
 
     def leaves(self) -> Iterator[Entity]:
-        """Yield the single objects."""
+        """Yield the single objects.
+
+        Yields
+        ------
+        Entity
+            The entity itself if it is a single object, otherwise the members of its groups.
+        """
         entity = self.itself
         if not entity.members:
             yield entity
@@ -66,14 +72,26 @@ class Entity:
         return sum(1 for _ in self.leaves())
 
     def split(self, count: int) -> None:
-        """Make a group of ``count`` single objects out of an entity."""
+        """Make a group of ``count`` single objects out of an entity.
+
+        Parameters
+        ----------
+        count
+            Number of members; each gets the noun, the role and the adjectives of the group.
+        """
         for _ in range(count):
             member = Entity(self.noun, self.role, group=self, born=self.born)
             member.adjectives = set(self.adjectives)
             self.members.append(member)
 
     def mention(self, phrase: str) -> None:
-        """Record words that were used for the entity."""
+        """Record words that were used for the entity.
+
+        Parameters
+        ----------
+        phrase
+            Words of the text; an empty phrase and a repeated one are not recorded.
+        """
         entity = self.itself
         if phrase and phrase not in entity.mentions:
             entity.mentions.append(phrase)
@@ -82,6 +100,18 @@ class Entity:
 def names_of(entities: Iterable[Entity]) -> dict[Entity, str]:
     """Return a name for each single object: its noun, with an adjective or a number where several share it.
 
+    Parameters
+    ----------
+    entities
+        Objects and groups in the order of their first mention.
+
+    Returns
+    -------
+    dict of Entity to str
+        Unique name in the layout language, with underscores for spaces, for each single object.
+
+    Examples
+    --------
     >>> cup, other = Entity("tea cup"), Entity("tea cup")
     >>> list(names_of([cup, other, Entity("jug")]).values())
     ['tea_cup_1', 'tea_cup_2', 'jug']
@@ -129,10 +159,32 @@ def _described(leaf: Entity, sharing: list[Entity]) -> str:
 
 
 def plain_noun(noun: str) -> str:
-    """Return a noun as it is written, also one that was given between backticks."""
+    """Return a noun as it is written, also one that was given between backticks.
+
+    Parameters
+    ----------
+    noun
+        Noun; one from backticks is enclosed in ``LITERAL`` letters and has underscores for spaces.
+
+    Returns
+    -------
+    str
+        Noun with spaces and without these letters.
+    """
     return noun.strip(LITERAL).replace("_", " ") if noun.startswith(LITERAL) else noun
 
 
 def is_one_thing(noun_as_written: str) -> bool:
-    """Return True for plurals such as *scissors* that name one thing."""
+    """Return True for plurals such as *scissors* that name one thing.
+
+    Parameters
+    ----------
+    noun_as_written
+        Noun or compound in the plural.
+
+    Returns
+    -------
+    bool
+        True if the last word is such a plural.
+    """
     return last_word(noun_as_written) in SINGLE_PLURALS

@@ -28,7 +28,18 @@ class Segment:
 
 
 def segments(chunks: list[Chunk]) -> list[Segment]:
-    """Return the clauses of a sentence."""
+    """Return the clauses of a sentence.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of the sentence.
+
+    Returns
+    -------
+    list of Segment
+        Clauses in the order of the text, without the joints between them.
+    """
     types = [chunk.type for chunk in chunks]
     found: list[Segment] = []
     start, link = 0, ""
@@ -323,7 +334,19 @@ def _open_relative(types: list[str], start: int, at: int) -> bool:
 
 
 def classify(segment: Segment) -> list[Chunk]:
-    """Return the chunks of a clause with a type for each joint (NJ, PJ, VJ, FJ), and without empty words."""
+    """Return the chunks of a clause with a type for each joint, and without empty words.
+
+    Parameters
+    ----------
+    segment
+        Clause with plain commas and conjunctions.
+
+    Returns
+    -------
+    list of Chunk
+        Terminals for the parser. The joints join noun phrases (NJ), noun phrases with their modifiers (OJ), predicates
+        (PJ) or verb groups (VJ), or end what stands before the subject (FJ).
+    """
     source = [chunk for chunk in segment.chunks if chunk.type not in ("ADVERB", "COMPLEMENT")]
     types = [chunk.type for chunk in source]
     found: list[Chunk] = []

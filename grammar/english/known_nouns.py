@@ -33,12 +33,35 @@ class KnownNouns:
             entries.sort(key=len, reverse=True)
 
     def knows(self, noun: str) -> bool:
-        """Return True for a noun of the ontology, in the singular or the plural."""
+        """Return True for a noun of the ontology, in the singular or the plural.
+
+        Parameters
+        ----------
+        noun
+            Noun or compound.
+
+        Returns
+        -------
+        bool
+            True if the ontology or its lexicon has the noun.
+        """
         return any(one in self._words for one in (noun, *singulars(noun)))
 
     def singular(self, noun: str) -> tuple[str, bool]:
         """Return the singular of a noun, and whether the noun is a plural.
 
+        Parameters
+        ----------
+        noun
+            Noun or compound in lower case; one from backticks stays as it is.
+
+        Returns
+        -------
+        tuple of str and bool
+            Singular, and True for a plural. A singular that the ontology knows is preferred.
+
+        Examples
+        --------
         >>> from deixis.ontology.tbox import default_ontology
         >>> nouns = known_nouns(default_ontology().kinds)
         >>> nouns.singular("vases"), nouns.singular("glass"), nouns.singular("scissors"), nouns.singular("cookies")
@@ -56,7 +79,20 @@ class KnownNouns:
         return found
 
     def compound(self, norms: list[str], at: int) -> int | None:
-        """Return the end of a known compound that begins with an adjective: *light switch*, *hot plate*."""
+        """Return the end of a known compound that begins with an adjective: *light switch*, *hot plate*.
+
+        Parameters
+        ----------
+        norms
+            Normal forms of the words of the sentence.
+        at
+            Index of the adjective.
+
+        Returns
+        -------
+        int or None
+            Index after the last word of the longest such compound; None if no compound begins there.
+        """
         for words in self._compounds.get(norms[at], ()):
             end = at + len(words)
             if norms[at : end - 1] == list(words[:-1]) and words[-1] in (

@@ -393,5 +393,16 @@ PARTS = frozenset(
 
 
 def last_word(noun: str) -> str:
-    """Return the head noun of a compound: ``board`` of ``cutting board``."""
+    """Return the head noun of a compound: ``board`` of ``cutting board``.
+
+    Parameters
+    ----------
+    noun
+        Noun or compound.
+
+    Returns
+    -------
+    str
+        Last word; empty for an empty noun.
+    """
     return noun.rsplit(" ", 1)[-1] if noun else ""

@@ -17,6 +17,16 @@ def outline(sentence: Sentence) -> str:
     ``+`` stands for a comparative, ``++`` for a superlative, ``~`` for a reversed predicate, ``!`` for a command, ``?``
     for a question; restrictions of a noun phrase are in brackets.
 
+    Parameters
+    ----------
+    sentence
+        Parsed sentence.
+
+    Returns
+    -------
+    str
+        Outline in a form that tests can compare; its parts have a line each.
+
     Examples
     --------
     >>> from deixis.grammar.english.parse import parse_english
@@ -37,6 +47,16 @@ def clause_outline(clause: Clause) -> str:
     """Return the subject, the predicates and the modality of a clause.
 
     The marks after the predicates are ``or`` and a choice, ``modal``, ``past`` and a condition.
+
+    Parameters
+    ----------
+    clause
+        Clause of a sentence; an absent subject is written ``...``.
+
+    Returns
+    -------
+    str
+        One line.
     """
     subject = "..." if clause.subject is None else noun_outline(clause.subject)
     parts = [f"{subject}{_MOODS[clause.mood]}: " + ", ".join(predicate_outline(p) for p in clause.predicates)]
@@ -52,7 +72,18 @@ def clause_outline(clause: Clause) -> str:
 
 
 def predicate_outline(predicate: Predicate) -> str:
-    """Return a predicate as its relation and what stands with it, in parentheses."""
+    """Return a predicate as its relation and what stands with it, in parentheses.
+
+    Parameters
+    ----------
+    predicate
+        Predicate of a clause, or restriction of a noun phrase.
+
+    Returns
+    -------
+    str
+        Text such as ``not next_to(the door)``.
+    """
     return "".join(
         (
             "" if predicate.positive else "not ",
@@ -84,7 +115,18 @@ def _arguments(predicate: Predicate) -> Iterator[str]:
 
 
 def noun_outline(phrase: NounPhrase) -> str:
-    """Return a noun phrase with its restrictions in brackets."""
+    """Return a noun phrase with its restrictions in brackets.
+
+    Parameters
+    ----------
+    phrase
+        Noun phrase; the parts of a coordination stand in parentheses.
+
+    Returns
+    -------
+    str
+        Text such as ``the tall+ lamp [not next_to(the door)]``.
+    """
     said = " [" + ", ".join(predicate_outline(p) for p in phrase.predicates) + "]" if phrase.predicates else ""
     negation = "not " if phrase.negated else ""
     if phrase.members:

@@ -20,6 +20,20 @@ from deixis.ontology.facts import Fact
 def paraphrase(facts: Sequence[StatedFact], surface: str = "table") -> str:
     """Return a plain paraphrase of facts, a clause for each; empty for none.
 
+    Parameters
+    ----------
+    facts
+        Facts and claims of one sentence; the alternatives of a choice are joined into one clause.
+    surface
+        Noun of what everything stands on, for claims without an object.
+
+    Returns
+    -------
+    str
+        One sentence, with semicolons between its clauses.
+
+    Examples
+    --------
     >>> claim = Claim("corner", ("lamp",), value="far left")
     >>> paraphrase([StatedFact(claim, 0, (0, 4))], "desk")
     'The lamp is in the far left corner of the desk.'

@@ -66,7 +66,18 @@ def _closed() -> frozenset[str]:
 
 
 def is_known(word: str) -> bool:
-    """Return True for a word of the tables: a function word, a number, an adjective or a form of a verb."""
+    """Return True for a word of the tables: a function word, a number, an adjective or a form of a verb.
+
+    Parameters
+    ----------
+    word
+        Word in lower case.
+
+    Returns
+    -------
+    bool
+        False for a word that only its position can explain, which is a noun as a rule.
+    """
     return (
         word in _closed()
         or word in NUMBERS
@@ -95,7 +106,18 @@ class NounChunker:
     # categories of words
 
     def number(self, at: int) -> float | None:
-        """Return the value of a number."""
+        """Return the value of a number that is written in words or digits.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        float or None
+            Value, or None for a word that is not a number.
+        """
         norm = self.norms[at]
         if norm in NUMBERS:
             return float(NUMBERS[norm])
@@ -107,15 +129,48 @@ class NounChunker:
         return None
 
     def ordinal(self, at: int) -> int | None:
-        """Return the rank of an ordinal; -1 for *last*."""
+        """Return the rank of an ordinal; -1 for *last*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        int or None
+            Rank, counted from 1; None for a word that is not an ordinal.
+        """
         return ORDINALS.get(self.norms[at])
 
     def is_determiner(self, at: int) -> bool:
-        """Return True for a word that can begin a noun phrase before its noun."""
+        """Return True for a word that can begin a noun phrase before its noun.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True for a determiner or a possessive, such as *the*, *each* and *your*.
+        """
         return self.norms[at] in DETERMINERS or self.norms[at] in POSSESSIVES
 
     def is_colour_alone(self, at: int) -> bool:
-        """Return True for a colour without a noun: *the man in blue*."""
+        """Return True for a colour without a noun: *the man in blue*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True if neither a noun nor another adjective follows the colour.
+        """
         return (
             self._adjectives.get(self.norms[at]) == "colour"
             and not self._nounish(at + 1)
@@ -123,12 +178,34 @@ class NounChunker:
         )
 
     def is_degree_word(self, at: int) -> bool:
-        """Return True for *closest*, *furthest*, *closer* and the like."""
+        """Return True for *closest*, *furthest*, *closer* and the like.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True for a comparative or superlative of *near* or *far* and their synonyms.
+        """
         lemma, degree = degree_of(self.norms[at])
         return degree is not Degree.PLAIN and lemma in ("near", "far")
 
     def is_genitive(self, at: int) -> bool:
-        """Return True if the ``'s`` at this place makes an owner, and does not stand for *is*."""
+        """Return True if the ``'s`` at this place makes an owner, and does not stand for *is*.
+
+        Parameters
+        ----------
+        at
+            Index of the ``'s`` in the sentence.
+
+        Returns
+        -------
+        bool
+            True in *the cup's handle*, False in *the cup's on the tray*; False for any other word.
+        """
         if self.norms[at] != "'s":
             return False
         name = at > 0 and self.words[at - 1].text == "I"  # the pronoun has 'I'm'
@@ -155,7 +232,18 @@ class NounChunker:
         return True
 
     def starts(self, at: int) -> bool:
-        """Return True if a noun phrase can begin here."""
+        """Return True if a noun phrase can begin here.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence; it may lie after the last one.
+
+        Returns
+        -------
+        bool
+            True for a possible beginning; the phrase need not be complete.
+        """
         norm = self.norms[at]
         if not norm or at >= len(self.words):
             return False
@@ -194,7 +282,18 @@ class NounChunker:
         return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at)
 
     def adjective_before_noun(self, at: int) -> bool:
-        """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*."""
+        """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True also before *one* and *ones*, and with further adjectives in between.
+        """
         if not is_adjective(self.norms[at]) and self.norms[at] not in DIRECTION_WORDS:
             return False
         i = at + 1
@@ -215,7 +314,18 @@ class NounChunker:
         return not norm.endswith("ly") or self._nouns.knows(norm)
 
     def is_noun(self, at: int) -> bool:
-        """Return True if the word, which may also be a verb, is a noun here, judged by the words beside it."""
+        """Return True if the word, which may also be a verb, is a noun here, judged by the words beside it.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False also for a function word.
+        """
         norm = self.norms[at]
         if not norm or norm in self._closed or not (norm[0].isalpha()):
             return False
@@ -356,7 +466,20 @@ class NounChunker:
     # phrases
 
     def phrase(self, at: int, previous: str) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]] | None:
-        """Return the end of the phrase and the noun phrase, or None and the adjectives of an adjective phrase."""
+        """Return the end of the phrase and the noun phrase, or None and the adjectives of an adjective phrase.
+
+        Parameters
+        ----------
+        at
+            Index of the first word.
+        previous
+            Type of the chunk before the phrase; empty at the beginning of a sentence.
+
+        Returns
+        -------
+        tuple or None
+            Index after the last word, the noun phrase or None, and the adjectives; None if no phrase begins here.
+        """
         end, found, modifiers = self._one(at, previous, None)
         if end == at:
             return None
@@ -927,21 +1050,65 @@ class NounChunker:
         return i, phrase, ()
 
     def predicative(self, at: int) -> tuple[Adjective, ...]:
-        """Return a word after *is* as an adjective: *light*, *wood*; nothing for another word."""
+        """Return a word after *is* as an adjective: *light*, *wood*; nothing for another word.
+
+        Parameters
+        ----------
+        at
+            Index of the word after *is*.
+
+        Returns
+        -------
+        tuple of Adjective
+            One adjective, or none.
+        """
         if not is_adjective(self.norms[at]) or self.norms[at] in PLACE_NOUNS:
             return ()
         return (self._adjective(at, None, at),)
 
     def is_letter(self, at: int) -> bool:
-        """Return True for a name of one capital letter."""
+        """Return True for a name of one capital letter.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True in *put box A on B* for both letters; False for the pronoun *I* and the article *A*.
+        """
         return self._letter(at) is not None
 
     def is_known_noun(self, noun: str) -> bool:
-        """Return True for a noun of the ontology."""
+        """Return True for a noun of the ontology.
+
+        Parameters
+        ----------
+        noun
+            Noun or compound, in the singular or the plural.
+
+        Returns
+        -------
+        bool
+            True if the ontology or its lexicon has the noun.
+        """
         return self._nouns.knows(noun)
 
     def ends_as_verb(self, at: int) -> bool:
-        """Return True for an unknown verb right after a noun phrase."""
+        """Return True for an unknown verb right after a noun phrase.
+
+        Parameters
+        ----------
+        at
+            Index of the word after the noun phrase.
+
+        Returns
+        -------
+        bool
+            True if the last word of the phrase, or the last two, make the word after it a verb.
+        """
         nouns = [self.norms[at - 1]]
         return self._is_unknown_verb(at, nouns) or (at > 1 and self._is_unknown_verb(at, [self.norms[at - 2], *nouns]))
 

@@ -34,7 +34,18 @@ GENERAL_OWNERS = frozenset({"you", "me", "we"})
 
 
 def is_place(phrase: NounPhrase) -> bool:
-    """Return True if the head names a place or a direction: *the far left corner*, *the left*, *its back*."""
+    """Return True if the head names a place or a direction: *the far left corner*, *the left*, *its back*.
+
+    Parameters
+    ----------
+    phrase
+        Noun phrase.
+
+    Returns
+    -------
+    bool
+        True for a part of a thing or of the table; False for an object and for a coordination.
+    """
     if not phrase.head or phrase.members:
         return False
     return (
@@ -43,7 +54,18 @@ def is_place(phrase: NounPhrase) -> bool:
 
 
 def directions_of(phrase: NounPhrase) -> tuple[str, ...]:
-    """Return the directions among the adjectives of a place, in order: *far left*."""
+    """Return the directions among the adjectives of a place, in order: *far left*.
+
+    Parameters
+    ----------
+    phrase
+        Noun phrase that names a place.
+
+    Returns
+    -------
+    tuple of str
+        Directions as the layout language names them.
+    """
     found = []
     for adjective in phrase.adjectives:
         word = _DIRECTIONS.get(adjective.word, adjective.word)
@@ -53,7 +75,22 @@ def directions_of(phrase: NounPhrase) -> tuple[str, ...]:
 
 
 def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
-    """Return the predicate of a preposition and a place; None if the phrase is not a place."""
+    """Return the predicate of a preposition and a place; None if the phrase is not a place.
+
+    Parameters
+    ----------
+    relator
+        Preposition with its adverbs.
+    phrase
+        Noun phrase after the preposition.
+    span
+        Place of both in the text.
+
+    Returns
+    -------
+    Predicate or None
+        Predicate such as *corner* of the tray with the part *far left*.
+    """
     relation = relator.preposition.relation
     if not is_place(phrase) or relation not in _ON:
         return None

@@ -116,7 +116,18 @@ class References:
     # Noun phrases -----------------------------------------------------------------------------------------------
 
     def region(self, phrase: NounPhrase) -> Region | None:
-        """Return the region that a phrase names, or None if it names an object."""
+        """Return the region that a phrase names, or None if it names an object.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase such as *the far left corner of the tray*.
+
+        Returns
+        -------
+        Region or None
+            Part of an object, or of the whole surface if the phrase names no object.
+        """
         term = phrase.head if phrase.head in REGIONS else last_word(phrase.head)
         if term not in REGIONS or phrase.owner is not None or phrase.members:
             return None
@@ -138,6 +149,11 @@ class References:
             Relation of which the phrase is an argument; it decides between antecedents of a pronoun.
         besides
             Subject of the clause, which a pronoun in its predicate does not stand for.
+
+        Returns
+        -------
+        Entity or None
+            Object, or a group for a coordination or a plural; None also for a phrase that refers to nothing.
         """
         if phrase.members:
             found = [entity for part in phrase.members if (entity := self.find(part, relation, besides)) is not None]
@@ -213,7 +229,18 @@ class References:
         return entity
 
     def words(self, phrase: NounPhrase) -> str:
-        """Return the words of a phrase without its restrictions and commas."""
+        """Return the words of a phrase without its restrictions and commas.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase of the text.
+
+        Returns
+        -------
+        str
+            Words as written, from the start of the phrase to its head or complement, with single spaces.
+        """
         said = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
         stem = last_word(phrase.head)
         if not stem:
@@ -229,7 +256,18 @@ class References:
         return said[:end].strip(" ,;:.").removesuffix("'s")
 
     def earlier(self, phrase: NounPhrase) -> Entity | None:
-        """Return the earlier object that a definite phrase stands for, or None."""
+        """Return the earlier object that a definite phrase stands for, or None.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase with a head.
+
+        Returns
+        -------
+        Entity or None
+            Object or group that the text introduced before.
+        """
         return self._earlier(phrase)
 
     def _earlier(self, phrase: NounPhrase) -> Entity | None:
@@ -293,7 +331,21 @@ class References:
     # Members of groups ------------------------------------------------------------------------------------------
 
     def member(self, group: Entity, phrase: NounPhrase) -> Entity | None:
-        """Return the member of a group that adjectives pick out, such as *the taller one* or *the second*."""
+        """Return the member of a group that adjectives pick out, such as *the taller one* or *the second*.
+
+        Parameters
+        ----------
+        group
+            Group with its members.
+        phrase
+            Noun phrase, the adjectives of which pick the member out. An adjective that no member has yet is given to a
+            free one.
+
+        Returns
+        -------
+        Entity or None
+            Member; None if the phrase picks none out.
+        """
         leaves = list(group.leaves())
         if phrase.determiner == "other" or phrase.pronoun == "other":
             taken = [leaf for leaf in leaves if any(pair[0] == "picked" for pair in leaf.adjectives)]
@@ -338,7 +390,18 @@ class References:
         return leaf
 
     def last_group(self, besides: Entity | None = None) -> Entity | None:
-        """Return the group that was spoken of last."""
+        """Return the group that the text mentioned last.
+
+        Parameters
+        ----------
+        besides
+            Entity that is not meant. If it is a member of a group, that group is returned.
+
+        Returns
+        -------
+        Entity or None
+            Group with a noun; None if the text has none yet.
+        """
         if besides is not None and besides.group is not None:
             return besides.group
         for focus in self.recent:

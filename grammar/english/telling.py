@@ -113,6 +113,11 @@ def tell_facts(
     apart
         Indices of facts that are said in a sentence of their own.
 
+    Returns
+    -------
+    tuple of ToldSentence
+        Sentences in the order in which they are said, each with the indices of its facts.
+
     Examples
     --------
     >>> from deixis.grammar.parser import parse_script

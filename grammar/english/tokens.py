@@ -79,6 +79,16 @@ def sentences(text: str) -> Iterator[RawSentence]:
 
     Full stops, question marks and blank lines end a sentence. A line end does, where the next line is a list item or
     the line is short and ends without punctuation (a heading); otherwise the lines of a paragraph are joined.
+
+    Parameters
+    ----------
+    text
+        Text in English.
+
+    Yields
+    ------
+    RawSentence
+        Span of a sentence, its list mark, and whether it is a heading; pieces without letters and digits are left out.
     """
     start, length = 0, len(text)
     step: str | None = None
@@ -202,6 +212,21 @@ def _deny_contrasts(words: list[Word]) -> None:
 def words_of(text: str, span: Span) -> list[Word]:
     """Return the words and the punctuation marks of a sentence.
 
+    Parameters
+    ----------
+    text
+        Text in English.
+    span
+        First and last character of the sentence, counted from 0, the end exclusive.
+
+    Returns
+    -------
+    list of Word
+        Words with their places and normal forms: lower case, full forms for contractions, corrected typing errors.
+        Words that are struck out are left out.
+
+    Examples
+    --------
     >>> [word.norm for word in words_of("The cup isn't on the left-hand side.", (0, 36))]
     ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
     """

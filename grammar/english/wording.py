@@ -36,6 +36,18 @@ Namer = Callable[[Sequence[str]], str]
 def name_plainly(names: Sequence[str]) -> str:
     """Name objects by their names with articles.
 
+    Parameters
+    ----------
+    names
+        Names in the layout language, at least one.
+
+    Returns
+    -------
+    str
+        Names with *the*, joined by commas and *and*.
+
+    Examples
+    --------
     >>> name_plainly(["fork", "wine_glass", "cup"])
     'the fork, the wine glass and the cup'
     """
@@ -45,6 +57,20 @@ def name_plainly(names: Sequence[str]) -> str:
 def listed(parts: Sequence[str], last: str = "and") -> str:
     """Join phrases with commas and a conjunction.
 
+    Parameters
+    ----------
+    parts
+        Phrases, at least one.
+    last
+        Conjunction before the last phrase.
+
+    Returns
+    -------
+    str
+        Joined phrases, without a comma before the conjunction.
+
+    Examples
+    --------
     >>> listed(["red", "round", "open"]), listed(["a, b", "c"], "or")
     ('red, round and open', 'a, b or c')
     """
@@ -52,13 +78,36 @@ def listed(parts: Sequence[str], last: str = "and") -> str:
 
 
 def is_plural(name: str) -> bool:
-    """Return True for a name that ends in a plural noun, such as ``milk_cups`` and ``tongs``."""
+    """Return True for a name that ends in a plural noun, such as ``milk_cups`` and ``tongs``.
+
+    Parameters
+    ----------
+    name
+        Name in the layout language.
+
+    Returns
+    -------
+    bool
+        True by the ending alone; the lexicon is not consulted.
+    """
     return name.endswith("s") and not name.endswith(("ss", "us", "is", "as"))
 
 
 def relation_words(relation: Relation | str) -> str:
     """Return the words of a relation that stand before its object.
 
+    Parameters
+    ----------
+    relation
+        Relation, or its name. A name that the ontology does not have is printed with spaces.
+
+    Returns
+    -------
+    str
+        Words in plain English; *top* is *farther from you than*.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> [relation_words(default_ontology().relations[name]) for name in ("left", "top", "exactly_on", "exactly_bottom")]
     ['left of', 'farther from you than', 'exactly on', 'exactly nearer to you than']
@@ -75,7 +124,19 @@ def relation_words(relation: Relation | str) -> str:
 
 
 def oriented(fact: Fact) -> tuple[str, str, tuple[str, ...]]:
-    """Return subject, object and words of the relations of a fact, from the side from which it can be said."""
+    """Return subject, object and words of the relations of a fact, from the side from which it can be said.
+
+    Parameters
+    ----------
+    fact
+        Fact, which may have several possible relations.
+
+    Returns
+    -------
+    tuple
+        Name of the subject, name of the object, and the words of each relation. Subject and object are exchanged if a
+        relation has ``INVERSE_WORDS``.
+    """
     if any(relation.name in INVERSE_WORDS for relation in fact.relations):
         relations = default_ontology().relations
         inverses = [relations[INVERSE_WORDS.get(r.name, r.inverse)] for r in fact.relations]
@@ -84,7 +145,20 @@ def oriented(fact: Fact) -> tuple[str, str, tuple[str, ...]]:
 
 
 def said_of_fact(fact: Fact, name: Namer = name_plainly) -> tuple[str, str]:
-    """Return the subject of a fact and what is said of it; the alternatives of a denied choice are all denied."""
+    """Return the subject of a fact and what is said of it; the alternatives of a denied choice are all denied.
+
+    Parameters
+    ----------
+    fact
+        Fact, which may have several possible relations.
+    name
+        Function that turns names into a noun phrase.
+
+    Returns
+    -------
+    tuple of str
+        Name of the subject, and the words after *is*, or after *is not* for a denied fact with one relation.
+    """
     subject, thing, words = oriented(fact)
     if len(words) == 1:
         return subject, f"{words[0]} {name([thing])}"
@@ -101,7 +175,22 @@ def said_of_fact(fact: Fact, name: Namer = name_plainly) -> tuple[str, str]:
 
 
 def said_of_claim(claim: Claim, surface: str = "table", name: Namer = name_plainly) -> str | None:
-    """Return what a claim says of its subjects after *is*; None for a claim that needs a clause of its own."""
+    """Return what a claim says of its subjects after *is*; None for a claim that needs a clause of its own.
+
+    Parameters
+    ----------
+    claim
+        Claim about one or more subjects.
+    surface
+        Noun of what everything stands on, for a claim without an object.
+    name
+        Function that turns names into a noun phrase.
+
+    Returns
+    -------
+    str or None
+        Words after *is* or *are*.
+    """
     relation, value = claim.relation, claim.value
     where = name(claim.arguments) if claim.arguments else f"the {surface}"
     if relation.startswith("none_") or relation in ("count", "contents"):
@@ -154,7 +243,22 @@ def said_of_claim(claim: Claim, surface: str = "table", name: Namer = name_plain
 
 
 def clause_of_claim(claim: Claim, be: str, name: Namer = name_plainly) -> str:
-    """Return the clause of a claim that cannot be said with *is*: a number, contents, or that nothing is there."""
+    """Return the clause of a claim that cannot be said with *is*: a number, contents, or that nothing is there.
+
+    Parameters
+    ----------
+    claim
+        Claim for which :func:`said_of_claim` returns None.
+    be
+        Form of *be*, as :func:`auxiliary` returns it.
+    name
+        Function that turns names into a noun phrase.
+
+    Returns
+    -------
+    str
+        Clause without a capital letter and a full stop.
+    """
     subjects = name(claim.subjects)
     if claim.relation.startswith("none_"):
         return f"nothing is {relation_words(claim.relation.removeprefix('none_'))} {subjects}"
@@ -168,7 +272,20 @@ def clause_of_claim(claim: Claim, be: str, name: Namer = name_plainly) -> str:
 
 
 def auxiliary(stated: StatedFact, plural: bool = False) -> str:
-    """Return the form of *be* for what qualifies a fact: *is*, *can be*, *may be*, *was*, *are usually*."""
+    """Return the form of *be* for what qualifies a fact: *is*, *can be*, *may be*, *was*, *are usually*.
+
+    Parameters
+    ----------
+    stated
+        Fact or claim with what qualifies it.
+    plural
+        True for a subject in the plural.
+
+    Returns
+    -------
+    str
+        Verb, with *optionally* for an optional fact and an adverb such as *usually* for a weight below 1.
+    """
     content = stated.content
     if stated.past:
         be = "were" if plural else "was"

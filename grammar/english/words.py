@@ -13,7 +13,18 @@ from deixis.grammar.english.tree import Degree
 
 
 def word_set(text: str) -> frozenset[str]:
-    """Return the words of a text as a set."""
+    """Return the words of a text as a set.
+
+    Parameters
+    ----------
+    text
+        Words with spaces or line ends between them.
+
+    Returns
+    -------
+    frozenset of str
+        Words, each once.
+    """
     return frozenset(text.split())
 
 
@@ -653,7 +664,18 @@ def adjectives() -> dict[str, str]:
 
 
 def is_material_noun(word: str) -> bool:
-    """Return True for a noun that names a material before another noun: *glass table*."""
+    """Return True for a noun that names a material before another noun: *glass table*.
+
+    Parameters
+    ----------
+    word
+        Word in lower case.
+
+    Returns
+    -------
+    bool
+        False for a material that only has an adjective, such as *wooden*.
+    """
     return word in _MATERIAL_NOUNS
 
 
@@ -688,7 +710,18 @@ def degree_of(word: str) -> tuple[str, Degree]:
 
 
 def is_adjective(word: str) -> bool:
-    """Return True for an adjective that the tables hold, in any degree, or that has the ending of one."""
+    """Return True for an adjective that the tables hold, in any degree, or that has the ending of one.
+
+    Parameters
+    ----------
+    word
+        Word in lower case.
+
+    Returns
+    -------
+    bool
+        False for the name of a tool that looks like a comparative.
+    """
     if word in _TOOLS:
         return False
     if word in adjectives() or degree_of(word)[1] is not Degree.PLAIN:

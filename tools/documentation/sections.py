@@ -20,9 +20,14 @@ EXPORTING = ("deixis", "deixis.testing")
 
 SECTIONED: tuple[str, ...] = (
     "deixis",
+    "deixis.experiments",
+    "deixis.experiments.open_ended",
+    "deixis.experiments.scoreboard",
     "deixis.grammar",
+    "deixis.grammar.english",
     "deixis.grammar.formats",
     "deixis.learning",
+    "deixis.lsp",
     "deixis.memory",
     "deixis.memory.semantic",
     "deixis.memory.semantic.queries",
@@ -42,6 +47,7 @@ SECTIONED: tuple[str, ...] = (
     "deixis.reasoning.geometry",
     "deixis.reasoning.grounding",
     "deixis.reasoning.temporal",
+    "deixis.report",
     "deixis.testing",
     "deixis.workflows",
 )

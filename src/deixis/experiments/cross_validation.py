@@ -21,7 +21,22 @@ FIT = FitSettings(iterations=60)
 
 
 def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
-    """Deal the numbers from 0 to ``count`` at random into ``number`` folds."""
+    """Deal the numbers from 0 to ``count`` at random into ``number`` folds.
+
+    Parameters
+    ----------
+    count
+        Number of examples.
+    number
+        Number of folds.
+    seed
+        Seed of the random order.
+
+    Returns
+    -------
+    list of array
+        Indices of the examples of each fold; the sizes of the folds differ by at most 1.
+    """
     order = np.random.default_rng(seed).permutation(count)
     return [order[start::number] for start in range(number)]
 
@@ -29,7 +44,24 @@ def folds(count: int, number: int, seed: int) -> list[NDArray[np.int64]]:
 def learned_meanings(
     images: Sequence[Photograph], seed: int, number: int = 10, settings: FitSettings = FIT
 ) -> list[Meaning]:
-    """Return, for each photograph, the words and the sizes relative to their scenes, learned from the other folds."""
+    """Return, for each photograph, the words and the sizes relative to their scenes, learned from the other folds.
+
+    Parameters
+    ----------
+    images
+        Described photographs.
+    seed
+        Seed of the random folds.
+    number
+        Number of folds.
+    settings
+        Settings of the fit of the words.
+
+    Returns
+    -------
+    list of Meaning
+        What the words mean, one entry for each photograph, learned without the photographs of its fold.
+    """
     lessons = [said_pairs(said, boxes, range(len(boxes))) for said, boxes in images]
     found: dict[int, Meaning] = {}
     for test in folds(len(images), number, seed):
@@ -41,7 +73,18 @@ def learned_meanings(
 
 
 def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
-    """Return the sizes of the things of each name, relative to the others of their scene, by class IRI."""
+    """Return the sizes of the things of each name, relative to the others of their scene, by class IRI.
+
+    Parameters
+    ----------
+    images
+        Described photographs; their boxes are in pixels.
+
+    Returns
+    -------
+    mapping of str to SizeModel
+        Distribution of the length, in medians of the scene, and of the aspect, by class IRI.
+    """
     views: dict[str, list[NDArray[np.float64]]] = defaultdict(list)
     for said, boxes in images:
         for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):

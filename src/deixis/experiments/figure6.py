@@ -37,7 +37,26 @@ from deixis.workflows.read import read_script
 
 
 def plot_points(points: Points, path: Path, title: str, rho: float) -> None:
-    """Plot graph similarity against the share named correctly, one point per sub-graph, coloured by satisfied facts."""
+    """Plot graph similarity against the share named correctly, one point per sub-graph, coloured by satisfied facts.
+
+    Parameters
+    ----------
+    points
+        Sub-graphs of one scene.
+    path
+        File of the picture: ``.png``, ``.svg`` or ``.pdf``.
+    title
+        Title, to which the correlation is added.
+    rho
+        Spearman's rank correlation of the similarity with the share named correctly, in [-1, 1].
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     figure, axes = new_figure(6.4, 4.4)
     drawn = axes.scatter(
         points.similarity, points.right, c=points.facts, cmap="viridis", s=18, alpha=0.75, linewidths=0
@@ -81,7 +100,18 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float] | NDArray[np.float64]) -> Spread:
-        """Return the spread of the values."""
+        """Return the spread of the values.
+
+        Parameters
+        ----------
+        values
+            One value for each repetition, at least one.
+
+        Returns
+        -------
+        Spread
+            Mean, 5th percentile, median and 95th percentile.
+        """
         array = np.asarray(values, dtype=float)
         low, median, high = np.percentile(array, [5, 50, 95])
         return cls(float(array.mean()), float(low), float(median), float(high))
@@ -99,7 +129,18 @@ class Points:
     right: NDArray[np.float64]  # share named correctly, mean over node orders
 
     def rho(self, measure: NDArray[np.float64]) -> float:
-        """Return Spearman's rank correlation of a measure with the share named correctly; 0 if either is constant."""
+        """Return Spearman's rank correlation of a measure with the share named correctly; 0 if either is constant.
+
+        Parameters
+        ----------
+        measure
+            Value of each sub-graph, shape (k,).
+
+        Returns
+        -------
+        float
+            Correlation in [-1, 1].
+        """
         from scipy.stats import spearmanr
 
         if np.ptp(measure) == 0 or np.ptp(self.right) == 0:
@@ -133,11 +174,23 @@ class Figure6:
     pictures: tuple[str, ...]
 
     def to_dict(self) -> dict[str, Any]:
-        """Return all fields as JSON types."""
+        """Return all fields as JSON types.
+
+        Returns
+        -------
+        dict
+            Value by name of the field; those of the panels are nested.
+        """
         return asdict(self)
 
     def lines(self) -> list[str]:
-        """Return the lines of the text report."""
+        """Return the lines of the text report.
+
+        Returns
+        -------
+        list of str
+            The setting of the run, the figures of both panels, and the files of the pictures.
+        """
         head = [f"Figure 6: {self.variants} variants, {self.orders} node orders, seed {self.seed}", ""]
         return [*head, *_panel_lines("(a)", self.a), "", *_panel_lines("(b)", self.b), "", *self.pictures]
 

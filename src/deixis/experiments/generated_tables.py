@@ -60,7 +60,18 @@ class GeneratedTable:
     pieces: NDArray[np.int64]  # (n1,): which piece of SETTING each object is
 
     def description(self, *, kinds: bool = False) -> RelationGraph:
-        """Return the facts in the wide reading of scripts; with ``kinds`` also the kind of each object."""
+        """Return the facts as a description, in the wide reading of scripts.
+
+        Parameters
+        ----------
+        kinds
+            True to state the kind of each object too.
+
+        Returns
+        -------
+        RelationGraph
+            Graph of n1 objects named ``d0000``, ``d0001``, … and m facts.
+        """
         ontology = default_ontology()
         relations = ontology.relations
         exact = list(relations.values())
@@ -73,7 +84,13 @@ class GeneratedTable:
         return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
 
     def scene(self) -> SceneRelations:
-        """Return the perceived scene: the exact relation of every ordered pair."""
+        """Return the perceived scene: the exact relation of every ordered pair.
+
+        Returns
+        -------
+        SceneRelations
+            Relations of n2 things named ``o0000``, ``o0001``, …
+        """
         names = [f"o{p:04}" for p in range(len(self.boxes))]
         return scene_relations(names, self.boxes, default_ontology().relations)
 
@@ -82,8 +99,16 @@ class GeneratedTable:
 
         The degree is 1 if the exact relation is the word, 0.5 if it implies it, otherwise 0.
 
-        ``centred`` subtracts each word's mean degree over the scene's pairs, so that a failing fact counts against a
-        match and leaving an object out can be optimal.
+        Parameters
+        ----------
+        centred
+            True to subtract each word's mean degree over the scene's pairs, so that a failing fact counts against a
+            match and leaving an object out can be optimal.
+
+        Returns
+        -------
+        Problem
+            Problem with n1 objects, n2 things and m facts; without evidence about single objects.
         """
         relations = default_ontology().relations
         n1, n2 = len(self.truth), len(self.boxes)
@@ -150,7 +175,20 @@ def generate(
 
 
 def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Lay seats, three quarters of the pieces each, in rows four times as long as deep; return boxes and pieces."""
+    """Lay seats, three quarters of the pieces each, in rows four times as long as deep; return boxes and pieces.
+
+    Parameters
+    ----------
+    count
+        Number of pieces.
+    rng
+        Random generator.
+
+    Returns
+    -------
+    tuple of array
+        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+    """
     seats = max(1, round(count / (0.75 * len(PIECES)) + 0.5))
     columns = max(1, round(2 * np.sqrt(seats)))
     places = np.stack([np.arange(seats) % columns, np.arange(seats) // columns], axis=1) * SEAT
@@ -162,7 +200,20 @@ def lay_boxes(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64]
 
 
 def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Lay any pieces in round clusters of about ``CLUSTER`` each, at random places; return boxes and pieces."""
+    """Lay any pieces in round clusters of about ``CLUSTER`` each, at random places; return boxes and pieces.
+
+    Parameters
+    ----------
+    count
+        Number of pieces.
+    rng
+        Random generator.
+
+    Returns
+    -------
+    tuple of array
+        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+    """
     clusters = max(1, round(count / CLUSTER))
     places = rng.uniform(0, 1, (clusters, 2)) * np.sqrt(clusters) * CLUSTER_APART
     centres = places[rng.integers(clusters, size=count)] + rng.normal(0, CLUSTER_APART / 4, (count, 2))
@@ -170,7 +221,20 @@ def lay_clusters(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float
 
 
 def lay_rows(count: int, rng: np.random.Generator) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Lay any pieces in straight rows, about twice as long as deep, slightly askew; return boxes and pieces."""
+    """Lay any pieces in straight rows, about twice as long as deep, slightly askew; return boxes and pieces.
+
+    Parameters
+    ----------
+    count
+        Number of pieces.
+    rng
+        Random generator.
+
+    Returns
+    -------
+    tuple of array
+        Least and greatest corners in metres, shape (count, 2, 2), and indices into :data:`SETTING`, shape (count,).
+    """
     columns = max(1, round(np.sqrt(2 * count)))
     places = rng.permutation(columns * -(-count // columns))[:count]
     centres = np.stack([places % columns, places // columns], axis=1) * ROW_STEP
@@ -203,14 +267,38 @@ def _draw_pairs(boxes: NDArray[np.float64], objects: int, count: int, rng: np.ra
 
 
 def nearest(boxes: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the NEAR nearest others of every box, by their centres, shape (n, NEAR) or less."""
+    """Return the :data:`NEAR` nearest others of every box, by their centres.
+
+    Parameters
+    ----------
+    boxes
+        Least and greatest corners in metres, shape (n, 2, 2).
+
+    Returns
+    -------
+    array
+        Indices of the others, the nearest first, shape (n, min(NEAR, n - 1)).
+    """
     centres = boxes.mean(axis=1)
     distance = np.linalg.norm(centres[:, None] - centres[None], axis=2)
     return np.argsort(distance, axis=1)[:, 1 : NEAR + 1]
 
 
 def neighbours(name: int, relations: Relations) -> list[int]:
-    """Return the neighbours of an exact relation: the directions beside it; all directions for *on* and *under*."""
+    """Return the neighbours of an exact relation: the directions beside it; all directions for *on* and *under*.
+
+    Parameters
+    ----------
+    name
+        Index of the exact relation.
+    relations
+        All relations of the ontology.
+
+    Returns
+    -------
+    list of int
+        Indices of exact relations: two for a direction, eight for another relation.
+    """
     word = list(relations.values())[name].word
     around = RING.index(word) if word in RING else -1
     near = [RING[around - 1], RING[(around + 1) % len(RING)]] if word in RING else list(RING)

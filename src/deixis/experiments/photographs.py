@@ -67,14 +67,38 @@ class Photograph(NamedTuple):
 
 
 def photographs_folder() -> Path | None:
-    """Return the folder of the annotations, or None if DEIXIS_DATA does not lead to them."""
+    """Return the folder of the annotations, or None if DEIXIS_DATA does not lead to them.
+
+    Returns
+    -------
+    Path or None
+        Existing folder ``vrd`` under the folder that DEIXIS_DATA names.
+    """
     root = os.environ.get("DEIXIS_DATA")
     folder = Path(root) / FOLDER if root else None
     return folder if folder is not None and folder.is_dir() else None
 
 
 def photographs(folder: Path, ontology: Ontology) -> Iterator[Photograph]:
-    """Yield all images with enough statements, by name; raise PhotographError if the files are not annotations."""
+    """Yield all images with enough related objects, by name.
+
+    Parameters
+    ----------
+    folder
+        Folder with ``annotations.json``, ``predicates.json`` and ``objects.json``.
+    ontology
+        Ontology whose relations and kinds the words of the annotators stand for.
+
+    Yields
+    ------
+    Photograph
+        Image with at least :data:`MIN_OBJECTS` objects that the statements relate.
+
+    Raises
+    ------
+    PhotographError
+        If the files cannot be read or are not annotations of Visual Relationship Detection.
+    """
     try:
         annotations: dict[str, list[Any]] = json.loads((folder / "annotations.json").read_text(encoding="utf-8"))
         predicates: list[str] = json.loads((folder / "predicates.json").read_text(encoding="utf-8"))

@@ -55,6 +55,21 @@ class Completion:
 def completions(document: Document, line: int, column: int) -> list[Completion]:
     """Return what can be written at a position: first names of the script, then relations, kinds and other words.
 
+    Parameters
+    ----------
+    document
+        Script with the cursor in it.
+    line, column
+        Position of the cursor, counted from 1; the characters before it are completed.
+
+    Returns
+    -------
+    list of Completion
+        At most :data:`MAX_COMPLETIONS` texts; none in a comment, in an open quotation or in a statement
+        of more than :data:`~deixis.lsp.document.MAX_STATEMENT` characters.
+
+    Examples
+    --------
     >>> [found.text for found in completions(Document("fork left of plate; fo"), 1, 23)][:2]
     ['fork', 'food']
     """

@@ -30,7 +30,19 @@ class Problem:
 
 
 def errors(document: Document) -> list[Problem]:
-    """Return the errors of a document, at most :data:`MAX_PROBLEMS_SHOWN` of them."""
+    """Return the errors of a document, at most :data:`MAX_PROBLEMS_SHOWN` of them.
+
+    Parameters
+    ----------
+    document
+        Script that may have errors.
+
+    Returns
+    -------
+    list of Problem
+        Errors without a code. An additional one reports those that are not shown, or a script too long to be read in
+        :data:`~deixis.lsp.document.READ_TIME_LIMIT` seconds.
+    """
     found = document.reading.problems
     shown = [
         Problem(one.source, f"{one.message}; {one.hint}" if one.hint else one.message, None, one.replacement)
@@ -50,6 +62,18 @@ def warnings(document: Document, time_limit: float = LINT_TIME_LIMIT) -> list[Pr
 
     Where some statements have errors, the warnings that need all statements are left out: a name without facts
     (N002), groups without connection (F004), and a missing viewpoint (L001).
+
+    Parameters
+    ----------
+    document
+        Script that may have errors.
+    time_limit
+        Time limit in seconds for the search for warnings.
+
+    Returns
+    -------
+    list of Problem
+        At most :data:`MAX_WARNINGS` warnings of ``deixis lint``, without those about included files.
     """
     from deixis.workflows.lint import lint
 

@@ -88,7 +88,19 @@ class Document:
         return {key_of(name): name for name in self.script.objects}
 
     def token_at(self, line: int, column: int) -> tuple[Token | None, Token | None]:
-        """Return the token at a position, or the token that ends there, and the token before it on its line."""
+        """Return the token at a position, or the token that ends there, and the token before it on its line.
+
+        Parameters
+        ----------
+        line, column
+            Position, counted from 1.
+
+        Returns
+        -------
+        tuple
+            Token and the token before it; both None if there is no token at the position or the line has more than
+            :data:`MAX_STATEMENT` characters.
+        """
         before: Token | None = None
         found: tuple[Token | None, Token | None] = (None, None)
         if not 1 <= line <= len(self.lines) or len(self.lines[line - 1]) > MAX_STATEMENT:
@@ -108,7 +120,18 @@ class Document:
         return tuple(self._names())
 
     def name_at(self, line: int, column: int) -> NameToken | None:
-        """Return the name of an object at a position, or None."""
+        """Return the name of an object at a position, or None.
+
+        Parameters
+        ----------
+        line, column
+            Position, counted from 1. A position right after the name belongs to it.
+
+        Returns
+        -------
+        NameToken or None
+            Name in this text, without those of included files.
+        """
         for name in self.names:
             if name.source.line == line and name.source.column <= column <= name.source.end_column:
                 return name
@@ -134,7 +157,22 @@ class Document:
 
 
 def is_object(token: Token, before: Token | None, opening: str | None) -> bool:
-    """Return True for a token that names an object, and not a kind, a layout, a title or a file."""
+    """Return True for a token that names an object, and not a kind, a layout, a title or a file.
+
+    Parameters
+    ----------
+    token
+        Token of a layout script.
+    before
+        Token before it on its line, or None at the beginning.
+    opening
+        Type of the first token of the statement, such as ``_LAYOUT``, or None where it is not known.
+
+    Returns
+    -------
+    bool
+        True for the name of an object.
+    """
     if token.type not in ("NAME", "STRING") or opening == "_INCLUDE":
         return False
     if opening == "_LAYOUT":
@@ -145,6 +183,18 @@ def is_object(token: Token, before: Token | None, opening: str | None) -> bool:
 def name_of(token: Token) -> str:
     """Return the name that a NAME or STRING token stands for.
 
+    Parameters
+    ----------
+    token
+        Token of type NAME or STRING.
+
+    Returns
+    -------
+    str
+        Name without quotation marks, with an underscore for each run of spaces.
+
+    Examples
+    --------
     >>> name_of(Token("STRING", '"left shoe"'))
     'left_shoe'
     """

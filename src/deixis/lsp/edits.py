@@ -38,7 +38,20 @@ class Fix:
 
 
 def fixes(document: Document, problems: Iterable[Problem]) -> Iterator[Fix]:
-    """Yield the quick fixes of problems: put the suggested word, remove a needless statement, add a viewpoint."""
+    """Yield the quick fixes of problems: put the suggested word, remove a needless statement, add a viewpoint.
+
+    Parameters
+    ----------
+    document
+        Script with the problems.
+    problems
+        Errors and warnings of the script.
+
+    Yields
+    ------
+    Fix
+        One fix for each problem that has one.
+    """
     for problem in problems:
         if problem.replacement is not None:
             title = f"Replace by '{problem.replacement}'"
@@ -78,6 +91,20 @@ def rename(document: Document, line: int, column: int, new_name: str) -> list[Ed
     """Return the edits that rename an object in all its mentions.
 
     The members of a counted name such as ``2 cup`` are renamed with it: ``cup_1`` becomes ``mug_1``.
+
+    Parameters
+    ----------
+    document
+        Script with the name.
+    line, column
+        Position of any mention of the object, counted from 1.
+    new_name
+        New name as the user typed it.
+
+    Returns
+    -------
+    list of Edit
+        One edit for each mention in this text.
 
     Raises
     ------
@@ -141,7 +168,18 @@ def _written(document: Document, name: str) -> str:
 
 
 def formatted(document: Document) -> str | None:
-    """Return the document in canonical form, or None if it has errors or was not read completely."""
+    """Return the document in canonical form, or None if it has errors or was not read completely.
+
+    Parameters
+    ----------
+    document
+        Script to format.
+
+    Returns
+    -------
+    str or None
+        Text that ``deixis fmt`` writes.
+    """
     if document.reading.problems or not document.reading.complete:
         return None
     return format_script(document.script)

@@ -53,6 +53,19 @@ class EnglishText:
 def english_problems(document: EnglishText) -> list[Problem]:
     """Return the errors of a text of which nothing is understood, else the warnings of ``deixis lint``.
 
+    Parameters
+    ----------
+    document
+        Text in English.
+
+    Returns
+    -------
+    list of Problem
+        At most :data:`~deixis.grammar.errors.MAX_PROBLEMS_SHOWN` errors or :data:`~deixis.lsp.diagnostics.MAX_WARNINGS`
+        warnings; empty for an empty text.
+
+    Examples
+    --------
     >>> text = "The fork is to the left of the plate. The plate is left of the fork."
     >>> [problem.code for problem in english_problems(EnglishText(text))]
     ['F003']
@@ -78,7 +91,18 @@ def english_problems(document: EnglishText) -> list[Problem]:
 
 
 def english_fixes(problems: Iterable[Problem]) -> Iterator[Fix]:
-    """Yield the quick fixes of problems: put the suggested word."""
+    """Yield the quick fixes of problems: put the suggested word.
+
+    Parameters
+    ----------
+    problems
+        Errors and warnings of a text in English.
+
+    Yields
+    ------
+    Fix
+        One fix for each problem with a suggested word.
+    """
     for problem in problems:
         if problem.replacement is not None:
             edit = Edit(problem.source, problem.replacement.replace("_", " "))
@@ -88,6 +112,20 @@ def english_fixes(problems: Iterable[Problem]) -> Iterator[Fix]:
 def english_completions(document: EnglishText, line: int, column: int) -> list[Completion]:
     """Return words that can go on at a position: names of the text, relations, and nouns that the ontology knows.
 
+    Parameters
+    ----------
+    document
+        Text in English with the cursor in it.
+    line, column
+        Position of the cursor, counted from 1; the words before it are completed.
+
+    Returns
+    -------
+    list of Completion
+        At most :data:`~deixis.lsp.completion.MAX_COMPLETIONS` words that begin with what is typed.
+
+    Examples
+    --------
     >>> text = "The fork is left of the plate. The knife is right of the pl"
     >>> [found.text for found in english_completions(EnglishText(text), 1, len(text) + 1)][:2]
     ['plate', 'place card']
@@ -138,6 +176,20 @@ def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]
 def english_hover(document: EnglishText, line: int, column: int) -> str | None:
     """Return the paraphrase and the facts of the sentence at a position, in Markdown; None between sentences.
 
+    Parameters
+    ----------
+    document
+        Text in English.
+    line, column
+        Position, counted from 1.
+
+    Returns
+    -------
+    str or None
+        Markdown. One sentence says so where the sentence states no fact.
+
+    Examples
+    --------
     >>> print(english_hover(EnglishText("The fork lies to the left of the plate."), 1, 5))
     The fork is left of the plate.
     <BLANKLINE>

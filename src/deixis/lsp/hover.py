@@ -19,6 +19,22 @@ MAX_FACTS_SHOWN = 8
 def hover(document: Document, line: int, column: int, time_limit: float = HOVER_TIME_LIMIT) -> str | None:
     """Return what the word at a position means, in Markdown; None where there is nothing to say.
 
+    Parameters
+    ----------
+    document
+        Script that may have errors.
+    line, column
+        Position, counted from 1.
+    time_limit
+        Time limit in seconds for the inference of what follows about an object.
+
+    Returns
+    -------
+    str or None
+        Markdown about a relation, a hedge, a kind or an object.
+
+    Examples
+    --------
     >>> print(hover(Document("fork left of plate; plate left of knife"), 1, 2))
     **fork**: fork, usually 12.5 to 23 cm long and 1.2 to 3.5 cm wide
     <BLANKLINE>

@@ -53,6 +53,16 @@ class LayoutServer(LanguageServer):
         """Return the document that an editor shows; the same object until its text changes.
 
         A plain text, or a file ``NAME.txt``, is English.
+
+        Parameters
+        ----------
+        uri
+            URI of an open document.
+
+        Returns
+        -------
+        Document or EnglishText
+            Document with the text of the editor, which is empty if the text exceeds the size limit of a file.
         """
         shown = self.workspace.get_text_document(uri)
         text = shown.source
@@ -67,23 +77,66 @@ class LayoutServer(LanguageServer):
         return known
 
     def layout(self, uri: str) -> Document:
-        """Return the layout script that an editor shows; an empty one for a text in English."""
+        """Return the layout script that an editor shows; an empty one for a text in English.
+
+        Parameters
+        ----------
+        uri
+            URI of an open document.
+
+        Returns
+        -------
+        Document
+            Script. The empty one has as many lines as the text in English, so that positions stay valid.
+        """
         document = self.document(uri)
         return document if isinstance(document, Document) else Document("\n" * (len(document.lines) - 1))
 
     def forget(self, uri: str) -> None:
-        """Drop a document that was closed, and take its problems from the editor's list."""
+        """Drop a document that was closed, and take its problems from the editor's list.
+
+        Parameters
+        ----------
+        uri
+            URI of the document.
+        """
         self._documents.pop(uri, None)
         self.problems.pop(uri, None)
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri=uri, diagnostics=[]))
 
     def position(self, document: Document | EnglishText, place: types.Position) -> tuple[int, int]:
-        """Return the line and the column, counted from 1 in characters, of an editor's position."""
+        """Return the line and the column, counted from 1 in characters, of an editor's position.
+
+        Parameters
+        ----------
+        document
+            Script or text that the position is in.
+        place
+            Position that counts from 0, in the units that server and editor agreed on.
+
+        Returns
+        -------
+        tuple of int
+            Line and column.
+        """
         found = self.workspace.position_codec.position_from_client_units(document.lines, place)
         return found.line + 1, found.character + 1
 
     def range(self, document: Document | EnglishText, source: Source) -> types.Range:
-        """Return an editor's range for a span of a document."""
+        """Return an editor's range for a span of a document.
+
+        Parameters
+        ----------
+        document
+            Script or text that has the span.
+        source
+            Span, counted from 1 in characters.
+
+        Returns
+        -------
+        Range
+            Span that counts from 0, in the units that server and editor agreed on.
+        """
         found = ServerTextRange(
             ServerTextPosition(source.line - 1, source.column - 1),
             ServerTextPosition(source.end_line - 1, source.end_column - 1),
@@ -91,17 +144,53 @@ class LayoutServer(LanguageServer):
         return self.workspace.position_codec.range_to_client_units(document.lines, found)
 
     def text_edit(self, document: Document | EnglishText, edit: Edit) -> types.TextEdit:
-        """Return an edit as the protocol writes it."""
+        """Return an edit as the protocol writes it.
+
+        Parameters
+        ----------
+        document
+            Script or text to edit.
+        edit
+            Replacement of a span.
+
+        Returns
+        -------
+        TextEdit
+            Edit whose range counts in the units of the editor.
+        """
         return types.TextEdit(self.range(document, edit.source), edit.text)
 
     def diagnostic(self, document: Document | EnglishText, problem: Problem) -> types.Diagnostic:
-        """Return a problem as the protocol writes it."""
+        """Return a problem as the protocol writes it.
+
+        Parameters
+        ----------
+        document
+            Script or text that has the problem.
+        problem
+            Error or warning.
+
+        Returns
+        -------
+        Diagnostic
+            Diagnostic whose range counts in the units of the editor.
+        """
         level = types.DiagnosticSeverity.Error if problem.is_error else types.DiagnosticSeverity.Warning
         place = self.range(document, problem.source)
         return types.Diagnostic(place, problem.message, severity=level, code=problem.code, source="deixis")
 
     def send(self, uri: str, document: Document | EnglishText, problems: list[Problem]) -> None:
-        """Send the problems of a document, and keep them for quick fixes."""
+        """Send the problems of a document, and keep them for quick fixes.
+
+        Parameters
+        ----------
+        uri
+            URI of the document.
+        document
+            Script or text that was checked.
+        problems
+            Its errors and warnings, which replace those sent before.
+        """
         self.problems[uri] = (document, problems)
         if len(self.workspace.get_text_document(uri).source) > MAX_FILE_BYTES:
             message = f"this file is larger than {MAX_FILE_BYTES // 1024**2} MB"
@@ -110,7 +199,13 @@ class LayoutServer(LanguageServer):
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri=uri, diagnostics=shown))
 
     async def check(self, uri: str) -> None:
-        """Send the errors of a document, and after a pause its warnings, unless it changes in the meantime."""
+        """Send the errors of a document, and after a pause its warnings, unless it changes in the meantime.
+
+        Parameters
+        ----------
+        uri
+            URI of an open document.
+        """
         document = self.document(uri)
         if isinstance(document, EnglishText):
             await asyncio.sleep(PAUSE)
@@ -132,7 +227,13 @@ class LayoutServer(LanguageServer):
 
 
 def build_server() -> LayoutServer:
-    """Return a language server with all features registered."""
+    """Return a language server with all features registered.
+
+    Returns
+    -------
+    LayoutServer
+        Server that is not started yet.
+    """
     server = LayoutServer()
 
     @server.feature(types.TEXT_DOCUMENT_DID_OPEN)

@@ -21,6 +21,18 @@ class Symbol:
 def symbols(document: Document) -> list[Symbol]:
     """Return the objects of a document in the order of their first mention, also those of statements with errors.
 
+    Parameters
+    ----------
+    document
+        Script that may have errors.
+
+    Returns
+    -------
+    list of Symbol
+        One symbol for each object, with the label of its kind, or an empty label for no known kind.
+
+    Examples
+    --------
     >>> [(found.name, found.kind) for found in symbols(Document("fork left of gizmo; fork lft of"))]
     [('fork', 'fork'), ('gizmo', ''), ('fork_lft', '')]
     """
@@ -32,7 +44,20 @@ def symbols(document: Document) -> list[Symbol]:
 
 
 def mentions_of(document: Document, line: int, column: int) -> list[Source]:
-    """Return the places of all mentions of the object that is named at a position; the first mention comes first."""
+    """Return the places of all mentions of the object that is named at a position; the first mention comes first.
+
+    Parameters
+    ----------
+    document
+        Script that may have errors.
+    line, column
+        Position of any mention of the object, counted from 1.
+
+    Returns
+    -------
+    list of Source
+        Spans in this text; empty if there is no name at the position.
+    """
     here = document.name_at(line, column)
     if here is None:
         return []

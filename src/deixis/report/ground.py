@@ -25,7 +25,18 @@ FRAMES = {"object": "by the thing's own front or axis", "table": "across the mid
 
 
 def grounding_lines(found: Grounding) -> list[str]:
-    """Return the matches, the interchangeable names, the violated facts, what was left out, and the qualifications."""
+    """Return the matches, the interchangeable names, the violated facts, what was left out, and the qualifications.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis ground``.
+
+    Returns
+    -------
+    list of str
+        A line for each match and each finding; doubtful and violated ones carry a mark.
+    """
     from deixis.reasoning.grounding.answer import Outcome
 
     lines = [line for match in found.matches.values() for line in match_lines(match)] or ["No object was found."]
@@ -70,7 +81,18 @@ def grounding_lines(found: Grounding) -> list[str]:
 
 
 def sureness_lines(found: Grounding) -> list[str]:
-    """Return how sure the answer is, in plain words: how many names are settled, and which is the least certain."""
+    """Return how sure the answer is, in plain words: how many names are settled, and which is the least certain.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis ground``.
+
+    Returns
+    -------
+    list of str
+        An empty line and one sentence, marked as doubt unless all names are settled; empty without matches.
+    """
     from deixis.reasoning.grounding.options import DECIDED
 
     if not found.matches:
@@ -94,7 +116,18 @@ def sureness_lines(found: Grounding) -> list[str]:
 
 
 def kinds_lines(script: Script) -> list[str]:
-    """Return the kinds that grounding took from the names of objects, and the names without a known kind."""
+    """Return the kinds that grounding took from the names of objects, and the names without a known kind.
+
+    Parameters
+    ----------
+    script
+        Description that was grounded. Objects whose kind it states are not listed.
+
+    Returns
+    -------
+    list of str
+        At most two lines: the kinds with the names that they were taken from, and the names of no known kind.
+    """
     by_kind: dict[str, list[str]] = {}
     unknown = []
     for name in script.objects:
@@ -139,12 +172,34 @@ def _times(nats: float) -> str:
 
 
 def at_most_many(names: list[str]) -> list[str]:
-    """Return the first :data:`MAX_LISTED` names, and how many more there are."""
+    """Return the first :data:`MAX_LISTED` names, and how many more there are.
+
+    Parameters
+    ----------
+    names
+        Names in the order in which they are printed.
+
+    Returns
+    -------
+    list of str
+        All names, or the first of them and an entry such as ``4 more``.
+    """
     return [*names[:MAX_LISTED], f"{len(names) - MAX_LISTED} more"] if len(names) > MAX_LISTED else names
 
 
 def match_lines(match: Match) -> list[str]:
-    """Return the line of one match, marked as doubt where the match is not decided."""
+    """Return the line of one match, marked as doubt where the match is not decided.
+
+    Parameters
+    ----------
+    match
+        Match of one object of a description.
+
+    Returns
+    -------
+    list of str
+        A single line: object, thing, probability and alternatives.
+    """
     return [doubt(_match_line(match), not match.decided)]
 
 
@@ -195,7 +250,18 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
 
 
 def violation_text(entry: FactOutcome) -> str:
-    """Return a violated fact with its line and the relation that was perceived instead."""
+    """Return a violated fact with its line and the relation that was perceived instead.
+
+    Parameters
+    ----------
+    entry
+        Outcome of a violated fact.
+
+    Returns
+    -------
+    str
+        The fact and its place ``file:line:column``, then the perceived relation where the pair was perceived.
+    """
     place = f" ({entry.fact.source})" if entry.fact.source else ""
     if entry.perceived is None or entry.seen is None:
         return f"{entry.fact}{place}"

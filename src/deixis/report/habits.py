@@ -16,7 +16,18 @@ SURE = 0.8
 
 
 def habits_lines(found: Placements) -> Iterator[str]:
-    """Yield the rules with the examples that they explain, the exceptions, and a line for each placed thing."""
+    """Yield the rules with the examples that they explain, the exceptions, and a line for each placed thing.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis habits``.
+
+    Yields
+    ------
+    str
+        The rules with their probabilities or *stated*, the exceptions, then the placements.
+    """
     width = max((len(_words(rule.concept, rule.other)) for rule in found.rules), default=0) + 1
     for rule in found.rules:
         why = "stated" if rule.stated else f"probability {rule.probability:.2f}"
@@ -51,7 +62,19 @@ def _line(placement: Placement) -> str:
 
 
 def habits_to_dict(found: Placements) -> dict[str, Any]:
-    """Return the places, the rules, the exceptions and the placements."""
+    """Return the places, the rules, the exceptions and the placements.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis habits``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``places``, ``rules``, ``exceptions`` (place by thing) and ``things``. Probabilities
+        are rounded to 6 digits.
+    """
     return {
         "places": list(found.places),
         "rules": [
@@ -71,7 +94,18 @@ def habits_to_dict(found: Placements) -> dict[str, Any]:
 
 
 def habits_rows(found: Placements) -> list[dict[str, Any]]:
-    """Return a row for each placed thing."""
+    """Return a row for each placed thing.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis habits``.
+
+    Returns
+    -------
+    list of dict
+        Rows without the alternatives of a placement: that column is None.
+    """
     return [{**_placement(placement), "alternatives": None} for placement in found.things]
 
 

@@ -16,7 +16,19 @@ from deixis.workflows.imagine import Imagination, ImaginedTable, NoTable, Sized
 
 
 def imagination_lines(found: Imagination) -> list[str]:
-    """Return the tables and the facts that they give up, or the facts that allow no table, with file and line."""
+    """Return the tables and the facts that they give up, or the facts that allow no table, with file and line.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis imagine``.
+
+    Returns
+    -------
+    list of str
+        The tables, with a heading for each where there are several; the conflict where no table is possible; or one
+        line, marked as doubt, where the time limit ended the search.
+    """
     if found.none is not None:
         return list(_none_lines(found.none))
     if not found.tables:
@@ -83,7 +95,18 @@ def _none_lines(none: NoTable) -> Iterator[str]:
 
 
 def imagination_to_dict(found: Imagination) -> dict[str, Any]:
-    """Return imagined tables as plain data: ``tables``, each with its scene, or ``conflict``."""
+    """Return imagined tables as plain data: ``tables``, each with its scene, or ``conflict``.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis imagine``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``decided``, ``tables`` and ``conflict``, which is None unless no table is possible.
+    """
     return {
         "decided": found.decided,
         "tables": [_table_to_dict(table) for table in found.tables],

@@ -23,7 +23,19 @@ if TYPE_CHECKING:
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:
-    """Return a parsed script: its header, its objects with their kinds, and its facts with their places."""
+    """Return a parsed script: its header, its objects with their kinds, and its facts with their places.
+
+    Parameters
+    ----------
+    script
+        Script of the layout language, or text in English that was read as one.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``file``, ``name``, ``title``, ``viewpoint``, ``surface``, ``objects`` and
+        ``facts``.
+    """
     graph = graph_to_dict(script.graph())
     return {
         "file": script.file,
@@ -37,12 +49,37 @@ def script_to_dict(script: Script) -> dict[str, Any]:
 
 
 def stated_to_dict(content: Fact | Claim, surface: str | None = None) -> dict[str, Any]:
-    """Return a fact or a claim as plain data."""
+    """Return a fact or a claim as plain data.
+
+    Parameters
+    ----------
+    content
+        Fact between two objects, or claim about any number of them.
+    surface
+        Noun of what everything stands on, for claims without an object (*in the corner*); None if unknown.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the place of the statement in its file.
+    """
     return fact_to_dict(content) if isinstance(content, Fact) else claim_to_dict(content, surface)
 
 
 def inference_to_dict(inference: Inference) -> dict[str, Any]:
-    """Return the stated and inferred facts, or only the minimal conflict."""
+    """Return the stated and inferred facts, or only the minimal conflict.
+
+    Parameters
+    ----------
+    inference
+        Answer of ``deixis infer``.
+
+    Returns
+    -------
+    dict
+        Data for JSON. A contradictory script has ``consistent`` False and a ``conflict``; any other has ``facts``, each
+        with its status, ``complete``, and ``consistent`` True, or None where the time limit was reached.
+    """
     if inference.conflict is not None:
         facts = [fact_to_dict(fact) for fact in inference.conflict.facts]
         conflict = {"reason": inference.conflict.reason, "minimal": inference.conflict.minimal, "facts": facts}
@@ -58,14 +95,38 @@ def inference_to_dict(inference: Inference) -> dict[str, Any]:
 
 
 def derivation_to_dict(derivation: Derivation) -> dict[str, Any]:
-    """Return a derivation as a tree, down to the stated facts."""
+    """Return a derivation as a tree, down to the stated facts.
+
+    Parameters
+    ----------
+    derivation
+        Proof of a fact, or of an order of two sides of boxes.
+
+    Returns
+    -------
+    dict
+        Nested data for JSON: the proved ``fact``, the ``rule`` of the last step, and its ``premises``, which are
+        dictionaries of the same form.
+    """
     premises = [derivation_to_dict(premise) for premise in derivation.premises]
     claim = fact_to_dict(derivation.claim) if isinstance(derivation.claim, Fact) else {"claim": str(derivation.claim)}
     return {"fact": claim, "rule": derivation.rule.value, "premises": premises}
 
 
 def why_not_to_dict(found: WhyNot) -> dict[str, Any]:
-    """Return why a fact does not follow: what excludes it, or a table without it on which all facts hold."""
+    """Return why a fact does not follow: what excludes it, or a table without it on which all facts hold.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis infer --why-not``.
+
+    Returns
+    -------
+    dict
+        Data for JSON: ``fact`` and ``follows``, and of ``derivation``, ``excluded_by``, ``conflict`` and ``picture``
+        those that apply. The boxes of a picture have no unit: only the order of their sides counts.
+    """
     answer: dict[str, Any] = {"fact": fact_to_dict(found.fact), "follows": found.follows is not None}
     if found.follows is not None:
         answer["derivation"] = derivation_to_dict(found.follows)
@@ -95,7 +156,18 @@ def _alternative_to_dict(other: Alternative) -> dict[str, Any]:
 
 
 def match_to_dict(match: Match) -> dict[str, Any]:
-    """Return an object, its thing, and the alternatives."""
+    """Return an object, its thing, and the alternatives.
+
+    Parameters
+    ----------
+    match
+        Match of one object of a description.
+
+    Returns
+    -------
+    dict
+        Data for JSON. Score, similarity and probability are rounded, or None where the engine gives none.
+    """
     return {
         "object": match.object,
         "perceived": match.perceived,
@@ -108,7 +180,19 @@ def match_to_dict(match: Match) -> dict[str, Any]:
 
 
 def grounding_to_dict(found: Grounding) -> dict[str, Any]:
-    """Return the matches of a grounding and everything that qualifies them."""
+    """Return the matches of a grounding and everything that qualifies them.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis ground``.
+
+    Returns
+    -------
+    dict
+        Data for JSON: the matches, the objects and things left out with the reasons, the interchangeable names, the
+        facts by outcome, and the facts on which the answer depends.
+    """
     from deixis.reasoning.grounding.answer import Outcome, Standing
 
     pivotal = [
@@ -184,7 +268,19 @@ def _dialogue_and_viewpoints(found: Grounding) -> dict[str, Any]:
 
 
 def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
-    """Return a fact, its line, and the perceived relation of its pair."""
+    """Return a fact, its line, and the perceived relation of its pair.
+
+    Parameters
+    ----------
+    entry
+        Outcome of one fact under a grounding.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``fact``, ``line`` (None for a fact that no file states), ``degree``, and
+        ``perceived`` (None where the pair was not perceived).
+    """
     perceived = None
     if entry.perceived is not None and entry.seen is not None:
         perceived = {
@@ -198,7 +294,18 @@ def outcome_to_dict(entry: FactOutcome) -> dict[str, Any]:
 
 
 def learned_to_dict(learned: Learned) -> dict[str, Any]:
-    """Return a lesson: what it taught, what it left open, and its grounding."""
+    """Return a lesson: what it taught, what it left open, and its grounding.
+
+    Parameters
+    ----------
+    learned
+        Answer of ``deixis learn``.
+
+    Returns
+    -------
+    dict
+        Data for JSON: the lesson, its roles and categories, the undecided objects, and the grounding.
+    """
     layout = learned.lesson.layout
     return {
         "lesson": layout.lesson,
@@ -216,7 +323,20 @@ def learned_to_dict(learned: Learned) -> dict[str, Any]:
 
 
 def claim_outcome_to_dict(entry: ClaimOutcome, surface: str | None = None) -> dict[str, Any]:
-    """Return a claim with the verdict on it, and what was measured."""
+    """Return a claim with the verdict on it, and what was measured.
+
+    Parameters
+    ----------
+    entry
+        Outcome of one claim about a table.
+    surface
+        Noun of what everything stands on, for claims without an object; None if unknown.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``claim``, ``verdict``, ``degree``, ``perceived`` (ids of things) and ``measured``.
+    """
     return {
         "claim": claim_to_dict(entry.claim, surface),
         "verdict": entry.verdict.value,
@@ -227,7 +347,19 @@ def claim_outcome_to_dict(entry: ClaimOutcome, surface: str | None = None) -> di
 
 
 def check_to_dict(checked: Check) -> dict[str, Any]:
-    """Return the verdicts on a table; broken facts with their lines and what was seen instead."""
+    """Return the verdicts on a table; broken facts with their lines and what was seen instead.
+
+    Parameters
+    ----------
+    checked
+        Answer of ``deixis check``.
+
+    Returns
+    -------
+    dict
+        Data for JSON: the roles by verdict (``correct``, ``missing``, ``misplaced``, …), the extra things, and the
+        outcomes of the claims.
+    """
     from deixis.reasoning.comparison.checking import RoleVerdict
 
     table = checked.table

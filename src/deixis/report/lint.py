@@ -13,7 +13,18 @@ if TYPE_CHECKING:
 
 
 def lint_lines(found: Lint) -> Iterator[str]:
-    """Yield a line for each warning, as ``file:line:column: CODE message``, and their number."""
+    """Yield a line for each warning, as ``file:line:column: CODE message``, and their number.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis lint``.
+
+    Yields
+    ------
+    str
+        The warnings, marked as doubt; then their number; then a notice if the time limit was reached.
+    """
     for finding in found.findings:
         hint = f"; {finding.hint}" if finding.hint else ""
         yield doubt(f"{finding.source}: {finding.code} {finding.message}{hint}")
@@ -23,7 +34,18 @@ def lint_lines(found: Lint) -> Iterator[str]:
 
 
 def lint_to_dict(found: Lint) -> dict[str, Any]:
-    """Return the warnings with their places, codes, hints and replacements."""
+    """Return the warnings with their places, codes, hints and replacements.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis lint``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``file``, ``warnings`` and ``complete``. Lines and columns count from 1.
+    """
     warnings = [
         {
             "code": finding.code,

@@ -26,13 +26,40 @@ class MarkedLine(str):
 
 
 def doubt(text: str, is_doubtful: bool = True) -> str:
-    """Mark a line about what is not certain; return it as it is where ``is_doubtful`` is False."""
+    """Mark a line about what is not certain; return it as it is where ``is_doubtful`` is False.
+
+    Parameters
+    ----------
+    text
+        Line of a report.
+    is_doubtful
+        False if the line is certain and needs no mark.
+
+    Returns
+    -------
+    str
+        A :class:`MarkedLine` with the mark ``DOUBT``, or the text itself.
+    """
     return MarkedLine(text, Mark.DOUBT) if is_doubtful else text
 
 
 def violation(text: str, is_violation: bool = True) -> str:
     """Mark a line about what is wrong; return it as it is where ``is_violation`` is False.
 
+    Parameters
+    ----------
+    text
+        Line of a report.
+    is_violation
+        False if nothing is wrong and the line needs no mark.
+
+    Returns
+    -------
+    str
+        A :class:`MarkedLine` with the mark ``VIOLATION``, or the text itself.
+
+    Examples
+    --------
     >>> violation("misplaced   fork"), violation("misplaced   fork").mark
     ('misplaced   fork', <Mark.VIOLATION: 'violation'>)
     """

@@ -17,7 +17,24 @@ if TYPE_CHECKING:
 
 
 def reading_lines(script: Script) -> list[str]:
-    """Return each sentence with its facts, a paraphrase, and what was not understood."""
+    """Return each sentence with its facts, a paraphrase, and what was not understood.
+
+    Parameters
+    ----------
+    script
+        Text in English that was read.
+
+    Returns
+    -------
+    list of str
+        Each sentence, with its indented paraphrase, facts and problems; then what the text says is absent, and the
+        share of understood words.
+
+    Raises
+    ------
+    DeixisError
+        If the script is a layout script, which has no sentences.
+    """
     reading = _reading(script)
     lines = []
     for number, sentence in enumerate(reading.sentences):
@@ -45,7 +62,24 @@ def _marks(fact: StatedFact) -> str:
 
 
 def reading_to_dict(script: Script) -> dict[str, Any]:
-    """Return a text as it was read: its objects with their mentions, all facts, and the sentences."""
+    """Return a text as it was read: its objects with their mentions, all facts, and the sentences.
+
+    Parameters
+    ----------
+    script
+        Text in English that was read.
+
+    Returns
+    -------
+    dict
+        Data of :func:`~deixis.report.json_answers.script_to_dict` with the mentions of each object, the sentences, and
+        under ``understood`` the share of understood words in [0, 1].
+
+    Raises
+    ------
+    DeixisError
+        If the script is a layout script, which has no sentences.
+    """
     reading = _reading(script)
     known = script_to_dict(script)
     for thing in known["objects"]:
@@ -60,7 +94,21 @@ def reading_to_dict(script: Script) -> dict[str, Any]:
 
 
 def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
-    """Return a fact of a text with its sentence, its span and what qualifies it."""
+    """Return a fact of a text with its sentence, its span and what qualifies it.
+
+    Parameters
+    ----------
+    stated
+        Fact or claim with its sentence.
+    reading
+        Reading of the text; its surface is the object of claims that name none.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``sentence`` counts from 0; ``span`` is the first and last character in the text, counted from 0,
+        the end exclusive.
+    """
     return content_to_dict(stated.content, reading.surface) | {
         "status": "stated",
         "asserted": stated.asserted,
@@ -75,7 +123,20 @@ def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
 
 
 def content_to_dict(content: Fact | Claim, surface: str | None = None) -> dict[str, Any]:
-    """Return a fact or a claim as plain data; ``surface`` is what places without an object are meant of."""
+    """Return a fact or a claim as plain data, with the same keys for both.
+
+    Parameters
+    ----------
+    content
+        Fact between two objects, or claim about any number of them.
+    surface
+        Noun of what everything stands on, which is the object of places that name none; None if unknown.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``subjects`` is a list; ``arguments``, ``value`` and ``metres`` are empty or None for a fact.
+    """
     known = claim_to_dict(content, surface) if isinstance(content, Claim) else fact_to_dict(content)
     if not isinstance(content, Claim):
         known |= {"relation": content.relations[0].name, "arguments": [], "value": None, "metres": None}

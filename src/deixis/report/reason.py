@@ -16,7 +16,20 @@ from deixis.report.marks import violation
 
 
 def verdict(found: Entailment, words: Words) -> str:
-    """Return the outcome in one sentence that claims no more than the engine decides."""
+    """Return the outcome in one sentence that claims no more than the engine decides.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+    words
+        Writer of IRIs and axioms in plain words.
+
+    Returns
+    -------
+    str
+        The sentence, marked as a violation if the ontology, or a class of it, is unsatisfiable.
+    """
     if not found.consistent:
         return violation(f"inconsistent ({found.engine}): the ontology has no model")
     held = "consistent" if found.complete else "no contradiction found"
@@ -27,7 +40,20 @@ def verdict(found: Entailment, words: Words) -> str:
 
 
 def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
-    """Yield what follows, counted by predicate or listed."""
+    """Yield what follows, counted by predicate or listed.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+    triples
+        True to list every inferred triple, False to count them.
+
+    Yields
+    ------
+    str
+        A triple; or a number and a predicate, the most frequent predicate first.
+    """
     if triples:
         for triple in found.inferred:
             yield " ".join(short(iri) if (iri := iri_of(part)) else part for part in triple)
@@ -38,7 +64,20 @@ def inferred_lines(found: Entailment, triples: bool = False) -> Iterator[str]:
 
 
 def impossibility_lines(found: Entailment, words: Words) -> Iterator[str]:
-    """Yield the reasons found why the ontology, or a class of it, is unsatisfiable."""
+    """Yield the reasons found why the ontology, or a class of it, is unsatisfiable.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+    words
+        Writer of IRIs and axioms in plain words.
+
+    Yields
+    ------
+    str
+        Each reason with its axioms; then a notice if the time limit ended the search for reasons.
+    """
     for justification in found.inconsistency:
         yield f"These cannot all hold{_doubt(justification)}:"
         yield from _axiom_lines(justification, words)
@@ -54,14 +93,42 @@ def _doubt(justification: Justification) -> str:
 
 
 def justification_lines(justification: Justification, words: Words) -> Iterator[str]:
-    """Yield a statement, or 'Contradiction', and the axioms behind it."""
+    """Yield a statement, or 'Contradiction', and the axioms behind it.
+
+    Parameters
+    ----------
+    justification
+        Set of axioms that entail a statement or a contradiction.
+    words
+        Writer of IRIs and axioms in plain words.
+
+    Yields
+    ------
+    str
+        The conclusion first, then one indented line for each axiom.
+    """
     what = "Contradiction" if justification.entailed is None else words.triple(justification.entailed)
     yield f"{what}, because{_doubt(justification)}"
     yield from _axiom_lines(justification, words)
 
 
 def explanation_lines(justification: Justification, steps: tuple[InferenceStep, ...], words: Words) -> Iterator[str]:
-    """Yield why a statement follows: the axioms, and the steps where rules lead from them to it."""
+    """Yield why a statement follows: the axioms, and the steps where rules lead from them to it.
+
+    Parameters
+    ----------
+    justification
+        Set of axioms that entail the statement.
+    steps
+        Steps in the order of the derivation; those without a rule are stated triples and are left out.
+    words
+        Writer of IRIs and axioms in plain words.
+
+    Yields
+    ------
+    str
+        The conclusion, its axioms, and a line with the rule in brackets for each step.
+    """
     yield from justification_lines(justification, words)
     derived = [step for step in steps if step.rule is not None]
     if derived:
@@ -75,7 +142,21 @@ def _axiom_lines(justification: Justification, words: Words) -> Iterator[str]:
 
 
 def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
-    """Return the entailments as plain data for JSON."""
+    """Return the entailments as plain data for JSON.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis reason``.
+    words
+        Writer of IRIs and axioms in plain words.
+
+    Returns
+    -------
+    dict
+        Data for JSON: the engine, ``complete``, ``consistent``, the inferred triples, the unsatisfiable classes, and
+        the justifications.
+    """
     return {
         "engine": found.engine.value,
         "complete": found.complete,
@@ -92,7 +173,22 @@ def entailment_to_dict(found: Entailment, words: Words) -> dict[str, Any]:
 def justification_to_dict(
     justification: Justification, words: Words, steps: tuple[InferenceStep, ...] = ()
 ) -> dict[str, Any]:
-    """Return a justification as plain data: its conclusion (null: a contradiction), its axioms, and the rule steps."""
+    """Return a justification as plain data: its conclusion, its axioms, and the rule steps.
+
+    Parameters
+    ----------
+    justification
+        Set of axioms that entail a statement or a contradiction.
+    words
+        Writer of IRIs and axioms in plain words.
+    steps
+        Rule steps that lead from the axioms to the conclusion, if they are known.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``entailed`` is None for a contradiction; ``minimal`` is False if an axiom might be superfluous.
+    """
     return {
         "entailed": None if justification.entailed is None else _plain(justification.entailed),
         "minimal": justification.minimal,

@@ -12,7 +12,19 @@ MAX_LISTED = 3
 
 
 def reference_lines(found: Reference) -> list[str]:
-    """Return the target with its probability, what was understood, and the question if in doubt."""
+    """Return the target with its probability, what was understood, and the question if in doubt.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis refer``.
+
+    Returns
+    -------
+    list of str
+        One line with the reason if there is no target; otherwise the target, the alternatives if it is undecided, the
+        paraphrase, the frame of directions, and the question.
+    """
     if found.target is None:
         return [f"No object: {'; '.join(found.notes)}."]
     sure = f"{found.target}  probability {found.probability:.2f}"
@@ -29,7 +41,19 @@ def reference_lines(found: Reference) -> list[str]:
 
 
 def reference_to_dict(found: Reference) -> dict[str, Any]:
-    """Return the answer as plain data."""
+    """Return the answer as plain data.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis refer``.
+
+    Returns
+    -------
+    dict
+        Data for JSON. Probabilities and the share of understood words are in [0, 1]; ``target`` and ``question`` may be
+        None.
+    """
     question = found.question
     return {
         "text": found.text,
@@ -47,6 +71,17 @@ def reference_to_dict(found: Reference) -> dict[str, Any]:
 
 
 def reference_rows(found: Reference) -> list[dict[str, Any]]:
-    """Return a row for the target and for each alternative."""
+    """Return a row for the target and for each alternative.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis refer``.
+
+    Returns
+    -------
+    list of dict
+        Rows with ``id`` and ``probability``, the target first; empty without a target and alternatives.
+    """
     listed = [] if found.target is None else [(found.target, found.probability)]
     return [{"id": name, "probability": probability} for name, probability in (*listed, *found.alternatives)]

@@ -16,7 +16,27 @@ if TYPE_CHECKING:
 def pair_lines(
     related: Related, subject: str | None = None, object: str | None = None, words: SceneWords | None = None
 ) -> Iterator[str]:
-    """Yield a line for every ordered pair: subject, relation, object, and the likely words with their probabilities."""
+    """Yield a line for every ordered pair: subject, relation, object, and the likely words with their probabilities.
+
+    Parameters
+    ----------
+    related
+        Relations of all pairs of n things in one calculus.
+    subject, object
+        Id of the only subject or object to list, or None for all.
+    words
+        Probabilities of the words of each pair, or None to leave the words out.
+
+    Yields
+    ------
+    str
+        A line for each pair, in aligned columns; then one for each likely *between*.
+
+    Raises
+    ------
+    UnknownTermError
+        If no thing has the id of ``subject`` or ``object``.
+    """
     place = {name: i for i, name in enumerate(related.ids)}
     wide_object = max((len(related.ids[i]) for i in related.places(object)), default=0)
     rows, columns = related.places(subject), related.places(object)
@@ -44,7 +64,18 @@ def _widest(related: Related, row: int, columns: range) -> int:
 
 
 def matrix_lines(related: Related) -> Iterator[str]:
-    """Yield a matrix with subjects in rows and objects in columns, and dots on the diagonal."""
+    """Yield a matrix with subjects in rows and objects in columns, and dots on the diagonal.
+
+    Parameters
+    ----------
+    related
+        Relations of all pairs of n things in one calculus.
+
+    Yields
+    ------
+    str
+        The header with the ids, then n rows in aligned columns.
+    """
     if not related.ids:
         yield "There are no objects."
         return
@@ -66,7 +97,27 @@ def _row(head: str, cells: Sequence[str], first: int, widths: list[int]) -> str:
 def json_lines(
     related: Related, subject: str | None = None, object: str | None = None, words: SceneWords | None = None
 ) -> Iterator[str]:
-    """Yield the calculus, the objects, and every ordered pair, as the lines of one JSON object."""
+    """Yield the calculus, the objects, and every ordered pair, as the lines of one JSON object.
+
+    Parameters
+    ----------
+    related
+        Relations of all pairs of n things in one calculus.
+    subject, object
+        Id of the only subject or object to list, or None for all.
+    words
+        Probabilities of the words of each pair, or None to leave the words out.
+
+    Yields
+    ------
+    str
+        Lines without their ends, one pair at a time, so that many pairs need little memory.
+
+    Raises
+    ------
+    UnknownTermError
+        If no thing has the id of ``subject`` or ``object``.
+    """
     place = {name: i for i, name in enumerate(related.ids)}
     ids = {name: _json(name) for name in related.ids}
     signs = {sign: _json(sign) for sign in related.signs}

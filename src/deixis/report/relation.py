@@ -15,7 +15,22 @@ if TYPE_CHECKING:
 
 
 def relation_lines(relation: Relation, relations: Relations, models: RelationModels) -> list[str]:
-    """Return the word's atoms in its readings, its inverse and synonyms, and the parameters of its graded model."""
+    """Return the word's atoms in its readings, its inverse and synonyms, and the parameters of its graded model.
+
+    Parameters
+    ----------
+    relation
+        Relation in any of its readings; the lines describe all of them.
+    relations
+        All relations of the ontology.
+    models
+        Graded models of the words.
+
+    Returns
+    -------
+    list of str
+        Aligned lines. A point of a graded term is printed as its knot and its degree, not the logarithm.
+    """
     wide = relations[relation.word]
     lines = [f"{wide.name}: {wide.phrase}", f"inverse     {wide.inverse}", f"words       {', '.join(wide.words)}"]
     for one in dict.fromkeys((wide, relations.exact(wide))):
@@ -38,7 +53,22 @@ def relation_lines(relation: Relation, relations: Relations, models: RelationMod
 
 
 def relation_to_dict(relation: Relation, relations: Relations, models: RelationModels) -> dict[str, Any]:
-    """Return a relation word as plain data; ``log_degrees`` are natural logarithms of degrees."""
+    """Return a relation word as plain data: its readings, its inverse and synonyms, and its graded model.
+
+    Parameters
+    ----------
+    relation
+        Relation in any of its readings.
+    relations
+        All relations of the ontology.
+    models
+        Graded models of the words.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``readings`` has the atoms of each axis; ``log_degrees`` are natural logarithms of degrees.
+    """
     wide = relations[relation.word]
     readings = {}
     for one in dict.fromkeys((wide, relations.exact(wide))):
@@ -55,7 +85,19 @@ def relation_to_dict(relation: Relation, relations: Relations, models: RelationM
 
 
 def model_to_dict(model: RelationModel) -> dict[str, Any]:
-    """Return a model's parameters and where they come from."""
+    """Return a model's parameters and where they come from.
+
+    Parameters
+    ----------
+    model
+        Graded model of a relation word.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``log_degrees`` are natural logarithms of the degrees at ``knots``; ``made`` is an ISO 8601 time,
+        or None for a shipped model.
+    """
     origin = model.provenance
     return {
         "model": model.name,
@@ -77,7 +119,19 @@ def model_to_dict(model: RelationModel) -> dict[str, Any]:
 
 
 def learned_words_lines(learned: LearnedWords) -> list[str]:
-    """Return which words were learned, from how many facts, and which examples were left out and why."""
+    """Return which words were learned, from how many facts, and which examples were left out and why.
+
+    Parameters
+    ----------
+    learned
+        Result of learning words from lessons or scenes.
+
+    Returns
+    -------
+    list of str
+        A line for each changed model, one for the lessons, one for the names under which scenes were kept, and one for
+        each example left out.
+    """
     lines = [f"{model.name:<11} learned from {_facts(model)}" for model in learned.changed]
     for word, ids in (("lessons", learned.lessons), ("kept as", learned.kept)):
         lines += [f"{word:<11} {', '.join(ids)}"] if ids else []
@@ -86,7 +140,20 @@ def learned_words_lines(learned: LearnedWords) -> list[str]:
 
 
 def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
-    """Return learned words as plain data, with the parameters of their models."""
+    """Return learned words as plain data, with the parameters of their models.
+
+    Parameters
+    ----------
+    learned
+        Result of learning words from lessons or scenes.
+    where
+        File or memory that the models were written to.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``learned``, ``lessons``, ``kept``, ``left_out`` and ``written``.
+    """
     return {
         "learned": [model_to_dict(model) for model in learned.changed],
         "lessons": list(learned.lessons),
@@ -101,7 +168,19 @@ MAX_LISTED = 10
 
 
 def learned_reference_lines(learned: LearnedReference) -> list[str]:
-    """Return from how many descriptions the words of reference were learned, and which weights changed most."""
+    """Return from how many descriptions the words of reference were learned, and which weights changed most.
+
+    Parameters
+    ----------
+    learned
+        Result of learning the weights of words of reference.
+
+    Returns
+    -------
+    list of str
+        The number of descriptions, with those that were right before and after; at most :data:`MAX_LISTED` changes of
+        weights; the examples left out.
+    """
     before, after = learned.right
     lines = [f"learned from {learned.descriptions} descriptions: {before} were right before, {after} are now"]
     lines += [f"{name:<24} changed by up to {step:.2f}" for name, step in [*learned.changed.items()][:MAX_LISTED]]
@@ -109,7 +188,21 @@ def learned_reference_lines(learned: LearnedReference) -> list[str]:
 
 
 def learned_reference_to_dict(learned: LearnedReference, where: str) -> dict[str, Any]:
-    """Return learned words of reference as plain data."""
+    """Return learned words of reference as plain data.
+
+    Parameters
+    ----------
+    learned
+        Result of learning the weights of words of reference.
+    where
+        File that the weights were written to.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``right_before`` and ``right_after`` count descriptions; ``changed`` holds the largest change by
+        name.
+    """
     return {
         "descriptions": learned.descriptions,
         "right_before": learned.right[0],

@@ -88,17 +88,55 @@ RENDERERS = {
 
 
 def to_dict(answer: Answer) -> dict[str, Any]:
-    """Return an answer as plain data."""
+    """Return an answer as plain data.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    dict
+        Data for JSON, with the keys of the ``--json`` output of the command.
+    """
     return _function(_renderer(answer).data)(answer)  # type: ignore[no-any-return]
 
 
 def to_lines(answer: Answer) -> list[str]:
-    """Return the lines of an answer, as its command prints them."""
+    """Return the lines of an answer, as its command prints them.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    list of str
+        Lines without their ends; some carry a mark of :mod:`deixis.report.marks`.
+    """
     return list(_function(_renderer(answer).lines)(answer))
 
 
 def to_rows(answer: Answer) -> list[Row]:
-    """Return the table in an answer, a row a dictionary; raise DeixisError where it has none."""
+    """Return the table in an answer.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    list of dict
+        The rows, each with its values by column.
+
+    Raises
+    ------
+    DeixisError
+        If answers of this type are not tables.
+    """
     rows = _renderer(answer).rows
     if rows is None:
         raise DeixisError(f"a {type(answer).__name__} is not a table; use to_dict() or to_text()")
@@ -106,7 +144,25 @@ def to_rows(answer: Answer) -> list[Row]:
 
 
 def to_dataframe(answer: Answer) -> Any:
-    """Return the table in an answer as a pandas data frame."""
+    """Return the table in an answer as a pandas data frame.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The rows of :func:`to_rows`.
+
+    Raises
+    ------
+    DeixisError
+        If answers of this type are not tables.
+    MissingExtraError
+        If pandas is not installed.
+    """
     rows = to_rows(answer)
     require("pandas", f"{type(answer).__name__}.to_dataframe()")
     import pandas
@@ -115,7 +171,27 @@ def to_dataframe(answer: Answer) -> Any:
 
 
 def plot(answer: Answer, axes: Axes | None) -> Figure:
-    """Draw an answer into axes, or into a new figure."""
+    """Draw an answer into axes, or into a new figure.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure of the axes.
+
+    Raises
+    ------
+    DeixisError
+        If answers of this type have no picture.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     figure = _renderer(answer).figure
     if figure is None:
         raise DeixisError(f"a {type(answer).__name__} has no picture; use to_text(), or draw an answer made from it")
@@ -124,7 +200,18 @@ def plot(answer: Answer, axes: Axes | None) -> Figure:
 
 
 def to_png(answer: Answer) -> bytes | None:
-    """Return the picture of an answer as PNG, or None where it has none or matplotlib is not installed."""
+    """Return the picture of an answer as PNG, or None where it has none or matplotlib is not installed.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    bytes or None
+        The picture at 110 dots per inch; None also if this answer cannot be drawn.
+    """
     if _renderer(answer).figure is None or find_spec("matplotlib") is None:
         return None
     try:
@@ -137,7 +224,18 @@ def to_png(answer: Answer) -> bytes | None:
 
 
 def to_html(answer: Answer) -> str:
-    """Return an answer for a notebook: its summary and its table, or its text."""
+    """Return an answer for a notebook: its summary and its table, or its text.
+
+    Parameters
+    ----------
+    answer
+        Answer of a type in :data:`RENDERERS`.
+
+    Returns
+    -------
+    str
+        HTML fragment with escaped text and at most :data:`MAX_HTML_ROWS` rows.
+    """
     head = f"<p><b>{type(answer).__name__}</b> {html.escape(answer.summary())}</p>"
     if _renderer(answer).rows is None:
         return f"{head}<pre>{html.escape(answer.to_text())}</pre>"
@@ -150,7 +248,20 @@ MAX_HTML_ROWS = 100
 
 
 def html_table(rows: Sequence[Row], total: int) -> str:
-    """Return rows as an HTML table; ``total`` counts those that are not shown too."""
+    """Return rows as an HTML table.
+
+    Parameters
+    ----------
+    rows
+        Rows to show. The columns are the keys of all rows in the order of their first occurrence.
+    total
+        Number of rows including those that are not shown; a note gives the difference.
+
+    Returns
+    -------
+    str
+        HTML fragment with escaped text.
+    """
     columns = list(dict.fromkeys(key for row in rows for key in row))
     head = "".join(f"<th style='text-align:left'>{html.escape(name)}</th>" for name in columns)
     body = "".join(

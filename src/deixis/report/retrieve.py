@@ -8,7 +8,18 @@ from deixis.workflows.retrieve import Retrieval
 
 
 def retrieval_lines(retrieval: Retrieval) -> list[str]:
-    """Return a line for each result, best first."""
+    """Return a line for each result, best first.
+
+    Parameters
+    ----------
+    retrieval
+        Answer of ``deixis retrieve``.
+
+    Returns
+    -------
+    list of str
+        A header and an aligned line for each result, or one sentence where no candidate is similar enough.
+    """
     found = retrieval.found
     if not found:
         return [
@@ -25,7 +36,18 @@ def retrieval_lines(retrieval: Retrieval) -> list[str]:
 
 
 def retrieval_to_dict(retrieval: Retrieval) -> dict[str, Any]:
-    """Return the query, how many it was compared with, and the results, best first."""
+    """Return the query, how many it was compared with, and the results, best first.
+
+    Parameters
+    ----------
+    retrieval
+        Answer of ``deixis retrieve``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``query``, ``among`` (number of candidates) and ``results``.
+    """
     results = [
         {
             "name": one.name,

@@ -21,13 +21,35 @@ Row = dict[str, Any]
 
 
 def script_rows(script: Script) -> Iterator[Row]:
-    """Yield a row for each stated fact."""
+    """Yield a row for each stated fact.
+
+    Parameters
+    ----------
+    script
+        Script; its claims, which need not have two objects, are left out.
+
+    Yields
+    ------
+    dict
+        The fact, and its ``line`` in the file, counted from 1.
+    """
     for fact in script.facts:
         yield _fact_row(fact) | {"line": fact.source.line if fact.source else None}
 
 
 def inference_rows(inference: Inference) -> Iterator[Row]:
-    """Yield a row for each stated and inferred fact, or for each fact of the conflict."""
+    """Yield a row for each stated and inferred fact, or for each fact of the conflict.
+
+    Parameters
+    ----------
+    inference
+        Answer of ``deixis infer``.
+
+    Yields
+    ------
+    dict
+        The fact with its ``status``: *stated*, *inferred* (also ``rule`` and ``steps``) or *in conflict*.
+    """
     if inference.conflict is not None:
         yield from (_fact_row(fact) | {"status": "in conflict"} for fact in inference.conflict.facts)
         return
@@ -50,7 +72,19 @@ def _fact_row(fact: Fact) -> Row:
 
 
 def scene_rows(scene: Scene) -> Iterator[Row]:
-    """Yield a row for each perceived object, with its box."""
+    """Yield a row for each perceived object, with its box.
+
+    Parameters
+    ----------
+    scene
+        Scene in two or three dimensions.
+
+    Yields
+    ------
+    dict
+        ``id``, ``label``, ``confidence`` (None without a label), and the box as ``min_x``, ``min_y``, … in the unit of
+        the scene.
+    """
     for thing in scene.objects:
         axes = "xyz"[: len(thing.minimum)]
         box = {f"min_{axis}": low for axis, low in zip(axes, thing.minimum, strict=True)}
@@ -59,7 +93,19 @@ def scene_rows(scene: Scene) -> Iterator[Row]:
 
 
 def grounding_rows(found: Grounding) -> Iterator[Row]:
-    """Yield a row for each object of the description, matched or left out."""
+    """Yield a row for each object of the description, matched or left out.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis ground``.
+
+    Yields
+    ------
+    dict
+        ``object``, ``perceived`` (None if left out), ``probability``, ``decided``, and the ``alternatives`` as text,
+        which is empty for a decided match.
+    """
     for match in found.matches.values():
         others = ", ".join(other.perceived or "absent" for other in match.alternatives)
         yield {
@@ -75,7 +121,18 @@ def grounding_rows(found: Grounding) -> Iterator[Row]:
 
 
 def check_rows(checked: Check) -> Iterator[Row]:
-    """Yield a row for each role of the layout, and for each extra thing."""
+    """Yield a row for each role of the layout, and for each extra thing.
+
+    Parameters
+    ----------
+    checked
+        Answer of ``deixis check``.
+
+    Yields
+    ------
+    dict
+        ``object`` (None for an extra thing), ``perceived``, ``verdict``, and the ``violated`` facts as text.
+    """
     for role in checked.table.roles:
         yield {
             "object": role.role,
@@ -88,20 +145,53 @@ def check_rows(checked: Check) -> Iterator[Row]:
 
 
 def imagination_rows(found: Imagination) -> Iterator[Row]:
-    """Yield a row for each object of each example table, with its box."""
+    """Yield a row for each object of each example table, with its box.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis imagine``.
+
+    Yields
+    ------
+    dict
+        ``table``, counted from 1, and the columns of :func:`scene_rows`.
+    """
     for number, table in enumerate(found.tables, start=1):
         yield from ({"table": number} | row for row in scene_rows(table.scene))
 
 
 def recognised_rows(found: Recognised) -> Iterator[Row]:
-    """Yield a row for each object of the scene, with the name that it was recognised by."""
+    """Yield a row for each object of the scene, with the name that it was recognised by.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis recognise``.
+
+    Yields
+    ------
+    dict
+        ``id``, ``label`` (None if unknown), ``probability``, and the ``nearest`` category (None without candidates).
+    """
     for name, answer in found.answers.items():
         nearest = answer.candidates[0].category if answer.candidates else None
         yield {"id": name, "label": answer.label, "probability": answer.probability, "nearest": nearest}
 
 
 def retrieval_rows(found: Retrieval) -> Iterator[Row]:
-    """Yield a row for each layout or scene that was retrieved."""
+    """Yield a row for each layout or scene that was retrieved.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis retrieve``.
+
+    Yields
+    ------
+    dict
+        ``name``, the similarities, and ``proved_best``, which is False where the similarity is a lower bound.
+    """
     for one in found.found:
         yield {
             "name": one.name,
@@ -113,7 +203,19 @@ def retrieval_rows(found: Retrieval) -> Iterator[Row]:
 
 
 def query_rows(found: QueryResult) -> Iterator[Row]:
-    """Yield a row for each solution or triple, or one for a yes or no."""
+    """Yield a row for each solution or triple, or one for a yes or no.
+
+    Parameters
+    ----------
+    found
+        Result of a SPARQL query of any form.
+
+    Yields
+    ------
+    dict
+        Values by variable, None where a variable is unbound; or ``subject``, ``predicate`` and ``object``; or
+        ``answer``.
+    """
     if found.boolean is not None:
         yield {"answer": found.boolean}
     for row in found.printed():
@@ -123,14 +225,36 @@ def query_rows(found: QueryResult) -> Iterator[Row]:
 
 
 def query_to_dict(found: QueryResult) -> dict[str, Any]:
-    """Return SPARQL 1.1 results in JSON as plain data."""
+    """Return SPARQL 1.1 results in JSON as plain data.
+
+    Parameters
+    ----------
+    found
+        Result of a SPARQL query of any form.
+
+    Returns
+    -------
+    dict
+        Data with the keys of the W3C format *SPARQL 1.1 Query Results JSON*.
+    """
     import json
 
     return json.loads(found.to_json())  # type: ignore[no-any-return]
 
 
 def query_lines(found: QueryResult) -> list[str]:
-    """Return the aligned lines that ``deixis query`` prints."""
+    """Return the aligned lines that ``deixis query`` prints.
+
+    Parameters
+    ----------
+    found
+        Result of a SPARQL query of any form.
+
+    Returns
+    -------
+    list of str
+        Lines without their ends.
+    """
     return found.to_table()
 
 

@@ -29,7 +29,18 @@ if TYPE_CHECKING:
 
 
 def script_lines(script: Script) -> list[str]:
-    """Return the header of a script, its facts with their lines, and its kinds and colours."""
+    """Return the header of a script, its facts with their lines, and its kinds and colours.
+
+    Parameters
+    ----------
+    script
+        Script of the layout language, or text in English that was read as one.
+
+    Returns
+    -------
+    list of str
+        One line for the header, one for each fact or claim, and one for each stated kind or colour.
+    """
     title = f' "{script.title}"' if script.title else ""
     viewpoint = f", seen from {script.viewpoint}" if script.viewpoint else ""
     head = f"{script.name or script.file}{title}: {_count(script.objects, 'object')}, {_count(script.facts, 'fact')}"
@@ -44,7 +55,18 @@ def script_lines(script: Script) -> list[str]:
 
 
 def qualified(fact: Fact | Claim) -> str:
-    """Return a fact or a claim with its mark 'optional' and its weight."""
+    """Return a fact or a claim with its mark 'optional' and its weight.
+
+    Parameters
+    ----------
+    fact
+        Fact or claim.
+
+    Returns
+    -------
+    str
+        The statement, followed in brackets by ``optional`` and by a weight other than 1.
+    """
     marks = [*(["optional"] if fact.optional else []), *([f"weight {fact.weight:g}"] if fact.weight != 1 else [])]
     return str(fact) + (f"   [{', '.join(marks)}]" if marks else "")
 
@@ -61,7 +83,19 @@ def _count(things: Sized, noun: str) -> str:
 
 
 def inference_lines(inference: Inference) -> Iterator[str]:
-    """Yield the stated and the inferred facts with their lines, or only the minimal conflict."""
+    """Yield the stated and the inferred facts with their lines, or only the minimal conflict.
+
+    Parameters
+    ----------
+    inference
+        Answer of ``deixis infer``.
+
+    Yields
+    ------
+    str
+        The conflict, marked as a violation; or the facts, at most :data:`MAX_INFERRED_LISTED` inferred ones. Notices
+        that the time limit was reached are marked as doubt.
+    """
     if inference.conflict is not None:
         yield violation(f"The script contradicts itself: {inference.conflict.reason}.")
         yield from (violation(f"    {fact.source}: {fact}") for fact in inference.conflict.facts)
@@ -95,7 +129,19 @@ def inference_lines(inference: Inference) -> Iterator[str]:
 
 
 def why_not_lines(found: WhyNot) -> list[str]:
-    """Return why a fact does not follow, with at most :data:`MAX_LISTED` objects of a counterexample."""
+    """Return why a fact does not follow, with at most :data:`MAX_LISTED` objects of a counterexample.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis infer --why-not``.
+
+    Returns
+    -------
+    list of str
+        The derivation if the fact follows after all; otherwise what excludes it, or a counterexample whose coordinates
+        only order the sides of the boxes.
+    """
     if found.follows is not None:
         return [f"{found.fact} does follow:", *(f"    {line}" for line in found.follows.lines())]
     if found.against is not None:
@@ -120,7 +166,20 @@ def why_not_lines(found: WhyNot) -> list[str]:
 
 
 def learned_lines(learned: Learned, memory: str) -> list[str]:
-    """Return what a lesson taught, and what it left open."""
+    """Return what a lesson taught, and what it left open.
+
+    Parameters
+    ----------
+    learned
+        Answer of ``deixis learn``.
+    memory
+        Name of the memory for the first line.
+
+    Returns
+    -------
+    list of str
+        The lesson, its settled categories and new views, and the objects that are not settled or left out.
+    """
     layout = learned.lesson.layout
     claims = f", {_count(layout.claims, 'claim')}" if layout.claims else ""
     lines = [
@@ -142,7 +201,18 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
 
 
 def check_lines(checked: Check) -> list[str]:
-    """Return the verdict on a table, its errors line by line, and what is undetermined."""
+    """Return the verdict on a table, its errors line by line, and what is undetermined.
+
+    Parameters
+    ----------
+    checked
+        Answer of ``deixis check``.
+
+    Returns
+    -------
+    list of str
+        The verdict first; errors are marked as violations.
+    """
     from deixis.reasoning.comparison.checking import RoleVerdict
     from deixis.reasoning.comparison.claims import ClaimVerdict, violated
 
@@ -199,7 +269,20 @@ def _known_by(entry: RoleCheck) -> str:
 
 
 def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:
-    """Return the counts of a memory, one a line, and its lessons."""
+    """Return the counts of a memory, one a line, and its lessons.
+
+    Parameters
+    ----------
+    counted
+        Number by name, or by name and graph.
+    lessons
+        Ids of the lessons.
+
+    Returns
+    -------
+    list of str
+        One line for each number and each lesson.
+    """
     lines = []
     for name, value in counted.items():
         if isinstance(value, dict):

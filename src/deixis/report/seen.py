@@ -14,7 +14,18 @@ if TYPE_CHECKING:
 
 
 def scene_lines(scene: Scene) -> list[str]:
-    """Return a line for each object: its id, the sides of its box and the place of its centre."""
+    """Return a line for each object: its id, the sides of its box and the place of its centre.
+
+    Parameters
+    ----------
+    scene
+        Scene in pixels or metres.
+
+    Returns
+    -------
+    list of str
+        Lines in pixels, or in centimetres for a scene in metres; one sentence for a scene without objects.
+    """
     unit, scale, digits = ("px", 1, 0) if scene.unit == "px" else ("cm", 100, 1)
     lines = []
     for thing in scene.objects:
@@ -35,18 +46,55 @@ _SHOWN = {
 
 
 def shows_line(shows: str) -> str:
-    """Return the kind of scene that a cloud shows, as a sentence."""
+    """Return the kind of scene that a cloud shows, as a sentence.
+
+    Parameters
+    ----------
+    shows
+        Kind of scene: ``table``, ``tables``, ``object``, ``room`` or ``nothing``.
+
+    Returns
+    -------
+    str
+        Sentence for the terminal.
+    """
     return _SHOWN[shows]
 
 
 def taught_line(taught: Taught, name: str) -> str:
-    """Return the category of a taught view, and how many views the category now has."""
+    """Return the category of a taught view, and how many views the category now has.
+
+    Parameters
+    ----------
+    taught
+        Result of teaching a view.
+    name
+        Id of the object in its scene.
+
+    Returns
+    -------
+    str
+        Sentence for the terminal; it names the earlier category of a corrected view.
+    """
     corrected = f", no longer of '{taught.before}'" if taught.before else ""
     return f"{name} is a view of '{taught.category}'{corrected}; {taught.views} in all."
 
 
 def meant_lines(said: str, known: str) -> list[str]:
-    """Return a line that names the category of a word where their spelling differs by case."""
+    """Return a line that names the category of a word where their spelling differs by case.
+
+    Parameters
+    ----------
+    said
+        Category as the user wrote it.
+    known
+        Category as the memory spells it.
+
+    Returns
+    -------
+    list of str
+        One line; none where the spellings are equal.
+    """
     return [] if said == known else [f"'{said}' is read as '{known}', which differs only by case."]
 
 
@@ -62,6 +110,18 @@ def recognised_lines(found: Recognised, why: bool = False) -> list[str]:
 
     With ``why``, each line is followed by the reasons for the label, and by the distances of the candidates. An object
     that was compared with no view has its reason in its line.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis recognise``.
+    why
+        True to add the reasons and distances.
+
+    Returns
+    -------
+    list of str
+        The lines, marked as doubt for unknown things; one sentence if no object has a cloud.
     """
     width = max((len(name) for name in found.answers), default=0)
     lines: list[str] = []
@@ -88,6 +148,16 @@ def answer_words(answer: Recognition) -> str:
     """Return a label and its probability.
 
     Without a label, return ``unknown`` with the probability of an unknown thing, then the most likely candidates.
+
+    Parameters
+    ----------
+    answer
+        Recognition of one object.
+
+    Returns
+    -------
+    str
+        Label or ``unknown``, its probability, and at most :data:`MAX_NAMES` candidates.
     """
     listed = [one for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
     perhaps = "".join(f", {one.category} {one.probability:.2f}" for one in listed) if answer.label is None else ""
@@ -99,6 +169,16 @@ def recognised_to_dict(found: Recognised) -> dict[str, Any]:
 
     The probabilities of the candidates and of ``unknown``, the case of no known category, sum to 1. A thing has a
     label where its probability is at least ``min_probability``.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis recognise``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with a list ``objects``. Probabilities are rounded to 6 digits.
     """
     from deixis.perception.recognition.settings import MIN_LABEL_PROBABILITY
 

@@ -17,13 +17,35 @@ MAX_CONFLICT_LISTED = 50
 
 
 def solved_lines(solved: SolvedNetwork) -> Iterator[str]:
-    """Yield the verdict, then its reasons or the requested explanation."""
+    """Yield the verdict, then its reasons or the requested explanation.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve`` about one network.
+
+    Yields
+    ------
+    str
+        Lines of :func:`verdict_line` and :func:`reason_lines`.
+    """
     yield verdict_line(solved)
     yield from reason_lines(solved)
 
 
 def verdict_line(solved: SolvedNetwork) -> str:
-    """Return the verdict on a network, with its size and the time in seconds."""
+    """Return the verdict on a network, with its size and the time in seconds.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve`` about one network.
+
+    Returns
+    -------
+    str
+        The line, marked as a violation if the network is inconsistent and as doubt if it is undecided.
+    """
     networks = solved.text.networks
     stated = sum(len(network.constraints) for network in networks)
     names = "+".join(network.calculus.name for network in networks)
@@ -36,7 +58,21 @@ def verdict_line(solved: SolvedNetwork) -> str:
 
 
 def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
-    """Yield the reasons for a verdict, or the requested explanation; ``conflict``: a conflict was searched for."""
+    """Yield the reasons for a verdict, or the requested explanation.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve`` about one network.
+    conflict
+        True if a conflict was searched for, so that a missing one is reported as a time limit.
+
+    Yields
+    ------
+    str
+        The boxes of a solution, the contribution of each calculus, at most :data:`MAX_CONFLICT_LISTED` constraints of a
+        conflict, or the steps of a derivation.
+    """
     if solved.reason:
         yield f"    {solved.reason}"
     if solved.boxes and solved.shown:
@@ -69,7 +105,18 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
 
 
 def solved_to_dict(solved: SolvedNetwork) -> dict[str, Any]:
-    """Return a solved network as plain data for JSON."""
+    """Return a solved network as plain data for JSON.
+
+    Parameters
+    ----------
+    solved
+        Answer of ``deixis solve`` about one network.
+
+    Returns
+    -------
+    dict
+        Data for JSON. What was not requested or not found is None; ``seconds`` is the time that the verdict took.
+    """
     networks = solved.text.networks
     return {
         "line": solved.text.line,

@@ -17,7 +17,18 @@ WIDTH = 100
 
 
 def telling_lines(told: Telling) -> list[str]:
-    """Return the text, filled to the width of the terminal, then what it could not say."""
+    """Return the text, filled to the width of the terminal, then what it could not say.
+
+    Parameters
+    ----------
+    told
+        Answer of ``deixis tell``.
+
+    Returns
+    -------
+    list of str
+        Lines of at most :data:`WIDTH` characters unless a word is longer; then the warnings, marked as doubt.
+    """
     lines = textwrap.wrap(told.text, WIDTH, break_long_words=False, break_on_hyphens=False) or ["Nothing is stated."]
     lines += [doubt(f"Not read as it is meant: {content}") for content in told.misread]
     lost = [thing.id for thing in told.objects if thing.found is False]
@@ -27,7 +38,19 @@ def telling_lines(told: Telling) -> list[str]:
 
 
 def telling_to_dict(told: Telling) -> dict[str, Any]:
-    """Return the text, its sentences with the facts that they state, and the words for each object."""
+    """Return the text, its sentences with the facts that they state, and the words for each object.
+
+    Parameters
+    ----------
+    told
+        Answer of ``deixis tell``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``file``, ``text``, ``sentences``, ``objects``, ``left_out``, ``misread`` and
+        ``notes``. ``found`` of an object is False where its words do not single it out.
+    """
     return {
         "file": told.file,
         "text": told.text,

@@ -17,7 +17,24 @@ if TYPE_CHECKING:
 
 
 def chronology_lines(file: str, origin: str, chronology: Chronology, fluents: Sequence[Fluent]) -> list[str]:
-    """Return each fluent with the tightened bounds of its start, its finish and its duration, in seconds."""
+    """Return each fluent with the tightened bounds of its start, its finish and its duration, in seconds.
+
+    Parameters
+    ----------
+    file
+        Name of the file, for the heading.
+    origin
+        Event or time that the seconds count from.
+    chronology
+        Solved network of the fluents.
+    fluents
+        Fluents to list.
+
+    Returns
+    -------
+    list of str
+        A heading and one aligned line for each fluent; then a notice if the bounds are not exact.
+    """
     rows = [
         (
             fluent.id,
@@ -49,13 +66,41 @@ def _caveat(chronology: Chronology) -> list[str]:
 
 
 def held_lines(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> list[str]:
-    """Return which fluents certainly held, and which others may have held."""
+    """Return which fluents certainly held, and which others may have held.
+
+    Parameters
+    ----------
+    certain
+        Fluents that held in every solution.
+    possible
+        Fluents that held in some solution, the certain ones included.
+    chronology
+        Solved network that both were taken from.
+
+    Returns
+    -------
+    list of str
+        One aligned line for each possible fluent, or one sentence where there is none.
+    """
     rows = [("certain" if fluent in certain else "possible", fluent.id, str(fluent.statement)) for fluent in possible]
     return [*(_aligned(rows) if rows else ["No fluent can have held then."]), *_caveat(chronology)]
 
 
 def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
-    """Return the possible Allen relations between two fluents, and the order that is certain."""
+    """Return the possible Allen relations between two fluents, and the order that is certain.
+
+    Parameters
+    ----------
+    a, b
+        Ids of two fluents.
+    chronology
+        Solved network of the fluents.
+
+    Returns
+    -------
+    list of str
+        The relations, then the order of the two if it is certain.
+    """
     names = [relation.name.lower() for relation in chronology.relations(a, b)]
     order = chronology.certain_order(a, b)
     lines = [f"certain: {names[0]}({a}, {b})" if len(names) == 1 else f"possible: {', '.join(names)} ({a}, {b})"]
@@ -63,14 +108,38 @@ def relation_lines(a: str, b: str, chronology: Chronology) -> list[str]:
 
 
 def explanation_lines(explanations: Sequence[Proof[str]], a: str, b: str) -> list[str]:
-    """Return the proofs of what is certain about two fluents or points."""
+    """Return the proofs of what is certain about two fluents or points.
+
+    Parameters
+    ----------
+    explanations
+        Proofs, one for each certain statement.
+    a, b
+        Names of the two fluents or points, for the sentence where there are no proofs.
+
+    Returns
+    -------
+    list of str
+        Lines of the proofs, one proof after another.
+    """
     if not explanations:
         return [f"Nothing is certain about '{a}' and '{b}'."]
     return [line for explanation in explanations for line in explanation.lines()]
 
 
 def conflict_lines(conflict: TemporalConflictError) -> list[str]:
-    """Return the statements that contradict each other, and the proof."""
+    """Return the statements that contradict each other, and the proof.
+
+    Parameters
+    ----------
+    conflict
+        Error of an inconsistent chronology.
+
+    Returns
+    -------
+    list of str
+        The statements with their places, marked as violations; then the advice and the proof.
+    """
     lines = [violation("These cannot all hold:")]
     places = [f"{stated.source}: " if stated.source else "" for stated in conflict.statements]
     lines += [
@@ -81,7 +150,20 @@ def conflict_lines(conflict: TemporalConflictError) -> list[str]:
 
 
 def chronology_to_dict(chronology: Chronology, fluents: Sequence[Fluent]) -> dict[str, Any]:
-    """Return each fluent with its tightened bounds in seconds; an unknown bound is None."""
+    """Return each fluent with its tightened bounds in seconds; an unknown bound is None.
+
+    Parameters
+    ----------
+    chronology
+        Solved network of the fluents.
+    fluents
+        Fluents to list.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``verdict``, ``exact`` (False if more may be certain) and ``fluents``.
+    """
     return {
         "verdict": chronology.status.value,
         "exact": chronology.exact,
@@ -106,13 +188,42 @@ def _bounds(bounds: Bounds) -> dict[str, Any]:
 
 
 def held_to_dict(certain: Sequence[Fluent], possible: Sequence[Fluent], chronology: Chronology) -> dict[str, Any]:
-    """Return the ids of the fluents that certainly held, and of all that may have held."""
+    """Return the ids of the fluents that certainly held, and of all that may have held.
+
+    Parameters
+    ----------
+    certain
+        Fluents that held in every solution.
+    possible
+        Fluents that held in some solution, the certain ones included.
+    chronology
+        Solved network that both were taken from.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``verdict``, ``exact``, ``certain`` and ``possible``.
+    """
     known = {"verdict": chronology.status.value, "exact": chronology.exact}
     return {**known, "certain": [fluent.id for fluent in certain], "possible": [fluent.id for fluent in possible]}
 
 
 def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
-    """Return the possible Allen relations between two fluents; ``certain`` holds the only one, or None."""
+    """Return the possible Allen relations between two fluents, and the order that is certain.
+
+    Parameters
+    ----------
+    a, b
+        Ids of two fluents.
+    chronology
+        Solved network of the fluents.
+
+    Returns
+    -------
+    dict
+        Data for JSON. ``certain`` is the only possible relation, or None; ``order`` is None if the order is not
+        certain.
+    """
     names = [relation.name.lower() for relation in chronology.relations(a, b)]
     order = chronology.certain_order(a, b)
     return {
@@ -127,7 +238,19 @@ def relation_to_dict(a: str, b: str, chronology: Chronology) -> dict[str, Any]:
 
 
 def explanation_to_dict(explanation: Proof[str]) -> dict[str, Any]:
-    """Return a proof as a tree, down to the stated facts."""
+    """Return a proof as a tree, down to the stated facts.
+
+    Parameters
+    ----------
+    explanation
+        Proof of a statement about times.
+
+    Returns
+    -------
+    dict
+        Nested data for JSON: ``conclusion``, ``rule``, ``source`` and ``premises``, which are dictionaries of the same
+        form.
+    """
     return {
         "conclusion": explanation.claim,
         "rule": explanation.rule.value,
@@ -137,7 +260,18 @@ def explanation_to_dict(explanation: Proof[str]) -> dict[str, Any]:
 
 
 def conflict_to_dict(conflict: TemporalConflictError) -> dict[str, Any]:
-    """Return the statements that contradict each other, and the proof."""
+    """Return the statements that contradict each other, and the proof.
+
+    Parameters
+    ----------
+    conflict
+        Error of an inconsistent chronology.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``verdict``, ``minimal``, ``statements`` and ``explanation``.
+    """
     statements = [{"statement": stated.claim, "source": stated.source} for stated in conflict.statements]
     proof = explanation_to_dict(conflict.explanation)
     return {"verdict": "inconsistent", "minimal": conflict.minimal, "statements": statements, "explanation": proof}

@@ -29,7 +29,20 @@ class Split(NamedTuple):
 
 
 def by_things(data: DescribedViews, seed: int) -> Split:
-    """Split by things: half of each category's things to teach (rounded up), the others to ask about."""
+    """Split by things: half of each category's things to teach (rounded up), the others to ask about.
+
+    Parameters
+    ----------
+    data
+        Described views of things by category.
+    seed
+        Seed of the random choice of things, and of the order of the views.
+
+    Returns
+    -------
+    Split
+        Indices of the views that are taught and asked about. A category of one thing is taught only.
+    """
     rng = np.random.default_rng(seed)
     taught = np.zeros(len(data.views), bool)
     for category in data.kinds:
@@ -39,7 +52,20 @@ def by_things(data: DescribedViews, seed: int) -> Split:
 
 
 def by_views(data: DescribedViews, seed: int) -> Split:
-    """Split by views: half of each thing's views to teach (rounded up), the others to ask about."""
+    """Split by views: half of each thing's views to teach (rounded up), the others to ask about.
+
+    Parameters
+    ----------
+    data
+        Described views of things by category.
+    seed
+        Seed of the random choice of views, and of their order.
+
+    Returns
+    -------
+    Split
+        Indices of the views that are taught and asked about. A thing with one view is taught only.
+    """
     rng = np.random.default_rng(seed)
     taught = np.zeros(len(data.views), bool)
     for thing in np.unique(data.instances):
@@ -73,7 +99,22 @@ class Scores:
 
 
 def view_matrix(data: DescribedViews, descriptor: str, tick: Callable[[str], None]) -> Matrix:
-    """Compute D_V (n, n) from each view, a row, to each other; by square roots of spin images."""
+    """Compute D_V (n, n) from each view, a row, to each other; by square roots of spin images.
+
+    Parameters
+    ----------
+    data
+        Described views, n in all.
+    descriptor
+        Name of the descriptor.
+    tick
+        Called with a message after each row.
+
+    Returns
+    -------
+    array
+        Distances in single precision, shape (n, n).
+    """
     sets = [roots(view[SPIN]) if descriptor == SPIN else view[descriptor] for view in data.views]
     packed = PackedViews.of((str(number), rows) for number, rows in enumerate(sets))
     out = np.empty((len(sets), len(sets)), np.float32)
@@ -84,13 +125,41 @@ def view_matrix(data: DescribedViews, descriptor: str, tick: Callable[[str], Non
 
 
 def d2_distances(data: DescribedViews) -> Matrix:
-    """Compute Euclidean distances (n, n) of D2 histograms and extents."""
+    """Compute Euclidean distances (n, n) of D2 histograms and extents.
+
+    Parameters
+    ----------
+    data
+        Described views, n in all.
+
+    Returns
+    -------
+    array
+        Distances, shape (n, n).
+    """
     rows = np.concatenate([view[D2] for view in data.views])
     return np.stack([np.linalg.norm(rows - row, axis=1) for row in rows])
 
 
 def split_scores(data: DescribedViews, distances: Matrix, split: Split, settings: RecognitionSettings | None) -> Scores:
-    """Score one way of naming on one split."""
+    """Score one way of naming on one split.
+
+    Parameters
+    ----------
+    data
+        Described views, n in all.
+    distances
+        Distance from each view, a row, to each other, shape (n, n).
+    split
+        Views to teach and to ask about.
+    settings
+        Settings of the widths by which the distances to each category are divided, or None for plain distances.
+
+    Returns
+    -------
+    Scores
+        Share of correct names, and area under the ROC curve of the detection of unknown categories.
+    """
     kinds = np.array(data.kinds)
     category = np.searchsorted(kinds, data.categories)
     places = [split.taught[category[split.taught] == number] for number in range(len(kinds))]

@@ -27,7 +27,18 @@ Contestants = Mapping[str, Callable[[], Learner]]
 
 
 def contestants(codebook: Codebook) -> Contestants:
-    """Return every learner by name: the paper's as published, then its default settings, then the others."""
+    """Return every learner by name: the paper's as published, then its default settings, then the others.
+
+    Parameters
+    ----------
+    codebook
+        Codebook of spin images for the learners that count words.
+
+    Returns
+    -------
+    dict
+        Function that makes an untaught learner, by name.
+    """
     return {
         EQUATIONS: lambda: InstanceBased(settings=PAPER, name=EQUATIONS),
         THINGS: lambda: InstanceBased(settings=DRAWN, name=THINGS),

@@ -56,26 +56,76 @@ class DescribedViews:
         return tuple(sorted(set(self.categories)))
 
     def of(self, category: str, instances: Iterable[int] | None = None) -> NDArray[np.int64]:
-        """Return the positions of a category's views, or of the given instances only."""
+        """Return the positions of a category's views, or of the given instances only.
+
+        Parameters
+        ----------
+        category
+            Name of a category.
+        instances
+            Numbers of instances, or None for all.
+
+        Returns
+        -------
+        array
+            Positions in ascending order.
+        """
         chosen = np.array(self.categories) == category
         if instances is not None:
             chosen &= np.isin(self.instances, list(instances))
         return np.flatnonzero(chosen)
 
     def at(self, places: NDArray[np.int64]) -> DescribedViews:
-        """Return the views at these positions only."""
+        """Return the views at these positions only.
+
+        Parameters
+        ----------
+        places
+            Positions of views, shape (m,).
+
+        Returns
+        -------
+        DescribedViews
+            The m views in this order, with the numbers of their instances unchanged.
+        """
         categories, views = (tuple(each[place] for place in places) for each in (self.categories, self.views))
         return DescribedViews(self.name, categories, self.instances[places], views)
 
     def instances_of(self, category: str) -> NDArray[np.int64]:
-        """Return the numbers of a category's instances."""
+        """Return the numbers of a category's instances.
+
+        Parameters
+        ----------
+        category
+            Name of a category.
+
+        Returns
+        -------
+        array
+            Numbers in ascending order, each once.
+        """
         return np.unique(self.instances[self.of(category)])
 
 
 def describe_views(
     name: str, things: Iterable[ThingViews], tick: Callable[[str], None] = lambda _: None
 ) -> DescribedViews:
-    """Describe all views, except those in which a describer finds nothing; call ``tick`` for each thing."""
+    """Describe all views, except those in which a describer finds nothing.
+
+    Parameters
+    ----------
+    name
+        Name of the set of views.
+    things
+        Things with the clouds of their views; the position of a thing is the number of its instance.
+    tick
+        Called with a message after each thing.
+
+    Returns
+    -------
+    DescribedViews
+        Usable views with their categories and instances.
+    """
     categories: list[str] = []
     instances: list[int] = []
     views: list[ViewFeatures] = []
@@ -96,8 +146,26 @@ class CacheError(DeixisError, OSError):
 def cached_views(folder: Path | None, key: str, make: Callable[[], DescribedViews]) -> DescribedViews:
     """Return the result of ``make``, read from the file of an earlier call if there is one.
 
-    The file is named after ``key`` and the describers' settings. A file that cannot be read is made again. Raises
-    CacheError if none can be written.
+    The file is named after ``key`` and the describers' settings. A file that cannot be read is made again.
+
+    Parameters
+    ----------
+    folder
+        Folder of the files, or None to keep none.
+    key
+        Text that identifies the input of ``make``.
+    make
+        Function that computes the views.
+
+    Returns
+    -------
+    DescribedViews
+        Views as computed or as read.
+
+    Raises
+    ------
+    CacheError
+        If the file cannot be written.
     """
     if folder is None:
         return make()

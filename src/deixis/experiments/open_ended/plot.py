@@ -17,7 +17,22 @@ Curve = Callable[[Course], NDArray[np.float64]]
 
 
 def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
-    """Draw the courses as PNG, SVG or PDF by the file's ending; raise DeixisError if the file cannot be written."""
+    """Draw the courses: known categories, accuracy and stored instances, a row for each set of views.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+    path
+        File of the picture: ``.png``, ``.svg`` or ``.pdf``.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     figure, axes = new_figure(12.0, 3.6 * len(found.findings) + 0.6, nrows=len(found.findings), ncols=3, squeeze=False)
     panels = (("categories known", known), ("share of all answers right", accuracy), ("instances a category", stored))
     for one, row in zip(found.findings, axes, strict=True):
@@ -41,23 +56,67 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
 
 
 def known(course: Course) -> NDArray[np.float64]:
-    """Return the number of known categories at each answer."""
+    """Return the number of known categories at each answer.
+
+    Parameters
+    ----------
+    course
+        Course of one learner.
+
+    Returns
+    -------
+    array
+        Number after each of n answers, shape (n,).
+    """
     return np.array([answer.known for answer in course.answers], np.float64)
 
 
 def accuracy(course: Course) -> NDArray[np.float64]:
-    """Return the share of correct answers so far, at each answer."""
+    """Return the share of correct answers so far, at each answer.
+
+    Parameters
+    ----------
+    course
+        Course of one learner.
+
+    Returns
+    -------
+    array
+        Share in [0, 1] after each of n answers, shape (n,).
+    """
     right = np.array([answer.right for answer in course.answers], np.float64)
     return np.cumsum(right) / np.arange(1, len(right) + 1)
 
 
 def stored(course: Course) -> NDArray[np.float64]:
-    """Return the stored instances per known category, after each answer."""
+    """Return the stored instances per known category, after each answer.
+
+    Parameters
+    ----------
+    course
+        Course of one learner.
+
+    Returns
+    -------
+    array
+        Mean number of instances after each of n answers, shape (n,).
+    """
     return np.array([answer.stored / answer.known for answer in course.answers])
 
 
 def mean_curve(curves: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return the mean of the curves up to the longest one; a shorter curve keeps its last value."""
+    """Return the mean of the curves up to the longest one; a shorter curve keeps its last value.
+
+    Parameters
+    ----------
+    curves
+        Values by answer, each of shape (n,) with its own n; empty ones are left out.
+
+    Returns
+    -------
+    array
+        Mean values, as many as the longest curve has; empty without curves.
+    """
     length = max(map(len, curves), default=0)
     held = [np.concatenate([curve, np.full(length - len(curve), curve[-1])]) for curve in curves if len(curve)]
     result: NDArray[np.float64] = np.mean(held, axis=0) if held else np.empty(0)

@@ -15,7 +15,18 @@ from deixis.perception.recognition.learners.teaching import End
 
 
 def to_dict(found: OpenEnded) -> dict[str, Any]:
-    """Return the measures of every course, and of every split of single views."""
+    """Return the measures of every course, and of every split of single views.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the plan and a list ``sets``, one entry for each set of views.
+    """
     plan = found.plan
     return {
         "seeds": list(plan.seeds()),
@@ -68,7 +79,18 @@ MEASURES: dict[str, Callable[[CourseResult], float]] = {
 
 
 def lines(found: OpenEnded) -> list[str]:
-    """Return the lines of the text report, from the plan to the figures."""
+    """Return the lines of the text report, from the plan to the figures.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    list of str
+        Lines without spaces at their ends.
+    """
     return [line.rstrip() for line in [*_head(found), *(line for one in found.findings for line in _set(found, one))]]
 
 
@@ -122,6 +144,18 @@ def _single_views(title: str, found: Ways) -> Iterator[str]:
 def spread(values: Sequence[float]) -> str:
     """Format the mean and standard deviation (n - 1); the mean alone for one value.
 
+    Parameters
+    ----------
+    values
+        Results of repetitions, at least one.
+
+    Returns
+    -------
+    str
+        Two decimals below 2; otherwise three significant digits and a deviation with one decimal.
+
+    Examples
+    --------
     >>> spread([0.5, 0.7]), spread([12.0]), spread([171.0, 175.0])
     ('0.60 ± 0.14', '12', '173 ± 2.8')
     """

@@ -82,11 +82,23 @@ class OpenEndedPlan:
     cache: Path | None = None
 
     def quick(self) -> OpenEndedPlan:
-        """Return a smaller plan that takes a minute or two: few of the simulator's kinds, and no meshes."""
+        """Return a smaller plan that takes a minute or two: few of the simulator's kinds, and no meshes.
+
+        Returns
+        -------
+        OpenEndedPlan
+            Plan with at most three orders.
+        """
         return replace(self, orders=min(self.orders, 3), kinds=QUICK_KINDS, meshes=None)
 
     def seeds(self) -> range:
-        """Return the seeds of the orders."""
+        """Return the seeds of the orders.
+
+        Returns
+        -------
+        range
+            Consecutive seeds, one for each order of teaching.
+        """
         return range(self.seed, self.seed + self.orders)
 
 
@@ -115,7 +127,18 @@ class Findings:
     kept_back: Ways
 
     def of(self, contestant: str) -> list[CourseResult]:
-        """Return the courses of one contestant."""
+        """Return the courses of one contestant.
+
+        Parameters
+        ----------
+        contestant
+            Name of a learner.
+
+        Returns
+        -------
+        list of CourseResult
+            One course for each seed.
+        """
         return [one for one in self.taught if one.contestant == contestant]
 
 
@@ -130,7 +153,13 @@ class OpenEnded:
 
 @contextmanager
 def silent(_: int) -> Iterator[Tick]:
-    """Yield a stage that shows no progress."""
+    """Yield a stage that shows no progress.
+
+    Yields
+    ------
+    callable
+        Tick that ignores its message.
+    """
     yield lambda _: None
 
 

@@ -34,7 +34,24 @@ class MeshListError(DeixisError, ValueError):
 
 
 def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> Iterator[ThingViews]:
-    """Yield ``instances`` things of each kind, each in ``views`` views."""
+    """Yield ``instances`` things of each kind, each in ``views`` views.
+
+    Parameters
+    ----------
+    kinds
+        Kinds of things that the simulator can make.
+    instances
+        Number of things of each kind.
+    views
+        Number of views of each thing.
+    seed
+        Seed of the shapes and of the viewpoints.
+
+    Yields
+    ------
+    ThingViews
+        One thing with the clouds of its views.
+    """
     for kind in kinds:
         for number in range(instances):
             one = 10_000 * seed + number
@@ -44,7 +61,13 @@ def simulated(kinds: Iterable[str], instances: int, views: int, seed: int) -> It
 
 
 def meshes_folder() -> Path | None:
-    """Return the folder of the meshes, or None if DEIXIS_DATA does not lead to them."""
+    """Return the folder of the meshes, or None if DEIXIS_DATA does not lead to them.
+
+    Returns
+    -------
+    Path or None
+        Existing folder of the meshes with its ``index.csv``.
+    """
     folder = Path(os.environ.get("DEIXIS_DATA") or ".") / FOLDER
     return folder if os.environ.get("DEIXIS_DATA") and (folder / "index.csv").is_file() else None
 
@@ -52,7 +75,20 @@ def meshes_folder() -> Path | None:
 def rows_of(folder: Path) -> list[tuple[str, Path, bool]]:
     """Return category, file and True if y is up, for every thing in the list.
 
-    Raises MeshListError if the list cannot be read.
+    Parameters
+    ----------
+    folder
+        Folder with ``index.csv``, which has the columns category, file and source.
+
+    Returns
+    -------
+    list of tuple
+        Rows in the order of the list, without those of the category that stands for whole settings.
+
+    Raises
+    ------
+    MeshListError
+        If the list cannot be read.
     """
     try:
         with (folder / "index.csv").open(encoding="utf-8", newline="") as file:
@@ -67,7 +103,27 @@ def rows_of(folder: Path) -> list[tuple[str, Path, bool]]:
 
 
 def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
-    """Yield every thing of each category with two or more, in enough views for ``views`` per category."""
+    """Yield every thing of each category with two or more, in enough views for ``views`` per category.
+
+    Parameters
+    ----------
+    folder
+        Folder with ``index.csv`` and the meshes.
+    views
+        Number of views of each category; its things share them, rounded up.
+    seed
+        Seed of the viewpoints.
+
+    Yields
+    ------
+    ThingViews
+        One thing with the clouds of its views.
+
+    Raises
+    ------
+    MeshListError
+        If the list cannot be read.
+    """
     rows = rows_of(folder)
     counts = Counter(category for category, _, _ in rows)
     for number, (category, file, y_up) in enumerate(rows):
@@ -78,7 +134,23 @@ def from_meshes(folder: Path, views: int, seed: int) -> Iterator[ThingViews]:
 
 
 def listed_meshes(folder: Path) -> Iterator[tuple[str, str, Mesh]]:
-    """Yield category, file and mesh (metres, z up) of every thing that :mod:`.mesh_list` keeps, corrected by it."""
+    """Yield category, file and mesh (metres, z up) of every thing that :mod:`.mesh_list` keeps, corrected by it.
+
+    Parameters
+    ----------
+    folder
+        Folder with ``index.csv`` and the meshes.
+
+    Yields
+    ------
+    tuple
+        Category, path relative to the folder, and mesh.
+
+    Raises
+    ------
+    MeshListError
+        If the list cannot be read.
+    """
     for category, file, y_up in rows_of(folder):
         name = file.relative_to(folder).as_posix()
         if name in EXCLUDED:
@@ -98,6 +170,18 @@ def in_metres(mesh: Mesh) -> Mesh:
     The unit is taken to be the metre if the mesh is then no larger than ``MAX_EXTENT``, otherwise the largest decimal
     part of a metre (decimetre, centimetre, millimetre and so on) for which it is.
 
+    Parameters
+    ----------
+    mesh
+        Mesh in an unknown unit.
+
+    Returns
+    -------
+    Mesh
+        Mesh with scaled vertices.
+
+    Examples
+    --------
     >>> cup = Mesh(np.diag([8.0, 8.0, 9.5]), np.array([[0, 1, 2]], np.int32))
     >>> in_metres(cup).vertices.max().round(3)
     np.float64(0.095)
@@ -108,5 +192,18 @@ def in_metres(mesh: Mesh) -> Mesh:
 
 
 def upright(mesh: Mesh, y_up: bool) -> Mesh:
-    """Return the mesh with z up."""
+    """Return the mesh with z up.
+
+    Parameters
+    ----------
+    mesh
+        Mesh with y or z up.
+    y_up
+        True if y is up.
+
+    Returns
+    -------
+    Mesh
+        Mesh turned by 90° about x if y was up, otherwise the mesh itself.
+    """
     return Mesh(mesh.vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0], mesh.faces) if y_up else mesh

@@ -29,13 +29,37 @@ Map = NDArray[np.int64]
 
 
 def right(assignment: Map, truth: Map) -> NDArray[np.bool_]:
-    """Return True for each object (n1,) that is given its own thing, or left out if it is missing."""
+    """Return True for each object (n1,) that is given its own thing, or left out if it is missing.
+
+    Parameters
+    ----------
+    assignment
+        Thing of each object, or ``UNMATCHED``, shape (n1,).
+    truth
+        Correct thing of each object, or ``UNMATCHED``, shape (n1,).
+
+    Returns
+    -------
+    array
+        True for the correct objects, shape (n1,).
+    """
     same: NDArray[np.bool_] = assignment == truth
     return same
 
 
 def groups(description: RelationGraph) -> list[NDArray[np.int64]]:
-    """Return groups of objects that the description (with kinds) provably cannot distinguish, as node indices."""
+    """Return groups of objects that the description (with kinds) provably cannot distinguish, as node indices.
+
+    Parameters
+    ----------
+    description
+        Description, with the kinds of its objects if it states any.
+
+    Returns
+    -------
+    list of array
+        Indices of the nodes of each group.
+    """
     kinds = description.kinds or (None,) * len(description.nodes)
     found = interchangeable(description, kinds)
     return [np.array([description.index(name) for name in group], dtype=np.int64) for group in found]
@@ -46,6 +70,22 @@ def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence
 
     Each thing counts once, and each missing object of a group counts for one that is left out.
 
+    Parameters
+    ----------
+    assignment
+        Thing of each object, or ``UNMATCHED``, shape (n1,).
+    truth
+        Correct thing of each object, or ``UNMATCHED``, shape (n1,).
+    groups
+        Indices of interchangeable objects, as :func:`groups` returns them.
+
+    Returns
+    -------
+    float
+        Share in [0, 1]; 1 without objects.
+
+    Examples
+    --------
     >>> truth, swapped = np.array([0, 1, 2]), np.array([1, 0, UNMATCHED])
     >>> round(right_up_to_interchangeability(swapped, truth, [np.array([0, 1])]), 2)
     0.67
@@ -62,12 +102,36 @@ def right_up_to_interchangeability(assignment: Map, truth: Map, groups: Sequence
 
 
 def satisfied(evidence: Evidence, assignment: Map) -> int:
-    """Return the number of stated facts that hold for the assigned things, at least in the wide reading."""
+    """Return the number of stated facts that hold for the assigned things, at least in the wide reading.
+
+    Parameters
+    ----------
+    evidence
+        Evidence with the stated facts.
+    assignment
+        Thing of each object, or ``UNMATCHED``, shape (n1,).
+
+    Returns
+    -------
+    int
+        Number of facts with a degree above 0.
+    """
     return int((evidence.degrees(assignment) > 0).sum())
 
 
 def relative(figures: Sequence[float]) -> list[float]:
-    """Return each figure divided by the greatest; nan if that is not above 0."""
+    """Return each figure divided by the greatest; nan if that is not above 0.
+
+    Parameters
+    ----------
+    figures
+        One figure for each contestant.
+
+    Returns
+    -------
+    list of float
+        Ratios in the given order.
+    """
     best = max(figures, default=0.0)
     return [figure / best if best > 0 else float("nan") for figure in figures]
 
@@ -132,22 +196,78 @@ class Board:
         return found
 
     def of(self, contestant: str, group: Group | Setting) -> list[Score]:
-        """Return the scores of one contestant in a group, or in one setting of it."""
+        """Return the scores of one contestant in a group, or in one setting of it.
+
+        Parameters
+        ----------
+        contestant
+            Name of a contestant.
+        group
+            Group of cases, or one setting of it.
+
+        Returns
+        -------
+        list of Score
+            One score for each case; empty if the contestant took none.
+        """
         return self._by_place.get((contestant, group), [])
 
     def by_unit(self, contestant: str, group: Group | Setting, measure: str) -> dict[tuple[Setting, int], float]:
-        """Return the measure for every table or image, averaged over its node orders."""
+        """Return the measure for every table or image, averaged over its node orders.
+
+        Parameters
+        ----------
+        contestant
+            Name of a contestant.
+        group
+            Group of cases, or one setting of it.
+        measure
+            Name of a field of :class:`Score`.
+
+        Returns
+        -------
+        dict
+            Mean by setting and number of the table or image.
+        """
         found: dict[tuple[Setting, int], list[float]] = defaultdict(list)
         for score in self.of(contestant, group):
             found[score.setting, score.unit].append(getattr(score, measure))
         return {unit: float(np.mean(values)) for unit, values in found.items()}
 
     def mean(self, contestant: str, group: Group | Setting, measure: str) -> Interval:
-        """Return the mean of a measure in a group or setting, with its interval."""
+        """Return the mean of a measure in a group or setting, with its interval.
+
+        Parameters
+        ----------
+        contestant
+            Name of a contestant.
+        group
+            Group of cases, or one setting of it.
+        measure
+            Name of a field of :class:`Score`.
+
+        Returns
+        -------
+        Interval
+            Mean over tables or images with its 95 % interval; nan without scores.
+        """
         return interval(list(self.by_unit(contestant, group, measure).values()))
 
     def comparisons(self, measure: str, seed: int) -> list[EngineComparison]:
-        """Compare the default with each other contestant in each group, on the same cases; adjust by Holm."""
+        """Compare the default with each other contestant in each group, on the same cases; adjust by Holm.
+
+        Parameters
+        ----------
+        measure
+            Name of a field of :class:`Score`.
+        seed
+            Seed of the permutation tests.
+
+        Returns
+        -------
+        list of EngineComparison
+            One comparison for each group and contestant with cases in common; positive differences favour the default.
+        """
         default, *others = (contestant.name for contestant in self.contestants)
         found = []
         for group in self.groups:
@@ -165,7 +285,18 @@ class Board:
 
 
 def median_seconds(scores: Sequence[Score]) -> float:
-    """Return the median time of the scores, of which there must be at least one."""
+    """Return the median time of the scores, of which there must be at least one.
+
+    Parameters
+    ----------
+    scores
+        Scores, at least one.
+
+    Returns
+    -------
+    float
+        Time in seconds.
+    """
     return float(np.median([score.seconds for score in scores]))
 
 

@@ -28,7 +28,27 @@ class Forecasts:
 
     @classmethod
     def of(cls, contestant: str, case: Case, answer: ContestantAnswer) -> Forecasts:
-        """Return the matches of an answer; raise ValueError if it gives no probabilities."""
+        """Return the matches of an answer with their probabilities.
+
+        Parameters
+        ----------
+        contestant
+            Name of the contestant.
+        case
+            Case with the correct assignment.
+        answer
+            Answer of the contestant to the case.
+
+        Returns
+        -------
+        Forecasts
+            One forecast for each matched object; objects left out have none.
+
+        Raises
+        ------
+        ValueError
+            If the answer has no probabilities.
+        """
         if answer.marginals is None:
             raise ValueError(f"{contestant} gives no probabilities")
         matched = np.flatnonzero(answer.assignment != UNMATCHED)
@@ -67,6 +87,18 @@ class Reliability:
 def calibration(forecasts: Sequence[Forecasts]) -> Reliability:
     """Compute the reliability of all matches together, in bins of equal width.
 
+    Parameters
+    ----------
+    forecasts
+        Forecasts of one or more cases.
+
+    Returns
+    -------
+    Reliability
+        Bins from 0 to 1, calibration error, share of decided matches and their precision; nan without matches.
+
+    Examples
+    --------
     >>> said = np.array([0.65, 0.65, 1.0, 1.0])
     >>> found = calibration([Forecasts("exact", Group(2, 0.0), said, np.array([True, False, True, True]))])
     >>> round(found.error, 3), found.decided, found.precision

@@ -79,7 +79,17 @@ class Case:
     def evidence(self, meaning: Meaning, learned: bool = False) -> Evidence:
         """Return the input of an engine: facts, and sizes if the description states kinds; without labels.
 
-        With ``learned``, words and sizes are those learned from other cases, by the weights of the meaning.
+        Parameters
+        ----------
+        meaning
+            Meaning of the words and weights of the evidence.
+        learned
+            True to use the words and sizes that were learned from other cases, by the weights of the meaning.
+
+        Returns
+        -------
+        Evidence
+            Evidence about n1 objects and n2 things.
         """
         if learned and self.learned is not None:
             meaning = replace(self.learned, weights=meaning.weights)
@@ -95,7 +105,18 @@ class Case:
         )
 
     def shuffled(self, rng: np.random.Generator) -> Case:
-        """Return the same case in a random order of objects and of things."""
+        """Return the same case in a random order of objects and of things.
+
+        Parameters
+        ----------
+        rng
+            Random generator of the order.
+
+        Returns
+        -------
+        Case
+            Case whose ``truth`` refers to the new order.
+        """
         rows, columns = rng.permutation(len(self.truth)), rng.permutation(len(self.boxes))
         place = np.append(np.argsort(columns), -1)  # position of each thing in the new order; the last is for UNMATCHED
         nodes = [self.description.nodes[i] for i in rows]
@@ -116,7 +137,22 @@ def _names(count: int) -> tuple[str, ...]:
 
 
 def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
-    """Return table ``number`` of a setting; tables of different settings are drawn independently."""
+    """Return table ``number`` of a setting; tables of different settings are drawn independently.
+
+    Parameters
+    ----------
+    setting
+        Number of objects, share of wrong facts, facts per object, and whether things are missing and extra.
+    number
+        Number of the table.
+    seed
+        Seed of the experiment.
+
+    Returns
+    -------
+    GeneratedTable
+        The same table for the same arguments.
+    """
     drawn = np.random.SeedSequence(
         [
             seed,
@@ -134,7 +170,24 @@ def table(setting: Setting, number: int, seed: int) -> GeneratedTable:
 
 
 def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds: bool = False) -> Iterator[Case]:
-    """Yield ``count`` tables of each setting; with ``kinds`` the descriptions state the kind of each object."""
+    """Yield generated tables of each setting, in a random order of objects and things.
+
+    Parameters
+    ----------
+    settings
+        Settings of the tables.
+    count
+        Number of tables of each setting.
+    seed
+        Seed of the tables and of the orders.
+    kinds
+        True if the descriptions state the kind of each object.
+
+    Yields
+    ------
+    Case
+        One case for each table.
+    """
     for setting in settings:
         for number in range(count):
             drawn = table(setting, number, seed)
@@ -144,7 +197,31 @@ def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds
 
 
 def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, learn: bool = False) -> Iterator[Case]:
-    """Yield at most ``most`` photographs in ``orders`` random orders; with ``learn``, meanings come from the others."""
+    """Yield photographs, each in several random orders of objects and things.
+
+    Parameters
+    ----------
+    folder
+        Folder of the annotations.
+    orders
+        Number of orders of each photograph.
+    most
+        Maximum number of photographs, or None for all.
+    seed
+        Seed of the orders and of the folds.
+    learn
+        True to add the meanings that were learned from the photographs of other folds.
+
+    Yields
+    ------
+    Case
+        One case for each photograph and order; its boxes are in pixels.
+
+    Raises
+    ------
+    PhotographError
+        If the files are not annotations of photographs.
+    """
     setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
     images = list(photographs(folder, default_ontology()))
     learned = learned_meanings(images, seed) if learn else [None] * len(images)

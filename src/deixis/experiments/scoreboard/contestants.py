@@ -44,7 +44,18 @@ class Contestant:
     lacking: str = ""  # the reason why it cannot run at all
 
     def enters(self, case: Case) -> bool:
-        """Return True if the contestant can take the case."""
+        """Return True if the contestant can take the case.
+
+        Parameters
+        ----------
+        case
+            Case of the scoreboard.
+
+        Returns
+        -------
+        bool
+            False for a case that is too large, or that has no learned meaning where the contestant needs one.
+        """
         return case.setting.size <= self.most and (case.learned is not None or not self.learned)
 
 
@@ -58,7 +69,30 @@ def engine(
     ablation: bool = False,
     learned: bool = False,
 ) -> Contestant:
-    """Return a shipped engine as a contestant, optionally under another name and with another meaning."""
+    """Return a shipped engine as a contestant, optionally under another name and with another meaning.
+
+    Parameters
+    ----------
+    name
+        Name of a shipped engine.
+    settings
+        Description of the settings, for the report.
+    called
+        Name of the contestant; empty for that of the engine.
+    most
+        Maximum number of objects of its cases.
+    meaning
+        Meaning of the words and weights of the evidence.
+    ablation
+        True if a part is switched off.
+    learned
+        True to use the meaning that was learned from other cases.
+
+    Returns
+    -------
+    Contestant
+        Contestant that gives probabilities if the engine does.
+    """
 
     def solve(evidence: Evidence, deadline: Deadline) -> ContestantAnswer:
         found = engine_named(name).align(evidence, deadline)
@@ -72,7 +106,26 @@ def engine(
 def peer(
     name: str, settings: str, solve: Callable[[Problem, float], ContestantAnswer], *, most: int, lacking: str = ""
 ) -> Contestant:
-    """Return another solver of the problem (graded meaning) as a contestant; it receives the remaining seconds."""
+    """Return another solver of the problem (graded meaning) as a contestant.
+
+    Parameters
+    ----------
+    name
+        Name of the contestant.
+    settings
+        Description of the settings, for the report.
+    solve
+        Function of the problem and the remaining time in seconds.
+    most
+        Maximum number of objects of its cases.
+    lacking
+        Reason why it cannot take part, such as a package that is not installed; empty if it can.
+
+    Returns
+    -------
+    Contestant
+        Contestant of the scoreboard.
+    """
     return Contestant(
         name,
         settings,
@@ -83,7 +136,13 @@ def peer(
 
 
 def engines() -> list[Contestant]:
-    """Return the shipped engines, the default first, and the default with words taken literally."""
+    """Return the shipped engines, the default first, and the default with words taken literally.
+
+    Returns
+    -------
+    list of Contestant
+        Contestants with their settings.
+    """
     return [
         engine(EngineName.EXACT, "the default: branch and bound to the time limit, with probabilities"),
         engine(EngineName.SCALABLE, "annealing and belief propagation, with probabilities"),
@@ -95,7 +154,13 @@ def engines() -> list[Contestant]:
 
 
 def ablations() -> list[Contestant]:
-    """Return the default engine with and without graded meaning and sizes, and, on photographs, with learned ones."""
+    """Return the default engine with and without graded meaning and sizes, and, on photographs, with learned ones.
+
+    Returns
+    -------
+    list of Contestant
+        Variants of the default engine, the unchanged one first.
+    """
     no_sizes = UnaryWeights(labels=1.0, sizes=0.0)
     variants = {
         DEFAULT: SHIPPED,

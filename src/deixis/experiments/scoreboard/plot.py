@@ -33,7 +33,22 @@ NOISES = ("#1f4e79", "#e0a02c", "#c0392b")
 
 
 def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
-    """Draw the scoreboard as PNG, SVG or PDF by the file's ending; raise DeixisError if the file cannot be written."""
+    """Draw the scoreboard: accuracy by size and noise, times, limits, calibration and ablations.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+    path
+        File of the picture: ``.png``, ``.svg`` or ``.pdf``.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written, or its ending is not that of a picture.
+    MissingExtraError
+        If matplotlib is not installed.
+    """
     figure, axes = new_figure(12.0, 10.2, nrows=3, ncols=3)
     panels = iter(axes.ravel())
     offs = found.plan.off[:3]

@@ -15,7 +15,18 @@ from deixis.experiments.scoreboard.run import Scoreboard
 
 
 def to_dict(found: Scoreboard) -> dict[str, Any]:
-    """Return the contents of the text, and the means of every single setting."""
+    """Return the contents of the text, and the means of every single setting.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    dict
+        Data for JSON; an unknown figure (nan) is None.
+    """
     plan = found.plan
     comparisons = {measure: found.main.comparisons(measure, plan.seed) for measure in ("right", "grouped")}
     data = {
@@ -82,7 +93,18 @@ ACROSS = 6
 
 
 def lines(found: Scoreboard) -> list[str]:
-    """Return the lines of the text report, from the plan to the conclusions."""
+    """Return the lines of the text report, from the plan to the conclusions.
+
+    Parameters
+    ----------
+    found
+        Results of the experiment.
+
+    Returns
+    -------
+    list of str
+        Lines of the plan, the boards, the limits, the calibration and the tests of significance.
+    """
     return [
         *_head(found),
         "",
@@ -212,7 +234,19 @@ def _cell(one: EngineComparison | None) -> str:
 
 
 def verdict(comparisons: Sequence[EngineComparison]) -> str:
-    """Return a sentence: where the default is significantly worse than another, or that it is nowhere."""
+    """Return a sentence: where the default is significantly worse than another, or that it is nowhere.
+
+    Parameters
+    ----------
+    comparisons
+        Comparisons of the default with the others by one measure.
+
+    Returns
+    -------
+    str
+        The contestants that are better, each with its group and the mean difference; or the number of comparisons and
+        the smallest uncorrected p.
+    """
     worse = [one for one in comparisons if one.verdict == "worse"]
     if worse:
         where = "; ".join(f"{one.other} ({one.group}, {one.difference.mean:+.2f})" for one in worse)

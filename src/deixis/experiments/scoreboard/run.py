@@ -53,7 +53,13 @@ class ScoreboardPlan:
     orders: int = 3  # node orders of a photograph
 
     def quick(self) -> ScoreboardPlan:
-        """Return a smaller plan that takes a minute or two."""
+        """Return a smaller plan that takes a minute or two.
+
+        Returns
+        -------
+        ScoreboardPlan
+            Plan with few cases, sizes and photographs, and at most 0.5 s for each case.
+        """
         return replace(
             self,
             cases=min(self.cases, 2),
@@ -66,32 +72,94 @@ class ScoreboardPlan:
         )
 
     def only(self, sizes: Sequence[int]) -> ScoreboardPlan:
-        """Return the plan with tables of these sizes alone; the photographs stay."""
+        """Return the plan with tables of these sizes alone; the photographs stay.
+
+        Parameters
+        ----------
+        sizes
+            Numbers of objects, in any order.
+
+        Returns
+        -------
+        ScoreboardPlan
+            Plan with these sizes in ascending order.
+        """
         chosen = tuple(sorted(set(sizes)))
         ablated = tuple(size for size in self.ablated_sizes if size in chosen)
         return replace(self, sizes=chosen, ablated_sizes=ablated)
 
     def count(self, objects: int) -> int:
-        """Return the number of tables of each setting of a size."""
+        """Return the number of tables of each setting of a size.
+
+        Parameters
+        ----------
+        objects
+            Number of objects of a table.
+
+        Returns
+        -------
+        int
+            Number of tables; larger tables get fewer.
+        """
         least = min(self.cases, MIN_CASES)
         share = next((share for size, share in SHARES.items() if objects <= size), min(SHARES.values()))
         return max(least, round(self.cases * (1.0 if objects <= SMALL else share)))
 
     def settings(self, objects: int) -> list[Setting]:
-        """Return the settings of tables of that many objects."""
+        """Return the settings of tables of that many objects.
+
+        Parameters
+        ----------
+        objects
+            Number of objects of a table.
+
+        Returns
+        -------
+        list of Setting
+            All combinations of the shares of wrong facts and the numbers of facts, with and without changed things.
+        """
         return [
             Setting(objects, off, facts, changed)
             for off, facts, changed in product(self.off, self.facts_each, (False, True))
         ]
 
     def generated(self, sizes: Sequence[int], *, kinds: bool = False) -> Iterator[Case]:
-        """Yield the generated cases of these sizes."""
+        """Yield the generated cases of these sizes.
+
+        Parameters
+        ----------
+        sizes
+            Numbers of objects.
+        kinds
+            True if the descriptions state the kind of each object.
+
+        Yields
+        ------
+        Case
+            Cases of all settings of these sizes, size by size.
+        """
         return chain.from_iterable(
             generated_cases(self.settings(size), self.count(size), self.seed, kinds=kinds) for size in sizes
         )
 
     def photographed(self, *, learn: bool = False) -> Iterator[Case]:
-        """Yield the cases from photographs, if the plan has a folder of them."""
+        """Yield the cases from photographs, if the plan has a folder of them.
+
+        Parameters
+        ----------
+        learn
+            True to add the meanings that were learned from the photographs of other folds.
+
+        Yields
+        ------
+        Case
+            One case for each photograph and order.
+
+        Raises
+        ------
+        PhotographError
+            If the files are not annotations of photographs.
+        """
         if self.photographs is None:
             return iter(())
         return photograph_cases(self.photographs, self.orders, self.most_photographs, self.seed, learn=learn)
@@ -121,7 +189,13 @@ class Scoreboard:
     skipped: tuple[str, ...]
 
     def calibrations(self) -> dict[str, Reliability]:
-        """Return the calibration of the default engine: by noise, small and large tables apart, and of photographs."""
+        """Return the calibration of the default engine: by noise, small and large tables apart, and of photographs.
+
+        Returns
+        -------
+        dict of str to Reliability
+            Calibration by the name of the pool; pools without cases are left out.
+        """
         pools = {f"up to {SMALL}, {100 * off:.0f} % off": (off, 1, SMALL) for off in self.plan.off}
         pools |= {f"larger, {100 * off:.0f} % off": (off, SMALL + 1, max(self.plan.sizes)) for off in self.plan.off}
         pools["photographs"] = (0.0, PHOTOGRAPHS, PHOTOGRAPHS)
@@ -186,7 +260,18 @@ def run(
 
 
 def steps(plan: ScoreboardPlan) -> int:
-    """Return the number of ticks of a run."""
+    """Return the number of ticks of a run.
+
+    Parameters
+    ----------
+    plan
+        Plan of the run.
+
+    Returns
+    -------
+    int
+        Number of cases and limits to compute. Photographs count twice: for the board and for the ablations.
+    """
     tables = sum(plan.count(size) * len(plan.settings(size)) for size in (*plan.sizes, *plan.ablated_sizes))
     limits = sum(len(plan.settings(size)) // 2 for size in plan.limited_sizes if size in plan.sizes)
     return tables + limits + 2 * sum(1 for _ in plan.photographed())

@@ -27,6 +27,18 @@ class Interval:
 def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
     """Return the mean of the known values (not nan), with its 95 per cent interval by Student's t.
 
+    Parameters
+    ----------
+    values
+        Figures of independent cases; nan stands for an unknown one.
+
+    Returns
+    -------
+    Interval
+        Mean, half width (nan for fewer than two known values) and number of known values.
+
+    Examples
+    --------
     >>> found = interval([0.0, 1.0, 1.0])
     >>> round(found.mean, 3), round(found.half, 3), found.count
     (0.667, 1.434, 3)
@@ -48,6 +60,20 @@ def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> f
 
     All signs are tried if there are few of them, otherwise 9,999 random ones.
 
+    Parameters
+    ----------
+    differences
+        Differences of paired cases; differences of 0 are left out.
+    seed
+        Seed of the random signs.
+
+    Returns
+    -------
+    float
+        p in [0, 1]; 1 for fewer than two differences.
+
+    Examples
+    --------
     >>> paired_p([0.1] * 6, seed=0)
     0.03125
     """
@@ -72,6 +98,18 @@ def paired_p(differences: Sequence[float] | NDArray[np.float64], seed: int) -> f
 def holm(ps: Sequence[float]) -> list[float]:
     """Return the p values adjusted for their number (Holm 1979), in the order given.
 
+    Parameters
+    ----------
+    ps
+        p values of the comparisons.
+
+    Returns
+    -------
+    list of float
+        Adjusted values, at most 1.
+
+    Examples
+    --------
     >>> [round(p, 3) for p in holm([0.01, 0.04, 0.03])]
     [0.03, 0.06, 0.06]
     """
