@@ -33,6 +33,13 @@ EXCEPTION = 0.02
 UNEXPLAINED = 0.5
 """Factor of the probability of an example to which no rule applies, against a guess."""
 
+BY_CHANCE = 1e-4
+"""Fit of a thing to a place by mere chance, less than one in the number of all kinds: a fit below it, as by size alone,
+decides little."""
+
+LEAST_REASON = 0.25
+"""Share of the decision from which on the rule behind it is named."""
+
 SMALLEST = 3.0
 """Number added to the size of a concept, since the lexicon lacks some of its kinds."""
 
@@ -225,7 +232,7 @@ class Habits:
             place = self.examples[thing]
             return Placement(thing, place, 1.0, ((place, 1.0),), "example", known)
         fits = np.array([meant.fit(concepts) for meant in self._classes])
-        fixed = np.zeros(len(self.places))
+        fixed = np.full(len(self.places), BY_CHANCE)
         for concept, stated_place in self._stated:
             fixed[stated_place] += _stated_fit(concept) if concept in concepts else 0.0
         similar, total = self._similar(fits), sum(self._descriptions.values())
@@ -234,11 +241,12 @@ class Habits:
             scores = fixed.copy()
             for number, goal in chosen:
                 scores[goal] += fits[number]
-            found += weight / total * (_normalised(scores, EXCEPTION) if scores.any() else similar)
+            ruled = scores.sum() > BY_CHANCE * len(scores)
+            found += weight / total * (_normalised(scores, EXCEPTION) if ruled else similar)
             for number, _ in chosen:
-                reasons[number] += weight * fits[number] / scores.sum() if fits[number] else 0.0
+                reasons[number] += weight * fits[number] / scores.sum()
         because = next((concept.words for concept, _ in self._stated if concept in concepts), None)
-        if because is None and reasons.any():
+        if because is None and reasons.max(initial=0.0) >= LEAST_REASON * total:
             because = self._classes[int(reasons.argmax())].likeliest.words
         ranked = tuple((self.places[k], float(found[k])) for k in np.argsort(-found, kind="stable").tolist())
         return Placement(thing, *ranked[0], ranked, because, known)
@@ -327,7 +335,7 @@ class Habits:
 
     def _similar(self, fits: Array) -> Array:
         """Return the probabilities of the places by all concepts that a thing shares with examples."""
-        scores = np.zeros(len(self.places))
+        scores = np.full(len(self.places), BY_CHANCE)
         for meant, fit in zip(self._classes, fits.tolist(), strict=True):
             if fit:
                 inside = np.bincount(self._labels[meant.covered], minlength=len(self.places))
