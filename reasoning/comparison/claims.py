@@ -400,5 +400,16 @@ _OF_ONE = frozenset(
 
 
 def violated(outcomes: Sequence[ClaimOutcome]) -> Iterator[ClaimOutcome]:
-    """Yield the violated claims that are not hedged, which are faults of a table."""
+    """Yield the violated claims that are not hedged, which are faults of a table.
+
+    Parameters
+    ----------
+    outcomes
+        Outcomes of the claims about a table.
+
+    Yields
+    ------
+    ClaimOutcome
+        Violated claims with a weight of at least 1, in the order of ``outcomes``.
+    """
     return (entry for entry in outcomes if entry.verdict is ClaimVerdict.VIOLATED and entry.claim.weight >= 1)

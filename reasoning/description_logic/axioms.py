@@ -86,6 +86,16 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
 
     ``owl:imports`` is dropped, so that no import is followed. A property that relates individuals without a declaration
     is declared, since a description-logic reasoner would treat it as an annotation property.
+
+    Parameters
+    ----------
+    triples
+        Triples of an ontology.
+
+    Returns
+    -------
+    Axioms
+        The axioms, the declarations, and the annotations.
     """
     triples = list(dict.fromkeys(triples))
     about: dict[str, list[Triple]] = defaultdict(list)

@@ -109,9 +109,25 @@ def entail(ntriples: str, engine: LogicEngine | str = LogicEngine.AUTO, time_lim
 
 
 def explained(ntriples: str, found: Entailment, deadline: Deadline, every: bool = False) -> Entailment:
-    """Return a result with a justification of each impossibility, or with ``every``, with all justifications.
+    """Return a result with a justification of each impossibility, or with all of them.
 
     The verdict does not change; at the deadline, the result has the justifications found so far.
+
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples.
+    found
+        Result of an engine for this ontology.
+    deadline
+        End of the time limit.
+    every
+        Whether to find all justifications; by default, one of each impossibility.
+
+    Returns
+    -------
+    Entailment
+        Copy of ``found`` with the justifications.
     """
     why: list[Justification] = []
     unexplained = None
@@ -172,7 +188,23 @@ def unsatisfiable_by_rules(triples: Iterable[Triple], deadline: Deadline = Deadl
     """Return the IRIs of the named classes that the rules find unsatisfiable, sorted.
 
     Each class is given its own member; a contradiction that depends on a member only affects the class of that member.
-    Raises LimitError at the deadline.
+
+    Parameters
+    ----------
+    triples
+        Triples of an ontology in which the rules find no contradiction.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    tuple of str
+        IRIs of the classes.
+
+    Raises
+    ------
+    LimitError
+        The deadline passed.
     """
     triples = list(triples)
     classes = {t.subject for t in triples if t.predicate == TYPE and t.object == CLASS and not is_blank(t.subject)}

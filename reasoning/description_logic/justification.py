@@ -56,7 +56,23 @@ _OURS = tuple(f"<{PREFIXES[name]}" for name in ("rdf", "rdfs", "owl"))
 
 
 def denial(triple: Triple) -> tuple[Triple, ...]:
-    """Return the triples that deny a statement about named resources; raise SettingError for other statements."""
+    """Return the triples that deny a statement about named resources.
+
+    Parameters
+    ----------
+    triple
+        Statement of one of the kinds that :func:`justify` explains.
+
+    Returns
+    -------
+    tuple of Triple
+        Triples that contradict the ontology if and only if it entails the statement.
+
+    Raises
+    ------
+    SettingError
+        The statement is not about named resources, or of another kind.
+    """
     subject, predicate, obj = triple
     if any(is_blank(part) for part in triple):
         raise SettingError(f"a statement to explain must be about named resources, got {triple}")
@@ -132,6 +148,11 @@ def justify(ntriples: str, entailed: Triple | None = None, deadline: Deadline = 
     deadline
         Time limit.
 
+    Returns
+    -------
+    Justification
+        A set of axioms from which the statement follows, and from no proper subset of which it follows.
+
     Raises
     ------
     NotEntailedError
@@ -156,8 +177,30 @@ def justify_all(
 
     The search is a hitting set tree (Reiter, *A theory of diagnosis from first principles*, Artificial Intelligence 32,
     1987): it removes one axiom of each known justification in all combinations, smaller sets first, and justifies the
-    statement again if it still follows. There may be exponentially many justifications. Raises the errors of
-    :func:`justify`, and LimitError if the deadline passes before all are known.
+    statement again if it still follows. There may be exponentially many justifications.
+
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples.
+    entailed
+        A statement as for :func:`justify`; None stands for the inconsistency.
+    deadline
+        End of the time limit.
+
+    Yields
+    ------
+    Justification
+        A justification; no two are equal, and none contains another one.
+
+    Raises
+    ------
+    NotEntailedError
+        The statement does not follow, or the ontology is consistent.
+    LimitError
+        The deadline passes before all justifications are known.
+    SettingError
+        The statement is of a kind that cannot be explained.
     """
     parts = split_axioms(read_ntriples(ntriples))
     first = justify(ntriples, entailed, deadline)

@@ -52,7 +52,24 @@ class Materialisation:
     def add(self, triples: Iterable[Triple], deadline: Deadline = Deadline.never()) -> tuple[Triple, ...]:
         """Add triples, and return the triples that follow now and did not before, in the order found.
 
-        Raises LimitError at the deadline; the materialisation must be started again then.
+        After a LimitError, the materialisation must be started again.
+
+        Parameters
+        ----------
+        triples
+            Stated triples.
+        deadline
+            End of the time limit.
+
+        Returns
+        -------
+        tuple of Triple
+            Derived triples.
+
+        Raises
+        ------
+        LimitError
+            The deadline passed.
         """
         facts = [self._chaining.terms.fact(triple) for triple in triples]
         return tuple(map(self._triple, self._chaining.add(facts, deadline)))
@@ -79,7 +96,20 @@ class Materialisation:
     def derivation(self, triples: Iterable[Triple]) -> tuple[InferenceStep, ...]:
         """Return the steps from stated triples to these triples, each once and after its premises.
 
-        Raises NotEntailedError for a triple that does not follow.
+        Parameters
+        ----------
+        triples
+            Triples that follow.
+
+        Returns
+        -------
+        tuple of InferenceStep
+            Steps, each with its rule, its premises and its conclusion.
+
+        Raises
+        ------
+        NotEntailedError
+            A triple does not follow.
         """
         steps: dict[Fact, InferenceStep] = {}
         for triple in triples:

@@ -59,10 +59,17 @@ class ObjectView:
         base
             Start of the IRIs that become attributes of the view's ontology.
 
+        Returns
+        -------
+        ObjectView
+            The view, to be used in a ``with`` statement or closed.
+
         Raises
         ------
         TriplesError
             If the document is not N-Triples.
+        ReasonerError
+            If owlready2 is not installed.
         """
         triples = read_ntriples(ntriples)
         classes = {triple.subject for triple in triples if triple.predicate == TYPE and triple.object == CLASS}
@@ -93,17 +100,55 @@ class ObjectView:
         return self._ontology
 
     def classes(self) -> Iterator[Any]:
-        """Return all named classes."""
+        """Return all named classes.
+
+        Returns
+        -------
+        iterator
+            Classes of owlready2.
+
+        Raises
+        ------
+        ReasonerError
+            The view is closed.
+        """
         found: Iterator[Any] = self.world.classes()
         return found
 
     def individuals(self) -> Iterator[Any]:
-        """Return all named individuals."""
+        """Return all named individuals.
+
+        Returns
+        -------
+        iterator
+            Individuals of owlready2.
+
+        Raises
+        ------
+        ReasonerError
+            The view is closed.
+        """
         found: Iterator[Any] = self.world.individuals()
         return found
 
     def search(self, **what: Any) -> list[Any]:
-        """Return the entities that ``World.search`` finds: ``iri="*fork"``, ``label="fork"``, ``type=…``, and so on."""
+        """Return the entities that ``World.search`` finds: ``iri="*fork"``, ``label="fork"``, ``type=…``, and so on.
+
+        Parameters
+        ----------
+        **what
+            Conditions by the name of the attribute, in which ``*`` stands for any text.
+
+        Returns
+        -------
+        list
+            Entities of owlready2.
+
+        Raises
+        ------
+        ReasonerError
+            The view is closed.
+        """
         return list(self.world.search(**what))
 
     def __getitem__(self, iri: str) -> Any:

@@ -28,6 +28,18 @@ _BUILT_IN_PROPERTY = re.compile(r"\^?<http://www\.w3\.org/2002/07/owl#(top|botto
 def hermit_facts(text: str) -> Iterator[Triple]:
     """Yield direct super-classes and types, equivalences as super-classes of each other, and property values.
 
+    Parameters
+    ----------
+    text
+        Output of HermiT in functional syntax.
+
+    Yields
+    ------
+    Triple
+        A fact as HermiT states it, before transitive closure.
+
+    Examples
+    --------
     >>> [str(fact) for fact in hermit_facts("Type( <urn:f> <urn:Fork> )")]
     ['<urn:f> <http://www.w3.org/1999/02/22-rdf-syntax-ns#type> <urn:Fork> .']
     """
@@ -52,7 +64,18 @@ def _equivalent(names: list[str], predicate: str) -> Iterator[Triple]:
 
 
 def pellet_facts(text: str) -> Iterator[Triple]:
-    """Yield the facts in Pellet's tree, whose lines are ``class = class - (individual, …)``, indented by depth."""
+    """Yield the facts in Pellet's tree, whose lines are ``class = class - (individual, …)``, indented by depth.
+
+    Parameters
+    ----------
+    text
+        Output of Pellet: its tree of classes.
+
+    Yields
+    ------
+    Triple
+        A direct super-class, the class of an individual, or a relation between individuals.
+    """
     above: list[tuple[int, str]] = []
     for line in text.splitlines():
         if line.startswith("PROPINST: "):
@@ -101,7 +124,13 @@ class Hierarchy:
         return tuple(sorted(name[1:-1] for name in found))
 
     def of_classes(self) -> Iterator[Triple]:
-        """Yield every broader class of each class and individual; only the direct ones of an unsatisfiable class."""
+        """Yield every broader class of each class and individual; only the direct ones of an unsatisfiable class.
+
+        Yields
+        ------
+        Triple
+            Triple with ``rdfs:subClassOf`` or ``rdf:type``.
+        """
         impossible = {f"<{iri}>" for iri in self.unsatisfiable}
         for name in set(self._classes) - {THING, NOTHING}:
             # an unsatisfiable class is a subclass of all classes, which is not informative
@@ -112,7 +141,13 @@ class Hierarchy:
             yield from (Triple(individual, TYPE, other) for other in above - {THING, NOTHING})
 
     def of_properties(self) -> Iterator[Triple]:
-        """Yield every broader property of each property, and the relations between individuals."""
+        """Yield every broader property of each property, and the relations between individuals.
+
+        Yields
+        ------
+        Triple
+            Triple with ``rdfs:subPropertyOf`` or a property of the ontology.
+        """
         broader = {name: _named(_above(name, self._properties)) for name in list(self._properties)}
         for name in _named(broader):
             yield from (Triple(name, SUB_PROPERTY_OF, other) for other in broader[name] - {name})

@@ -35,7 +35,18 @@ _KEPT = Path(__file__).parent / "__pycache__"
 
 
 def class_options(folder: Path) -> list[str]:
-    """Return the Java options for the class path of the reasoner in a folder, and for dumped classes if any."""
+    """Return the Java options for the class path of the reasoner in a folder, and for dumped classes if any.
+
+    Parameters
+    ----------
+    folder
+        Folder of the reasoner's Java classes.
+
+    Returns
+    -------
+    list of str
+        Options, for use before the main class.
+    """
     packed, dumped = _files(folder)
     if not dumped.exists():
         return ["-cp", f"{folder}:{folder}/*"]
@@ -45,8 +56,19 @@ def class_options(folder: Path) -> list[str]:
 def keep_classes(folder: Path, command: Callable[[list[str]], list[str]], run: list[str]) -> bool:
     """Dump the classes that a run of a reasoner loads, and return whether that succeeded.
 
-    ``command`` turns arguments into a Java command with the options of every run, since a dump fits no others. ``run``
-    is the main class and its arguments.
+    Parameters
+    ----------
+    folder
+        Folder of the reasoner's Java classes.
+    command
+        Function from arguments to a Java command with the options of every run, since a dump fits no others.
+    run
+        Main class of the reasoner and its arguments.
+
+    Returns
+    -------
+    bool
+        False if files could not be written, or Java failed.
     """
     packed, dumped = _files(folder)
     try:
@@ -124,6 +146,11 @@ def classify(
     properties
         Also return the broader properties of each property, and the relations between individuals.
 
+    Returns
+    -------
+    Classification
+        The inferred triples, and the unsatisfiable classes.
+
     Raises
     ------
     InconsistencyError
@@ -157,7 +184,33 @@ def classify(
 def is_consistent(
     ntriples: str, reasoner: Reasoner | str = Reasoner.HERMIT, time_limit: float = DEFAULT_TIME_LIMIT
 ) -> bool:
-    """Return whether an ontology is consistent; raise the errors of :func:`classify`."""
+    """Return whether an ontology is consistent.
+
+    Parameters
+    ----------
+    ntriples
+        The ontology as N-Triples. ``owl:imports`` is not followed.
+    reasoner
+        The reasoner, or its name.
+    time_limit
+        Time limit in seconds.
+
+    Returns
+    -------
+    bool
+        True if the ontology has a model.
+
+    Raises
+    ------
+    LimitError
+        The time limit passed.
+    ReasonerError
+        The reasoner cannot be run, or cannot read the ontology.
+    SettingError
+        There is no reasoner of this name.
+    TriplesError
+        The text is not N-Triples.
+    """
     reasoner = reasoner_named(reasoner)
     return not _run(reasoner, _CONSISTENT[reasoner], [_ontology(read_ntriples(ntriples))], time_limit).inconsistent
 
@@ -165,7 +218,24 @@ def is_consistent(
 def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float = DEFAULT_TIME_LIMIT) -> int | None:
     """Return the position of the first inconsistent one of several ontologies, or None, by one process of HermiT.
 
-    Raises the errors of :func:`classify`.
+    Parameters
+    ----------
+    ontologies
+        Triples of each ontology.
+    time_limit
+        Time limit in seconds for all of them.
+
+    Returns
+    -------
+    int or None
+        Position, from 0, or None if all are consistent.
+
+    Raises
+    ------
+    LimitError
+        The time limit passed.
+    ReasonerError
+        HermiT cannot be run, or cannot read an ontology.
     """
     if not ontologies:
         return None
@@ -176,7 +246,24 @@ def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float
 def prepare(reasoner: Reasoner, ntriples: str) -> bool:
     """Dump the Java classes that a reasoner needs for such an ontology, which makes later runs faster.
 
-    Returns whether that succeeded. Raises the errors of :func:`classify` if the ontology cannot be read.
+    Parameters
+    ----------
+    reasoner
+        The reasoner.
+    ntriples
+        A typical ontology as N-Triples.
+
+    Returns
+    -------
+    bool
+        Whether the classes were dumped.
+
+    Raises
+    ------
+    ReasonerError
+        The reasoner is not installed.
+    TriplesError
+        The text is not N-Triples.
     """
     with scratch_folder() as scratch:
         file = scratch / "0.nt"
@@ -185,7 +272,23 @@ def prepare(reasoner: Reasoner, ntriples: str) -> bool:
 
 
 def reasoner_named(name: Reasoner | str) -> Reasoner:
-    """Return the reasoner of that name; raise SettingError for an unknown name."""
+    """Return the reasoner of that name.
+
+    Parameters
+    ----------
+    name
+        The reasoner, or its name.
+
+    Returns
+    -------
+    Reasoner
+        The reasoner.
+
+    Raises
+    ------
+    SettingError
+        There is no reasoner of this name.
+    """
     if name not in list(Reasoner):
         raise SettingError(f"the reasoner must be one of {', '.join(Reasoner)}, got '{name}'")
     return Reasoner(name)

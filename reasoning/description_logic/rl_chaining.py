@@ -60,7 +60,18 @@ class TransitiveClosure:
         self._before: dict[int, set[int]] = {}
 
     def add(self, x: int, y: int) -> Iterator[tuple[Pair, Pair, Pair]]:
-        """Add a pair; yield each new pair of the closure, and the two pairs that it follows from."""
+        """Add a pair; yield each new pair of the closure, and the two pairs that it follows from.
+
+        Parameters
+        ----------
+        x, y
+            Numbers of the two terms of the pair.
+
+        Yields
+        ------
+        tuple
+            The new pair, and the two pairs. The added pair itself is not among the new ones.
+        """
         after, before = self._after, self._before
         if y in after.get(x, ()):
             return
@@ -97,7 +108,18 @@ class Terms:
         self.ill_formed: set[int] = set()
 
     def number(self, term: str) -> int:
-        """Return the number of a term, which is new for a new term."""
+        """Return the number of a term, which is new for a new term.
+
+        Parameters
+        ----------
+        term
+            Term in the syntax of N-Triples.
+
+        Returns
+        -------
+        int
+            Number, at least 0; literals with the same value have the same number.
+        """
         known = self._number.get(term)
         if known is None:
             known = self._literal(term) if is_literal(term) else self._new(term)
@@ -122,23 +144,67 @@ class Terms:
         return number
 
     def term(self, number: int) -> str:
-        """Return the term with a number."""
+        """Return the term with a number.
+
+        Parameters
+        ----------
+        number
+            Number of the term.
+
+        Returns
+        -------
+        str
+            Term in the syntax of N-Triples.
+        """
         return self._terms[number]
 
     def fact(self, triple: Triple) -> Fact:
-        """Return a triple as a fact of numbers, and remember the spelling of its literal."""
+        """Return a triple as a fact of numbers, and remember the spelling of its literal.
+
+        Parameters
+        ----------
+        triple
+            The triple.
+
+        Returns
+        -------
+        tuple of int
+            Numbers of subject, predicate and object.
+        """
         fact = self.number(triple.subject), self.number(triple.predicate), self.number(triple.object)
         if self._terms[fact[2]] != triple.object:
             self._as_stated.setdefault(fact, triple)
         return fact
 
     def known_fact(self, triple: Triple) -> Fact | None:
-        """Return the fact of a triple, or None if one of its terms has no number."""
+        """Return the fact of a triple, or None if one of its terms has no number.
+
+        Parameters
+        ----------
+        triple
+            The triple.
+
+        Returns
+        -------
+        tuple of int or None
+            Numbers of subject, predicate and object.
+        """
         s, p, o = (self._number.get(term) for term in triple)
         return None if s is None or p is None or o is None else (s, p, o)
 
     def triple(self, fact: Fact) -> Triple:
-        """Return the triple of a fact, in the spelling in which it was stated."""
+        """Return the triple of a fact, in the spelling in which it was stated.
+
+        Parameters
+        ----------
+        fact
+            Numbers of subject, predicate and object.
+
+        Returns
+        -------
+        Triple
+            The triple.
+        """
         stated = self._as_stated.get(fact)
         if stated is not None:
             return stated
@@ -200,7 +266,24 @@ class ForwardChaining:
     def add(self, facts: Iterable[Fact], deadline: Deadline = Deadline.never()) -> list[Fact]:
         """Add stated facts, and return the facts that follow now and did not before.
 
-        Raises LimitError at the deadline; the facts found so far stay, but are incomplete.
+        After a LimitError, the facts found so far stay, but are incomplete.
+
+        Parameters
+        ----------
+        facts
+            Facts as numbers of subject, predicate and object.
+        deadline
+            End of the time limit.
+
+        Returns
+        -------
+        list of tuple
+            Derived facts, in the order found.
+
+        Raises
+        ------
+        LimitError
+            The deadline passed.
         """
         self._found = []
         for fact in facts:

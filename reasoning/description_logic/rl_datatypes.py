@@ -251,7 +251,20 @@ _LETTERS = {"t": "\t", "b": "\b", "n": "\n", "r": "\r", "f": "\f"}
 def value_of(literal: str) -> DataValue | None:
     """Return the value that a literal denotes, or None if its datatype is not known.
 
-    Raises IllFormedError if its text is not in the lexical space of its datatype.
+    Parameters
+    ----------
+    literal
+        Literal in the syntax of N-Triples.
+
+    Returns
+    -------
+    DataValue or None
+        Value and value space, or None.
+
+    Raises
+    ------
+    IllFormedError
+        The text is not in the lexical space of the datatype.
     """
     found = _PARTS.fullmatch(literal)
     if found is None:
@@ -267,8 +280,22 @@ def value_of(literal: str) -> DataValue | None:
 
 
 def is_in(value: DataValue, datatype: str) -> bool | None:
-    """Return whether a value belongs to a datatype (a term), or None if the datatype is not known.
+    """Return whether a value belongs to a datatype , or None if the datatype is not known.
 
+    Parameters
+    ----------
+    value
+        Value of a literal.
+    datatype
+        Datatype as a term.
+
+    Returns
+    -------
+    bool or None
+        Whether it belongs, or None.
+
+    Examples
+    --------
     >>> one = value_of('"1"^^<http://www.w3.org/2001/XMLSchema#integer>')
     >>> [is_in(one, term(name)) for name in ("xsd:byte", "xsd:negativeInteger", "xsd:string")]
     [True, False, False]

@@ -22,7 +22,18 @@ class FactIndex(TermIndex[int]):
         return obj in self.objects(subject, predicate)
 
     def matches(self, atom: Atom) -> Iterator[Fact]:
-        """Yield the facts that match a pattern, in which each variable matches anything."""
+        """Yield the facts that match a pattern, in which each variable matches anything.
+
+        Parameters
+        ----------
+        atom
+            Pattern of three numbers; negative ones are variables.
+
+        Yields
+        ------
+        tuple of int
+            Fact as numbers of subject, predicate and object.
+        """
         s, p, o = atom
         for predicate in (p,) if p >= 0 else tuple(self._objects):
             if predicate not in self._objects:
@@ -38,7 +49,22 @@ class FactIndex(TermIndex[int]):
                 yield from [(x, predicate, y) for x, ys in self._objects[predicate].items() for y in ys]
 
     def solutions(self, atoms: Sequence[Atom], binding: Binding, found: dict[Atom, Fact]) -> Iterator[Binding]:
-        """Yield the bindings under which every pattern is a fact; ``found`` has the facts of the current binding."""
+        """Yield the bindings under which every pattern is a fact.
+
+        Parameters
+        ----------
+        atoms
+            Patterns, of which each variable has one value in all.
+        binding
+            Values of variables that are known before.
+        found
+            Facts by pattern; it is changed in place, and has those of the binding that was yielded last.
+
+        Yields
+        ------
+        dict
+            Number by variable.
+        """
         if not atoms:
             yield binding
             return
@@ -52,13 +78,41 @@ class FactIndex(TermIndex[int]):
 
 
 def substituted(atom: Atom, binding: Binding) -> Atom:
-    """Return a pattern with its variables replaced by their values."""
+    """Return a pattern with its variables replaced by their values.
+
+    Parameters
+    ----------
+    atom
+        Pattern of three numbers; negative ones are variables.
+    binding
+        Number by variable.
+
+    Returns
+    -------
+    tuple of int
+        The pattern; variables without a value stay.
+    """
     s, p, o = atom
     return binding.get(s, s), binding.get(p, p), binding.get(o, o)
 
 
 def unified(atom: Atom, fact: Fact, binding: Binding) -> Binding | None:
-    """Return the binding extended so that the pattern equals the fact, or None if that is impossible."""
+    """Return the binding extended so that the pattern equals the fact, or None if that is impossible.
+
+    Parameters
+    ----------
+    atom
+        Pattern of three numbers; negative ones are variables.
+    fact
+        Numbers of subject, predicate and object.
+    binding
+        Number by variable, known before; it is not changed.
+
+    Returns
+    -------
+    dict or None
+        Number by variable.
+    """
     bound = dict(binding)
     for want, have in zip(atom, fact, strict=True):
         if want >= 0:
@@ -73,6 +127,18 @@ def copy_of(head: Atom, atom: Atom) -> Atom | None:
     """Return the conclusion from one fact as a copy of its parts: place 0, 1 or 2 of the fact as -1, -2 or -3.
 
     The result is None if matching the pattern needs more than its predicate and object.
+
+    Parameters
+    ----------
+    head
+        Pattern of the conclusion.
+    atom
+        Pattern of the only premise.
+
+    Returns
+    -------
+    tuple of int or None
+        Number or place of subject, predicate and object.
     """
     s, p, o = atom
     if s >= 0 or p < 0 or s == o:
@@ -83,6 +149,19 @@ def copy_of(head: Atom, atom: Atom) -> Atom | None:
 
 
 def copied(copy: Atom, fact: Fact) -> Fact:
-    """Return the fact that a copy makes from another fact."""
+    """Return the fact that a copy makes from another fact.
+
+    Parameters
+    ----------
+    copy
+        Numbers and places from :func:`copy_of`.
+    fact
+        The fact that matches the premise.
+
+    Returns
+    -------
+    tuple of int
+        The conclusion.
+    """
     a, b, c = copy
     return fact[~a] if a < 0 else a, fact[~b] if b < 0 else b, fact[~c] if c < 0 else c

@@ -117,6 +117,13 @@ class TextRule(NamedTuple):
 def rules() -> Iterator[TextRule]:
     """Yield the rules of the table, in its order.
 
+    Yields
+    ------
+    TextRule
+        Rule with its name, schema patterns, premises, and conclusion (None for a contradiction).
+
+    Examples
+    --------
     >>> next(rules()).name
     'eq-sym'
     """
@@ -214,7 +221,22 @@ EXPANSIONS: dict[tuple[str, str | None], Expansion] = {
 def list_members(
     index: FactIndex, head: int, first: int, rest: int, nil: int
 ) -> tuple[list[int], tuple[Fact, ...]] | None:
-    """Return the members of a list and the facts that define it, or None for an incomplete or cyclic list."""
+    """Return the members of a list and the facts that define it, or None for an incomplete or cyclic list.
+
+    Parameters
+    ----------
+    index
+        Facts.
+    head
+        Number of the list.
+    first, rest, nil
+        Numbers of ``rdf:first``, ``rdf:rest`` and ``rdf:nil``.
+
+    Returns
+    -------
+    tuple or None
+        Numbers of the members in order, and the facts.
+    """
     members, links, seen = [], [], set()
     while head != nil:
         member = min(index.objects(head, first), default=None)

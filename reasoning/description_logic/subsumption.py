@@ -73,7 +73,18 @@ class Subsumption:
         self._broader: dict[str, frozenset[str]] = {}
 
     def broader(self, name: str) -> frozenset[str]:
-        """Return every named super-class except the class itself and owl:Thing; stated ones if it is unsatisfiable."""
+        """Return every named super-class except the class itself and owl:Thing; stated ones if it is unsatisfiable.
+
+        Parameters
+        ----------
+        name
+            Name of a class.
+
+        Returns
+        -------
+        frozenset of str
+            Names of the super-classes.
+        """
         known = self._broader.get(name)
         if known is None:
             known = self._broader[name] = frozenset(self._above([name]) - {name, THING})
@@ -82,7 +93,20 @@ class Subsumption:
     def satisfiable(self, *names: str) -> bool:
         """Return whether all of these classes can have a common member.
 
-        Raises BeyondLessonsError if the axioms are outside of the fragment.
+        Parameters
+        ----------
+        *names
+            Names of classes.
+
+        Returns
+        -------
+        bool
+            False if no model has a common member.
+
+        Raises
+        ------
+        BeyondLessonsError
+            The axioms are outside of the fragment that this module decides.
         """
         above = self._above(names)
         if NOTHING in above or any(len(group & above) > 1 for group in self._disjoint):

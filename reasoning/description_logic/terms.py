@@ -29,6 +29,18 @@ PREFIXES = {
 def term(name: str) -> str:
     """Return the term that a prefixed name stands for.
 
+    Parameters
+    ----------
+    name
+        Name with a prefix of ``PREFIXES``.
+
+    Returns
+    -------
+    str
+        IRI in angle brackets.
+
+    Examples
+    --------
     >>> term("rdfs:label")
     '<http://www.w3.org/2000/01/rdf-schema#label>'
     """
@@ -74,7 +86,23 @@ class Triple(NamedTuple):
 
 
 def read_ntriples(text: str) -> list[Triple]:
-    """Return the triples of a document, in its order; raise TriplesError, with the line, if it is not N-Triples."""
+    """Return the triples of a document, in its order.
+
+    Parameters
+    ----------
+    text
+        The document.
+
+    Returns
+    -------
+    list of Triple
+        Triples, whose terms are in the syntax of N-Triples.
+
+    Raises
+    ------
+    TriplesError
+        A line is not N-Triples; the message has its number.
+    """
     triples = []
     for number, line in enumerate(text.split("\n"), 1):
         if not line.strip() or line.lstrip().startswith("#"):
@@ -98,20 +126,64 @@ def _unescaped(term: str, number: int) -> str:
 
 
 def write_ntriples(triples: Iterable[Triple]) -> str:
-    """Return a document of the triples, one line each."""
+    """Return a document of the triples, one line each.
+
+    Parameters
+    ----------
+    triples
+        Triples.
+
+    Returns
+    -------
+    str
+        Document in N-Triples, in the order of the triples.
+    """
     return "".join(f"{triple}\n" for triple in triples)
 
 
 def iri_of(term: str) -> str | None:
-    """Return the IRI of a term, or None for a blank node or a literal."""
+    """Return the IRI of a term, or None for a blank node or a literal.
+
+    Parameters
+    ----------
+    term
+        Term in the syntax of N-Triples.
+
+    Returns
+    -------
+    str or None
+        IRI without angle brackets, or None.
+    """
     return term[1:-1] if term.startswith("<") else None
 
 
 def is_literal(term: str) -> bool:
-    """Return whether a term is a literal."""
+    """Return whether a term is a literal.
+
+    Parameters
+    ----------
+    term
+        Term in the syntax of N-Triples.
+
+    Returns
+    -------
+    bool
+        True for a text in quotes, with or without a language or a datatype.
+    """
     return term.startswith('"')
 
 
 def is_blank(term: str) -> bool:
-    """Return whether a term is a blank node."""
+    """Return whether a term is a blank node.
+
+    Parameters
+    ----------
+    term
+        Term in the syntax of N-Triples.
+
+    Returns
+    -------
+    bool
+        True for a term such as ``_:b0``.
+    """
     return term.startswith("_:")

@@ -80,7 +80,18 @@ _JOINED = {term("owl:unionOf"): " or ", term("owl:intersectionOf"): " and ", ter
 
 
 def labels_of(triples: Iterable[Triple]) -> dict[str, str]:
-    """Return the label of each labelled term, preferably in English or without a language."""
+    """Return the label of each labelled term, preferably in English or without a language.
+
+    Parameters
+    ----------
+    triples
+        Triples of an ontology.
+
+    Returns
+    -------
+    dict
+        Label by term.
+    """
     found: dict[str, tuple[bool, str]] = {}
     for subject, predicate, obj in triples:
         if predicate == LABEL and is_literal(obj):
@@ -97,15 +108,48 @@ class Words:
         self._labels = labels
 
     def axiom(self, axiom: Axiom) -> str:
-        """Return an axiom in one sentence."""
+        """Return an axiom in one sentence.
+
+        Parameters
+        ----------
+        axiom
+            Axiom with the triples of its blank nodes.
+
+        Returns
+        -------
+        str
+            Sentence without a full stop.
+        """
         return _Sentence(self, axiom.triples).of(axiom.root)
 
     def triple(self, triple: Triple) -> str:
-        """Return a statement in one sentence."""
+        """Return a statement in one sentence.
+
+        Parameters
+        ----------
+        triple
+            Statement about named resources.
+
+        Returns
+        -------
+        str
+            Sentence without a full stop.
+        """
         return _Sentence(self, (triple,)).of(triple)
 
     def name(self, name: str) -> str:
-        """Return the name of a term: its label, or else the last part of its IRI, or the text of a literal."""
+        """Return the name of a term: its label, or else the last part of its IRI, or the text of a literal.
+
+        Parameters
+        ----------
+        name
+            Term in the syntax of N-Triples.
+
+        Returns
+        -------
+        str
+            The name as text.
+        """
         if name in self._labels:
             return self._labels[name]
         if is_literal(name):

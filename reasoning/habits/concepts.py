@@ -97,7 +97,18 @@ class Concepts:
         return Groups(self._ontology.kinds)
 
     def of(self, thing: str) -> frozenset[Concept]:
-        """Return the concepts of a thing; a number after its name distinguishes things of one name and is left out."""
+        """Return the concepts of a thing; a number after its name distinguishes things of one name and is left out.
+
+        Parameters
+        ----------
+        thing
+            Name of a thing.
+
+        Returns
+        -------
+        frozenset of Concept
+            Its groups, kinds and descriptions, computed once for each name.
+        """
         name = re.sub(r"\s+\d+$", "", spaced(thing))
         if name not in self._cache:
             imitation = IMITATIONS.get(name.partition(" ")[0]) if " " in name else None
@@ -106,11 +117,33 @@ class Concepts:
         return self._cache[name]
 
     def knows(self, thing: str) -> bool:
-        """Return whether the lexicon or a group has the thing."""
+        """Return whether the lexicon or a group has the thing.
+
+        Parameters
+        ----------
+        thing
+            Name of a thing.
+
+        Returns
+        -------
+        bool
+            False if only its description is known, or nothing.
+        """
         return any(concept.aspect in (Aspect.GROUP, Aspect.KIND) for concept in self.of(thing))
 
     def named(self, words: str) -> Concept | None:
-        """Return the concept that the words of a stated rule name: a group, a kind, or a description of things."""
+        """Return the concept that the words of a stated rule name: a group, a kind, or a description of things.
+
+        Parameters
+        ----------
+        words
+            Words such as *cutlery*, *all cups* or *red things*.
+
+        Returns
+        -------
+        Concept or None
+            The concept, or None.
+        """
         plain = re.sub(r"^(?:all|every|each|any|the)\s+|\s+(?:things?|items?|ones?)$", "", spaced(words))
         if group := self.groups.of_word(plain):
             return self._of_group(group.label, self.groups.size(group))

@@ -54,7 +54,18 @@ def cardinal_directions(boxes: NDArray[np.float64]) -> NDArray[np.str_]:
 
 
 def cardinal_cones(boxes: NDArray[np.float64]) -> NDArray[np.int16]:
-    """Return the direction from the object's centre to the subject's as positions in CONES, shape (n, n)."""
+    """Return the direction from the object's centre to the subject's as positions in CONES.
+
+    Parameters
+    ----------
+    boxes
+        Boxes in the plane, shape (n, 2, 2): least and greatest corner, y to the north.
+
+    Returns
+    -------
+    ndarray
+        Positions in ``CONES``, shape (n, n), row: subject, column: object; 8 for equal centres.
+    """
     centres = boxes.mean(axis=1)
     east = centres[:, None, 0] - centres[None, :, 0]
     north = centres[:, None, 1] - centres[None, :, 1]
@@ -148,7 +159,22 @@ class Related:
     def pairs(self, subject: str | None = None, object: str | None = None) -> Iterator[tuple[str, str, str]]:
         """Yield subject, sign and object of every ordered pair, or of the pairs with the given subject and object.
 
-        Raises UnknownTermError for a name that nothing has.
+        Parameters
+        ----------
+        subject
+            Name of the subject; None for every thing.
+        object
+            Name of the object; None for every thing.
+
+        Yields
+        ------
+        tuple
+            Subject, sign of the relation, and object.
+
+        Raises
+        ------
+        UnknownTermError
+            Nothing has this name.
         """
         subjects, objects, signs = self.places(subject), self.places(object), self.signs
         for i in subjects:
@@ -160,7 +186,20 @@ class Related:
     def places(self, name: str | None) -> range:
         """Return the place of a thing among the ids as a range of length 1; all places if ``name`` is None.
 
-        Raises UnknownTermError for a name that nothing has.
+        Parameters
+        ----------
+        name
+            Name of a thing, or None.
+
+        Returns
+        -------
+        range
+            Positions in ``ids``.
+
+        Raises
+        ------
+        UnknownTermError
+            Nothing has this name.
         """
         if name is None:
             return range(len(self.ids))
@@ -172,7 +211,23 @@ class Related:
 
 
 def signs_of(name: str) -> tuple[str, ...]:
-    """Return the signs that the codes of :func:`relate` stand for."""
+    """Return the signs that the codes of :func:`relate` stand for.
+
+    Parameters
+    ----------
+    name
+        Name of a calculus, or ``cardir`` for the cones of the cardinal directions.
+
+    Returns
+    -------
+    tuple of str
+        Signs, in the order of the codes.
+
+    Raises
+    ------
+    UnknownCalculusError
+        There is no calculus of this name.
+    """
     return CONES if name == "cardir" else calculus(name).atoms
 
 

@@ -42,6 +42,11 @@ def candidate_ratios(
     kinds
         The known kinds.
 
+    Returns
+    -------
+    ndarray
+        Ratios in nats; 0 for things without candidates.
+
     Notes
     -----
     Let C be the number of taught names, u the prior of none of them, and w the share of outliers. The ratio of an

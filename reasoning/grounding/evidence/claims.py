@@ -188,7 +188,18 @@ Degrees = Iterator[tuple[tuple[str, ...], Array, float]]
 
 
 def between_degrees(centres: Array) -> Array:
-    """Return the degrees of *between* for triples (subject, first, second) of centres (n, 2), shape (n, n, n)."""
+    """Return the degrees of *between* for all triples of things: a subject, and the two that it is between.
+
+    Parameters
+    ----------
+    centres
+        Centres of the things, shape (n, 2).
+
+    Returns
+    -------
+    ndarray
+        Degrees by subject, first and second, shape (n, n, n), in (0, 1].
+    """
     way = centres[None, :, :] - centres[:, None, :]  # from first to second
     length = np.maximum((way**2).sum(axis=2), 1e-12)
     off = centres[:, None, None, :] - centres[None, :, None, :]
@@ -227,11 +238,39 @@ class ClaimDegrees:
         return result
 
     def relation(self, word: str) -> Array:
-        """Return the degrees of a relation of the ontology, shape (n, n)."""
+        """Return the degrees of a relation of the ontology, shape (n, n).
+
+        Parameters
+        ----------
+        word
+            Name of the relation.
+
+        Returns
+        -------
+        ndarray
+            Degrees by subject and object, in [0, 1].
+
+        Raises
+        ------
+        UnknownTermError
+            The ontology has no such relation, or its word has no model.
+        """
         return self.words.of(self.vocabulary[word])
 
     def of(self, claim: Claim) -> Degrees:
-        """Yield the degrees of a claim for each object, pair or triple that it is about; nothing if undecidable."""
+        """Yield the degrees of a claim for each object, pair or triple that it is about; nothing if undecidable.
+
+        Parameters
+        ----------
+        claim
+            The claim.
+
+        Yields
+        ------
+        tuple
+            Positions of the objects that the degrees are about, the degrees with one axis for each of them, and the
+            weight of these degrees.
+        """
         term, subjects, arguments = claim.relation, claim.subjects, claim.arguments
         if term in ROW_TERMS and len(subjects) > 1:
             yield from self._arrangement(claim)
@@ -250,7 +289,18 @@ class ClaimDegrees:
                     yield (subject, other), pair, 1.0
 
     def degrees_alone(self, claim: Claim) -> Array | None:
-        """Return the degree of a claim about one object for each thing, shape (n,); None if boxes do not decide it."""
+        """Return the degree of a claim about one object for each thing, shape (n,); None if boxes do not decide it.
+
+        Parameters
+        ----------
+        claim
+            A claim with a place, a size or another property of its subject.
+
+        Returns
+        -------
+        ndarray or None
+            Degrees in [0, 1], shape (n,), or None.
+        """
         term, value = claim.relation, claim.value
         if term in PLACES:
             return place_degree(term, value, lean_on_surface(self.boxes))
@@ -295,7 +345,18 @@ class ClaimDegrees:
         return np.asarray(np.exp(np.interp(longer, (-1.0, 0.0, 0.3), (EXTREME, BORDER, 0.0))))
 
     def pair_degrees(self, claim: Claim) -> Array | None:
-        """Return the degree of a claim about two objects for each pair, shape (n, n); None if undecidable."""
+        """Return the degree of a claim about two objects for each pair, shape (n, n); None if undecidable.
+
+        Parameters
+        ----------
+        claim
+            A claim that relates its subject to another object.
+
+        Returns
+        -------
+        ndarray or None
+            Degrees by subject and other object, shape (n, n), in [0, 1], or None.
+        """
         term, value = claim.relation, claim.value
         if term in PLACES:
             lean = place_degree(term, value, lean_in_things(self.boxes))
@@ -323,7 +384,18 @@ class ClaimDegrees:
         return None
 
     def triple_degrees(self, term: str) -> Array:
-        """Return the degrees of triples (subject, first, second), shape (n, n, n)."""
+        """Return the degrees of triples (subject, first, second), shape (n, n, n).
+
+        Parameters
+        ----------
+        term
+            ``between``, ``closer`` (to the first than to the second) or ``farther``.
+
+        Returns
+        -------
+        ndarray
+            Degrees in [0, 1].
+        """
         if term != "between":  # closer to the first than the second is, or than to the second
             d = self.distances if term == "closer" else -self.distances
             than_second = np.exp(_more_log(d[None, :, :] - d[:, :, None], self.distances))
@@ -388,7 +460,22 @@ def _more_log(off: Array, distances: Array) -> Array:
 
 
 def distance_degree(term: str, distances: Array, metres: float) -> Array:
-    """Return the degree of a stated distance: one half at a ratio of 1.6; beyond a bound, at a ratio of 1.3."""
+    """Return the degree of a stated distance: one half at a ratio of 1.6; beyond a bound, at a ratio of 1.3.
+
+    Parameters
+    ----------
+    term
+        ``distance`` for the stated one, or the term of a bound.
+    distances
+        Distances of the things in metres, of any shape.
+    metres
+        Stated distance in metres.
+
+    Returns
+    -------
+    ndarray
+        Degrees in (0, 1], of the shape of ``distances``.
+    """
     off = np.log(np.maximum(distances, 0.01) / metres)
     if term == "distance":
         knots, values = (np.log(1.25), np.log(1.6), np.log(3.0)), (0.0, BORDER, EXTREME)

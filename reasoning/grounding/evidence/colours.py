@@ -35,6 +35,18 @@ def lab_of_srgb(rgb: NDArray[np.float64] | NDArray[np.uint8]) -> Array:
     L is 0 to 100, a grows towards red, b towards yellow; NaN stays NaN. The sources are IEC 61966-2-1 for sRGB, and
     CIE 15 for CIELAB under the white of sRGB (D65).
 
+    Parameters
+    ----------
+    rgb
+        Colours in sRGB, 0 to 255, shape (…, 3).
+
+    Returns
+    -------
+    ndarray
+        Colours in CIELAB, shape (…, 3).
+
+    Examples
+    --------
     >>> lab_of_srgb(np.array([[255.0, 255.0, 255.0], [255.0, 0.0, 0.0]])).round(1).tolist()
     [[100.0, 0.0, 0.0], [53.2, 80.1, 67.2]]
     """
@@ -68,6 +80,11 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
     colours
         Known colour terms.
 
+    Returns
+    -------
+    ndarray
+        Ratios in nats.
+
     Notes
     -----
     The evidence is log((1 - outliers) p(seen | described) / p(seen) + outliers), and 0 where either colour is unknown.
@@ -98,8 +115,20 @@ def colour_evidence(described: Sequence[str | None], seen: NDArray[np.float64], 
 def colour_terms(seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
     """Return the basic colour term of each of n things, None where the colour is unknown or two terms fit.
 
-    ``seen`` (n, 3) holds sRGB colours as for :func:`colour_evidence`.
+    Parameters
+    ----------
+    seen
+        Colours of the things in sRGB, 0 to 255, shape (n, 3); a row of NaN where the colour is unknown.
+    colours
+        Known colour terms.
 
+    Returns
+    -------
+    list of Colour or None
+        Colour term of each thing.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> terms = colour_terms(np.array([[200.0, 20, 30], [np.nan] * 3]), default_ontology().colours)
     >>> [term and term.label for term in terms]
@@ -116,11 +145,25 @@ def colour_terms(seen: NDArray[np.float64], colours: Colours) -> list[Colour | N
 
 
 def other_colours(described: Sequence[str | None], seen: NDArray[np.float64], colours: Colours) -> list[Colour | None]:
-    """Return the colour of each of n things that clearly differs from the described one (IRIs), None for other things.
+    """Return the colour of each of n things that clearly differs from the described one , None for other things.
 
-    ``seen`` (n, 3) holds sRGB colours as for :func:`colour_evidence`. For neighbouring colours such as red and orange,
+    For neighbouring colours such as red and orange,
     either word may be used; so p(seen | described) must be at most ``MAX_OTHER_RATIO`` of the greatest density. The
     other things of the scene do not matter.
+
+    Parameters
+    ----------
+    described
+        Colour of the object that each thing is compared with (IRI); None where none is described.
+    seen
+        Colours of the things in sRGB, 0 to 255, shape (n, 3); a row of NaN where the colour is unknown.
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    list of Colour or None
+        Colour term of each thing, None where its colour fits or is unknown.
     """
     found: list[Colour | None] = [None] * len(described)
     terms = _terms(described, colours)

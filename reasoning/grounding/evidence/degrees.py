@@ -35,7 +35,20 @@ BLOCK = 1 << 14  # cells of a block: several arrays of this size fit in a proces
 
 
 def degree_of_view(model: RelationModel, features: View) -> Array:
-    """Return exp of the sum of terms, shape (n, n), in (0, 1]; terms of missing features are ignored."""
+    """Return exp of the sum of terms; terms of missing features are ignored.
+
+    Parameters
+    ----------
+    model
+        Model of a family of words.
+    features
+        Features of the pairs by name, at least one, each of shape (n, n).
+
+    Returns
+    -------
+    ndarray
+        Degrees in (0, 1], shape (n, n); 1 where the model has no term for the features.
+    """
     logs = [_log_degree(term, features[term.feature]) for term in model.terms if term.feature in features]
     if not logs:  # the boxes say nothing about the word
         return np.ones_like(next(iter(features.values())))
@@ -70,8 +83,29 @@ def _bends(knots: tuple[float, ...], values: tuple[float, ...]) -> list[tuple[fl
 
 
 def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
-    """Return the degree of a word for each ordered pair, wide reading, shape (n, n), in (0, 1].
+    """Return the degree of a word for each ordered pair, in its wide reading.
 
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs.
+    word
+        Name of the word: a relation without ``exactly_``.
+    models
+        Models of the words.
+
+    Returns
+    -------
+    ndarray
+        Degrees in (0, 1], shape (n, n).
+
+    Raises
+    ------
+    UnknownTermError
+        The word has no model.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
     >>> from deixis.reasoning.grounding.evidence.meaning import shipped_models
@@ -88,7 +122,20 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
 
 
 def own_degree(pairs: PairGeometry, word: str) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the degree of a word in the frames of things with a front, and for which pairs it has one; (n, m) each."""
+    """Return the degree of a word in the frames of things with a front, and for which pairs it has one.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs of n subjects and m objects.
+    word
+        Name of the word.
+
+    Returns
+    -------
+    tuple
+        Degrees in [0, 1], and the mask of the pairs that have one; shape (n, m) each.
+    """
     features = own_frame(pairs, word) if any(side.fronted.any() for side in pairs.poses) else None
     if features is None:
         empty = np.zeros((len(pairs.boxes), len(pairs.objects)))
@@ -97,8 +144,29 @@ def own_degree(pairs: PairGeometry, word: str) -> tuple[Array, NDArray[np.bool_]
 
 
 def frame_shares(pairs: PairGeometry, word: str, models: RelationModels) -> Array:
-    """Return the probability that a word was meant in the frame of a thing with a front, shape (n, m); 0 without one.
+    """Return the probability that a word was meant in the frame of a thing with a front.
 
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs of n subjects and m objects.
+    word
+        Name of the word.
+    models
+        Models of the words.
+
+    Returns
+    -------
+    ndarray
+        Probabilities, shape (n, m); 0 for pairs without a known front.
+
+    Raises
+    ------
+    UnknownTermError
+        The word has no model.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
     >>> from deixis.reasoning.geometry.poses import Poses
@@ -130,14 +198,41 @@ class WordDegrees:
         return other
 
     def of_word(self, word: str) -> Array:
-        """Return the degree of a word, shape (n, n), as :func:`word_degree` does."""
+        """Return the degree of a word, as :func:`word_degree` does.
+
+        Parameters
+        ----------
+        word
+            Name of the word.
+
+        Returns
+        -------
+        ndarray
+            Degrees in (0, 1], shape (n, n), computed once.
+
+        Raises
+        ------
+        UnknownTermError
+            The word has no model.
+        """
         if word not in self._found:
             inverse = self.reverse._found.get(INVERSES.get(word, ""))
             self._found[word] = word_degree(self._pairs, word, self._models) if inverse is None else inverse.T
         return self._found[word]
 
     def held_by_front(self, word: str) -> NDArray[np.bool_]:
-        """Return the pairs of which *in front of* or *behind* holds by the front of the object, (n, n)."""
+        """Return the pairs of which *in front of* or *behind* holds by the front of the object.
+
+        Parameters
+        ----------
+        word
+            ``in_front`` or ``behind``; no pair holds by the front for another word.
+
+        Returns
+        -------
+        ndarray
+            Mask of the pairs, shape (n, n).
+        """
         features = own_frame(self._pairs, word)
         if features is None:
             return np.zeros((len(self._pairs.boxes), len(self._pairs.objects)), dtype=np.bool_)
@@ -145,7 +240,18 @@ class WordDegrees:
         return result
 
     def undecided(self, word: str) -> NDArray[np.bool_]:
-        """Return the pairs about which the scene says nothing, as their orientation is unknown; shape (n, n)."""
+        """Return the pairs about which the scene says nothing, as their orientation is unknown.
+
+        Parameters
+        ----------
+        word
+            Name of the word.
+
+        Returns
+        -------
+        ndarray
+            Mask of the pairs, shape (n, n).
+        """
         features = view(self._pairs, word)
         if "aim" not in features:
             return np.zeros((len(self._pairs.boxes), len(self._pairs.objects)), dtype=np.bool_)
@@ -153,10 +259,25 @@ class WordDegrees:
         return result
 
     def of(self, relation: Relation) -> Array:
-        """Return the degree of a relation, shape (n, n), in [0, 1].
+        """Return the degree of a relation.
 
         In the exact reading, the word must fit better than the other nine: the result is its degree times the ratio of
-        its degree to the best one. Raises UnknownTermError where its word has no model.
+        its degree to the best one.
+
+        Parameters
+        ----------
+        relation
+            The relation, in its wide or exact reading.
+
+        Returns
+        -------
+        ndarray
+            Degrees in [0, 1], shape (n, n).
+
+        Raises
+        ------
+        UnknownTermError
+            The word of the relation has no model.
         """
         self._models.of(relation)
         own = self.of_word(relation.word)
@@ -168,18 +289,67 @@ class WordDegrees:
 
 
 def relation_degree(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the degree of one relation, shape (n, n), as :meth:`WordDegrees.of` does."""
+    """Return the degree of one relation, as :meth:`WordDegrees.of` does.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs.
+    relation
+        The relation, in its wide or exact reading.
+    models
+        Models of the words.
+
+    Returns
+    -------
+    ndarray
+        Degrees in [0, 1], shape (n, n).
+
+    Raises
+    ------
+    UnknownTermError
+        The word of the relation has no model.
+    """
     return WordDegrees(pairs, models).of(relation)
 
 
 def saying_degree(pairs: PairGeometry, models: RelationModels) -> Array:
-    """Return how readily people mention each ordered pair, whatever the word, shape (n, n), in (0, 1]."""
+    """Return how readily people mention each ordered pair, whatever the word.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs.
+    models
+        Models of the words, with the one of ``saying``.
+
+    Returns
+    -------
+    ndarray
+        Degrees in (0, 1], shape (n, n).
+    """
     return degree_of_view(models[SAYING], view(pairs, SAYING))
 
 
 def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array:
     """Return log P(said | pair) - log P(said | random pair) in nats, finite.
 
+    Parameters
+    ----------
+    degree
+        Degrees of the pairs, in [0, 1], of any shape.
+    outliers
+        Share of statements that are made of a random pair.
+    chance
+        Mean degree of random pairs.
+
+    Returns
+    -------
+    ndarray
+        Ratios in nats, of the shape of ``degree``.
+
+    Examples
+    --------
     >>> log_likelihood_ratio(np.array([1.0, 0.0]), outliers=0.01, chance=0.1).round(2).tolist()
     [2.22, -2.39]
     """
@@ -188,6 +358,26 @@ def log_likelihood_ratio(degree: Array, outliers: float, chance: float) -> Array
 
 
 def relation_evidence(pairs: PairGeometry, relation: Relation, models: RelationModels) -> Array:
-    """Return the log-likelihood ratio of a single relation for each ordered pair, shape (n, n), in nats."""
+    """Return the log-likelihood ratio of a single relation for each ordered pair.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs.
+    relation
+        The relation, in its wide or exact reading.
+    models
+        Models of the words.
+
+    Returns
+    -------
+    ndarray
+        Ratios in nats, shape (n, n).
+
+    Raises
+    ------
+    UnknownTermError
+        The word of the relation has no model.
+    """
     model = models.of(relation)
     return log_likelihood_ratio(relation_degree(pairs, relation, models), model.outliers, model.chance)

@@ -80,7 +80,18 @@ class DoubtedLabels:
     log_likelihood: float
 
     def reordered(self, both: tuple[NDArray[np.intp], ...]) -> DoubtedLabels:
-        """Return a copy with objects and things in another order, an index of ``numpy.ix_``."""
+        """Return a copy with objects and things in another order.
+
+        Parameters
+        ----------
+        both
+            Positions of the objects and of the things in the new order, as ``numpy.ix_`` returns them.
+
+        Returns
+        -------
+        DoubtedLabels
+            The copy.
+        """
         return replace(self, ratios=self.ratios[both])
 
 
@@ -112,7 +123,18 @@ class Whole:
     labelled_inside: NDArray[np.float64]
 
     def reordered(self, rows: NDArray[np.int64]) -> Whole:
-        """Return a copy with the objects in another order."""
+        """Return a copy with the objects in another order.
+
+        Parameters
+        ----------
+        rows
+            Position of each object in the new order, shape (n1,).
+
+        Returns
+        -------
+        Whole
+            The copy.
+        """
 
         def in_order(problem: Problem) -> Problem:
             return replace(
@@ -317,7 +339,13 @@ class Evidence:
         return np.flatnonzero(self.description.subjects != self.description.objects)
 
     def firm(self) -> NDArray[np.bool_]:
-        """Return the mask of comparable facts that must hold: neither optional nor hedged."""
+        """Return the mask of comparable facts that must hold: neither optional nor hedged.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (facts,).
+        """
         must: NDArray[np.bool_] = ~self.description.optional[self.facts] & (self.description.weights[self.facts] >= 1)
         return must
 
@@ -335,7 +363,15 @@ class Evidence:
     def degrees(self, assignment: NDArray[np.int64]) -> NDArray[np.float64]:
         """Return the degree to which each comparable fact holds, 0 where one of its objects is unmatched.
 
-        ``assignment`` has shape (…, n1), the result (…, facts).
+        Parameters
+        ----------
+        assignment
+            Thing of each object, -1 for none; shape (…, n1).
+
+        Returns
+        -------
+        ndarray
+            Degrees in [0, 1], shape (…, facts), in the order of ``facts``.
         """
         subjects = assignment[..., self.description.subjects[self.facts]]
         objects = assignment[..., self.description.objects[self.facts]]
@@ -388,7 +424,18 @@ class Evidence:
         return relation.word in OWN_WORDS and poses is not None and bool(poses.fronted.any())
 
     def frame_shares(self, word: str) -> NDArray[np.float64]:
-        """Return the probability that a word is meant in the frame of a thing with a front, shape (n2, n2)."""
+        """Return the probability that a word is meant in the frame of a thing with a front.
+
+        Parameters
+        ----------
+        word
+            Name of the word.
+
+        Returns
+        -------
+        ndarray
+            Probabilities by subject and object, shape (n2, n2). The scene must have boxes.
+        """
         assert self.scene.boxes is not None
         pairs = pair_geometry(self.scene.boxes, self.scene.poses)
         return frame_shares(pairs, word, self.meaning.models or shipped_models())
@@ -399,11 +446,33 @@ class Evidence:
         return WordDegrees(pair_geometry(self.scene.boxes, self.scene.poses), self.meaning.models or shipped_models())
 
     def total(self, assignment: NDArray[np.int64]) -> float:
-        """Return the sum of degrees times weights, plus the log-likelihood ratios of labels of the matches."""
+        """Return the sum of degrees times weights, plus the log-likelihood ratios of labels of the matches.
+
+        Parameters
+        ----------
+        assignment
+            Thing of each object, -1 for none; shape (n1,).
+
+        Returns
+        -------
+        float
+            The sum, which :meth:`totals` returns for many assignments.
+        """
         return float(self.totals(assignment[None])[0])
 
     def totals(self, assignments: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the total of each of k assignments (k, n1)."""
+        """Return the total of each of k assignments: degrees times weights, plus the log-likelihood ratios of labels.
+
+        Parameters
+        ----------
+        assignments
+            Thing of each object in each assignment, -1 for none; shape (k, n1).
+
+        Returns
+        -------
+        ndarray
+            Totals, shape (k,).
+        """
         matched = assignments != UNMATCHED
         totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.affirmed_weights[self.facts]
         if self.labels.size:
@@ -414,9 +483,24 @@ class Evidence:
     def seen_from(self, angle: float, mirrored: bool) -> Evidence:
         """Return the evidence with the facts read in the scene as seen from another side.
 
-        The scene is turned by ``angle`` radians counter-clockwise, after left and right are exchanged where it is
-        ``mirrored``. Labels, sizes and colours do not depend on the side. Raises GraphError where the scene has no
-        boxes.
+        Labels, sizes and colours do not depend on the side.
+
+        Parameters
+        ----------
+        angle
+            Angle in radians by which the scene is turned counter-clockwise.
+        mirrored
+            Whether left and right are exchanged before.
+
+        Returns
+        -------
+        Evidence
+            Evidence with other relations of the pairs.
+
+        Raises
+        ------
+        GraphError
+            The scene has no boxes.
         """
         scene = self.scene
         if scene.boxes is None:
@@ -427,7 +511,20 @@ class Evidence:
         return replace(self, scene=replace(relations, poses=poses))
 
     def reordered(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Evidence:
-        """Return a copy with the objects (``rows``) and the things (``columns``) in another order."""
+        """Return a copy with the objects and the things in another order.
+
+        Parameters
+        ----------
+        rows
+            Position of each object in the new order, shape (n1,).
+        columns
+            Position of each thing in the new order, shape (n2,).
+
+        Returns
+        -------
+        Evidence
+            The copy.
+        """
         both = np.ix_(rows, columns)
         return replace(
             self,
@@ -443,7 +540,18 @@ class Evidence:
         )
 
     def in_order_of(self, other: Evidence) -> Evidence:
-        """Return a copy with the order of objects and things of ``other``, which has the same names."""
+        """Return a copy with the order of objects and things of ``other``, which has the same names.
+
+        Parameters
+        ----------
+        other
+            Evidence of the same objects and things.
+
+        Returns
+        -------
+        Evidence
+            The copy.
+        """
         rows = [self.description.index(name) for name in other.description.nodes]
         columns = [self.scene.index(name) for name in other.scene.nodes]
         return self.reordered(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64))
@@ -459,6 +567,20 @@ def absence(objects: int, things: int) -> float:
     has to be absent, the odds are at most ``MAX_ABSENCE_ODDS``, and where most things are not described anyway, one
     more undescribed thing is not evidence.
 
+    Parameters
+    ----------
+    objects
+        Number n1 of objects.
+    things
+        Number n2 of things.
+
+    Returns
+    -------
+    float
+        Log-odds in nats, usually negative.
+
+    Examples
+    --------
     >>> round(absence(12, 12), 1), round(absence(15, 12), 1), round(absence(2, 300), 1)
     (-4.9, -2.0, -4.2)
     """
@@ -469,7 +591,22 @@ def absence(objects: int, things: int) -> float:
 
 
 def no_unary_evidence(description: RelationGraph, scene: SceneRelations, meaning: Meaning = SHIPPED) -> Evidence:
-    """Return the evidence of the facts alone: all matches are allowed, without labels, sizes and colours."""
+    """Return the evidence of the facts alone: all matches are allowed, without labels, sizes and colours.
+
+    Parameters
+    ----------
+    description
+        The n1 objects and the facts.
+    scene
+        The n2 things, with their relations.
+    meaning
+        Models of words, and weights of evidence.
+
+    Returns
+    -------
+    Evidence
+        Evidence with zeros of shape (n1, n2) for labels and sizes.
+    """
     nothing = np.zeros((len(description.nodes), len(scene.nodes)))
     return Evidence(description, scene, nothing, nothing, meaning)
 
@@ -499,7 +636,36 @@ def thing_evidence(
     label_error: float = LABEL_ERROR,
     candidates: Sequence[Candidates | None] = (),
 ) -> ThingEvidence:
-    """Return the weighted evidence of labels, sizes and colours; parameters as for :func:`evidence_from`."""
+    """Return the weighted evidence of labels, sizes and colours; parameters as for :func:`evidence_from`.
+
+    Parameters
+    ----------
+    description
+        The n1 objects and the facts; only the objects count here.
+    boxes
+        Boxes of the n2 things, shape (n2, 2, d); None where they are unknown.
+    labels
+        Label of each thing; None where it has none.
+    kinds, sizes
+        Known kinds, and their usual sizes.
+    metric
+        Whether the boxes are in metres; otherwise they are in pixels.
+    meaning
+        Weights of evidence, and learned sizes.
+    seen
+        Colours of the things in sRGB, shape (n2, 3), NaN where unknown.
+    colours
+        Known colour terms.
+    label_error
+        Probability that a label of confidence 1 is wrong.
+    candidates
+        Names of each thing with probabilities; by default, no thing has any.
+
+    Returns
+    -------
+    ThingEvidence
+        Log-likelihood ratios in nats, and allowed matches, each of shape (n1, n2).
+    """
     weights, shape = meaning.weights, (len(description.nodes), len(labels))
     said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
     doubted = None
@@ -524,7 +690,22 @@ def thing_evidence(
 
 
 def without_facts(unary: NDArray[np.float64], absent: NDArray[np.float64], allowed: NDArray[np.bool_]) -> Problem:
-    """Return the matching problem without facts: unary evidence (n1, n2), absence (n1,) and allowed matches."""
+    """Return the matching problem without facts.
+
+    Parameters
+    ----------
+    unary
+        Evidence of each match in nats, shape (n1, n2).
+    absent
+        Value of leaving each object out, in nats, shape (n1,).
+    allowed
+        Allowed matches, shape (n1, n2).
+
+    Returns
+    -------
+    Problem
+        Problem with these arrays and no tables of facts.
+    """
     n2 = unary.shape[1]
     ends, nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, n2, n2), dtype=np.float32)
     return Problem(ends, ends[:, 0], nothing, unary, absent, allowed)
@@ -574,6 +755,11 @@ def evidence_from(
         Names of each thing with probabilities, weighted like labels; by default, no thing has any.
     claims
         Claims of the description beside its facts.
+
+    Returns
+    -------
+    Evidence
+        Evidence for n1 objects and n2 things.
     """
     known = thing_evidence(
         description,

@@ -81,7 +81,19 @@ Said = tuple[int, bool, float]
 def compared_facts(
     description: RelationGraph,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], list[Said]]:
-    """Return the m comparable edges (m,), their ends (m, 2), the index of each one's content (m,), and the contents."""
+    """Return the m edges that can be compared with a scene, and their different contents.
+
+    Parameters
+    ----------
+    description
+        The objects and the facts. An edge of an object to itself cannot be compared.
+
+    Returns
+    -------
+    tuple
+        Edges, shape (m,); their subjects and objects, shape (m, 2); the index of each one's content, shape (m,); and
+        the contents, sorted.
+    """
     edges = np.flatnonzero(description.subjects != description.objects).astype(np.int64)
     columns = (description.relation_sets, description.affirmed, description.net_weights)
     keys = list(zip(*(column[edges].tolist() for column in columns), strict=True))
@@ -120,6 +132,11 @@ def fact_tables(
         Evidence without facts for that estimate: shapes (n1, n2), (n1,) and (n1, n2).
     deadline
         End of the time limit.
+
+    Returns
+    -------
+    FactTables
+        Log-likelihood ratios in nats, with one table for each content that facts share.
 
     Raises
     ------
@@ -185,6 +202,11 @@ class FactEvidence:
         deadline
             End of the time limit.
 
+        Returns
+        -------
+        FactEvidence
+            Evidence whose methods compute the tables.
+
         Raises
         ------
         GraphError
@@ -229,8 +251,21 @@ class FactEvidence:
         """Estimate the share of facts that are meant literally, in [0, ``literalness.LITERAL``].
 
         The estimate uses the shipped models and the evidence without facts, as in
-        :class:`deixis.reasoning.grounding.matching.problem.Problem`: ``unary`` and ``allowed`` of shape (n1, n2), and
-        ``absent`` of shape (n1,).
+        :class:`deixis.reasoning.grounding.matching.problem.Problem`.
+
+        Parameters
+        ----------
+        unary
+            Evidence of each match in nats, shape (n1, n2); 0 by default.
+        absent
+            Value of leaving each object out, in nats, shape (n1,).
+        allowed
+            Allowed matches, shape (n1, n2); all by default.
+
+        Returns
+        -------
+        float
+            Expected share of literal facts.
         """
         shape = len(self.by_name), len(self.order)
         alone = np.zeros(shape) if unary is None else np.ascontiguousarray(unary[:, self.order])
@@ -241,11 +276,35 @@ class FactEvidence:
         return literal_share(either, self.by_name, self.deadline.share(JUDGEMENT_SHARE))
 
     def tables(self, literal: float) -> FactTables:
-        """Return the evidence if the share ``literal`` of the facts is meant literally."""
+        """Return the evidence if a share of the facts is meant literally.
+
+        Parameters
+        ----------
+        literal
+            Share of facts that are meant literally, in [0, 1].
+
+        Returns
+        -------
+        FactTables
+            Log-likelihood ratios in nats.
+
+        Raises
+        ------
+        OutOfTimeError
+            The deadline passed.
+        UnknownTermError, SettingError
+            A word has no model, or a weight is outside 0 to 1.
+        """
         return self._as_given(self.ratios.tables(literal, np.argsort(self.order)))
 
     def most(self) -> FactTables:
-        """Return an upper bound of the evidence of every pair, for any share that :meth:`literal` may return."""
+        """Return an upper bound of the evidence of every pair, for any share that :meth:`literal` may return.
+
+        Returns
+        -------
+        FactTables
+            Tables of upper bounds in nats.
+        """
         back = np.argsort(self.order)
         graded, literal = self.ratios.tables(0.0, back), self.ratios.tables(LITERAL, back)
         return self._as_given(np.maximum(graded, literal, out=graded))
@@ -273,7 +332,18 @@ class SaidFacts:
         self.literally = np.reshape([0.0 if modelled else 1.0 for modelled in self.modelled], (-1, 1))
 
     def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
-        """Return how readily people mention each pair of a block, in (0, 1]."""
+        """Return how readily people mention each pair of a block, in (0, 1].
+
+        Parameters
+        ----------
+        pairs
+            Geometry of the pairs of the block, with n subjects and m objects.
+
+        Returns
+        -------
+        ndarray or np.float32
+            Degrees, shape (n, m), or 1 for all pairs where mentions are not modelled.
+        """
         return saying_degree(pairs, self.models).astype(np.float32) if self.saying else np.float32(1.0)
 
     def ratio(
@@ -283,7 +353,24 @@ class SaidFacts:
         names: NDArray[np.uint8],
         spoken: NDArray[np.float32] | np.float32,
     ) -> NDArray[np.float32]:
-        """Return the likelihood ratio of a fact for each pair of a block, for a graded speaker against chance."""
+        """Return the likelihood ratio of a fact for each pair of a block, for a graded speaker against chance.
+
+        Parameters
+        ----------
+        fact
+            Position of the fact among the k different ones.
+        degrees_of
+            Degrees of the words for the pairs of the block.
+        names
+            Index of the exact relation of each pair, shape (n, m).
+        spoken
+            How readily people mention each pair, from :meth:`spoken`.
+
+        Returns
+        -------
+        ndarray
+            Likelihood ratios, shape (n, m).
+        """
         relations, positive, _ = self.said[fact]
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
@@ -306,13 +393,43 @@ class SaidFacts:
         return ratio
 
     def offset(self, facts: int | slice, share: float) -> NDArray[np.float32]:
-        """Return the terms to add to the graded ratios, by exact relation: the literal ``share``, and hedges."""
+        """Return the terms to add to graded ratios, by exact relation: those of a literal speaker and of hedges.
+
+        Parameters
+        ----------
+        facts
+            Position of a fact, or of several.
+        share
+            Share of literal facts, in [0, 1].
+
+        Returns
+        -------
+        ndarray
+            Terms, shape (…, relations + 1), with one row for each fact of a slice.
+        """
         weights, shares = self.weights[facts], share * self.literally[facts]
         offset: NDArray[np.float32] = (weights * shares * self.literal[facts] + (1 - weights)).astype(np.float32)
         return offset
 
     def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
-        """Return the likelihood ratio of a fact for each pair of a block, if ``share`` of the facts are literal."""
+        """Return the likelihood ratio of a fact for each pair of a block, if a share of the facts is literal.
+
+        Parameters
+        ----------
+        fact
+            Position of the fact among the k different ones.
+        pairs
+            Geometry of the pairs of the block, with n subjects and m objects.
+        names
+            Index of the exact relation of each pair, shape (n, m).
+        share
+            Share of literal facts, in [0, 1].
+
+        Returns
+        -------
+        ndarray
+            Likelihood ratios, shape (n, m).
+        """
         ratio = self.ratio(fact, WordDegrees(pairs, self.models), names, self.spoken(pairs))
         ratio *= np.float32(self.said[fact][2] * (1 - share * float(self.literally[fact, 0])))
         ratio += self.offset(fact, share)[names]
@@ -398,7 +515,26 @@ def literal_degree(
     vocabulary: Relations,
     implied: float = 0.5,
 ) -> Array:
-    """Return crisp degrees by the exact relation of each pair (-1: none), shape (n2, n2): 1, ``implied``, or 0."""
+    """Return crisp degrees by the exact relation of each pair : 1, ``implied``, or 0.
+
+    Parameters
+    ----------
+    relations
+        Relations of the fact, any one of which may hold.
+    positive
+        False for a denial.
+    names
+        Index of the exact relation of each pair, -1 for none; shape (n2, n2).
+    vocabulary
+        The known relations.
+    implied
+        Degree where a relation holds only in its wide reading.
+
+    Returns
+    -------
+    ndarray
+        Degrees, shape (n2, n2); 0 for pairs without a relation.
+    """
     best = vocabulary.degrees[[relation.index for relation in relations]].max(axis=0)
     degree = np.where((best > 0) & (best < 1), implied, best) if positive else (best == 0).astype(np.float64)
     result: Array = np.where(names >= 0, degree[names], 0.0)
@@ -408,6 +544,20 @@ def literal_degree(
 def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
     """Return the degree of a choice between words (axis 0), or of the denial of all of them.
 
+    Parameters
+    ----------
+    degrees
+        Degrees of the words, each of the same shape.
+    positive
+        True for a choice, False for a denial.
+
+    Returns
+    -------
+    ndarray
+        The mean degree for a choice; for a denial, the product of the complements.
+
+    Examples
+    --------
     >>> combined(np.array([0.8, 0.2]), True).item(), round(combined(np.array([0.8, 0.5]), False).item(), 3)
     (0.5, 0.1)
     """
@@ -419,10 +569,27 @@ def combined(degrees: Sequence[Array] | Array, positive: bool) -> Array:
 def hedged(evidence: Array, weight: float) -> Array:
     """Return the evidence of a fact that holds with probability ``weight`` and is ignored otherwise.
 
+    Parameters
+    ----------
+    evidence
+        Log-likelihood ratios of the fact in nats, of any shape.
+    weight
+        Probability that the fact holds, above 0 and at most 1.
+
+    Returns
+    -------
+    ndarray
+        Log-likelihood ratios in nats, of the shape of ``evidence``.
+
+    Raises
+    ------
+    SettingError
+        The weight is not above 0 and at most 1.
+
+    Examples
+    --------
     >>> hedged(np.array([3.0, -3.0]), 1.0).tolist(), hedged(np.array([3.0, -3.0]), 0.8).round(2).tolist()
     ([3.0, -3.0], [2.79, -1.43])
-
-    Raises SettingError for a weight that is not above 0 and at most 1.
     """
     if not 0 < weight <= 1:
         raise SettingError(f"the weight of a fact must be above 0 and at most 1, got {weight:g}")
@@ -435,8 +602,18 @@ def hedged(evidence: Array, weight: float) -> Array:
 def crisp_tables(description: RelationGraph, names: NDArray[np.integer]) -> FactTables:
     """Return tables of the crisp reading: 1, 0.5 or 0 by the pair's exact relation, times the weight of the fact.
 
-    ``names`` (n2, n2) are indices of relations, -1 on the diagonal, as in
-    :class:`deixis.reasoning.geometry.rectangle.SceneRelations`.
+    Parameters
+    ----------
+    description
+        The objects and the facts.
+    names
+        Index of the exact relation of each pair, -1 on the diagonal, shape (n2, n2), as in
+        :class:`deixis.reasoning.geometry.rectangle.SceneRelations`.
+
+    Returns
+    -------
+    FactTables
+        Tables of degrees times weights.
     """
     vocabulary = description.vocabulary
     edges = np.flatnonzero(description.subjects != description.objects)

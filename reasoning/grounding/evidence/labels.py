@@ -27,11 +27,23 @@ from deixis.ontology.triples import category_iri
 
 
 def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the mask (n,) of rows that at least one maximum matching of the allowed ``pairs`` (n, m) leaves over.
+    """Return the mask of rows that at least one maximum matching leaves over.
 
     All maximum matchings are reached from one of them by alternating paths from its unmatched rows (Dulmage and
     Mendelsohn 1958).
 
+    Parameters
+    ----------
+    pairs
+        Allowed pairs of n rows and m columns, shape (n, m).
+
+    Returns
+    -------
+    ndarray
+        Mask of shape (n,).
+
+    Examples
+    --------
     >>> spare_rows(np.array([[1, 0], [1, 0], [0, 1], [0, 0]], bool)).tolist()
     [True, True, False, True]
     """
@@ -76,7 +88,22 @@ class Naming:
 
 
 def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Kinds) -> Naming:
-    """Return the objects that the labels of all things of a scene name, with one label or None per thing."""
+    """Return the objects that the labels of all things of a scene name, with one label or None per thing.
+
+    Parameters
+    ----------
+    description
+        The n1 objects.
+    labels
+        Label of each of n2 things, None where it has none.
+    kinds
+        The known kinds.
+
+    Returns
+    -------
+    Naming
+        Masks of shape (n1, n2).
+    """
     said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
     nothing = np.zeros(len(description.nodes), dtype=bool)
     texts = {
@@ -129,7 +156,20 @@ def _narrowing(words: str) -> bool:
 
 
 def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
-    """Return the mask (n1,) of objects with a name, or else with it and a number: ``wine_glass``, ``wine_glass_1``."""
+    """Return the mask of objects with a name, or else with it and a number: ``wine_glass``, ``wine_glass_1``.
+
+    Parameters
+    ----------
+    description
+        The n1 objects.
+    name
+        The name, in any case, with spaces or underscores.
+
+    Returns
+    -------
+    ndarray
+        Mask of shape (n1,).
+    """
     plain = _plain(name)
     same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
@@ -140,6 +180,18 @@ def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
 def category_of(name: str) -> str:
     """Return the category, as a class IRI, of things with a name (without its number) that is not a known kind.
 
+    Parameters
+    ----------
+    name
+        Name of a thing.
+
+    Returns
+    -------
+    str
+        IRI of the category.
+
+    Examples
+    --------
     >>> category_of("fish_knife_2") == category_of("Fish knife")
     True
     """
@@ -147,7 +199,18 @@ def category_of(name: str) -> str:
 
 
 def classes(description: RelationGraph) -> tuple[str, ...]:
-    """Return the class IRI of each object of a description: its kind, else the category of its name."""
+    """Return the class IRI of each object of a description: its kind, else the category of its name.
+
+    Parameters
+    ----------
+    description
+        The n1 objects.
+
+    Returns
+    -------
+    tuple of str
+        IRI of each object's class, in the order of the objects.
+    """
     return tuple(kind or category_of(node) for kind, node in zip(_kinds(description), description.nodes, strict=True))
 
 

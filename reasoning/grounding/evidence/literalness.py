@@ -50,6 +50,11 @@ def literal_share(either: Iterable[Problem], objects: Order, deadline: Deadline 
     deadline
         Time after which the prior share is returned.
 
+    Returns
+    -------
+    float
+        Share in [0, ``LITERAL``].
+
     Examples
     --------
     >>> there, order = np.array([[[0, 1], [0, 0]]], np.float32), np.arange(2)

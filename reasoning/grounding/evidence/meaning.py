@@ -49,27 +49,70 @@ CHANCE = {
 
 
 def falling_with_angle(half: float) -> Term:
-    """Return the term of ``deviation``: exp(k (cos a - 1)), one half at ``half`` radians."""
+    """Return the term of ``deviation``: exp(k (cos a - 1)), one half at ``half`` radians.
+
+    Parameters
+    ----------
+    half
+        Angle in radians at which the degree is one half.
+
+    Returns
+    -------
+    Term
+        Term with knots in radians and values in nats.
+    """
     angles = np.radians([0.0, 22.5, 45.0, 67.5, 90.0, 135.0, 180.0])
     values = BORDER * (1 - np.cos(angles)) / (1 - np.cos(half))
     return Term("deviation", tuple(angles.tolist()), tuple(np.maximum(values, 2 * EXTREME).tolist()), Trend.FALLING)
 
 
 def aim_term(half: float, chance: float) -> Term:
-    """Return the term of ``aim``: one half at ``half`` radians, and the degree of a random pair where it is unknown."""
+    """Return the term of ``aim``: one half at ``half`` radians, and the degree of a random pair where it is unknown.
+
+    Parameters
+    ----------
+    half
+        Angle in radians at which the degree is one half.
+    chance
+        Degree of a random pair, above 0.
+
+    Returns
+    -------
+    Term
+        Term with knots in radians and values in nats.
+    """
     fall = falling_with_angle(half)
     return Term("aim", (UNKNOWN_AIM, *fall.knots), (float(np.log(chance)), *fall.values))
 
 
 @lru_cache(maxsize=1)
 def own_frame_model() -> RelationModel:
-    """Return the model of directions from the front of a thing: *in front of the chair*."""
+    """Return the model of directions from the front of a thing: *in front of the chair*.
+
+    Returns
+    -------
+    RelationModel
+        Model with the term ``aim``, computed once.
+    """
     gap = Term("gap", (0.0, 2 / 3, 1.0), (0.0, BORDER, EXTREME), Trend.FALLING)
     return RelationModel("own frame", (aim_term(np.pi / 4, CHANCE["facing"]), gap), OUTLIERS, CHANCE["facing"])
 
 
 def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
-    """Return the terms of a direction word that fits half as well at ``half`` radians from its axis."""
+    """Return the terms of a direction word that fits half as well at ``half`` radians from its axis.
+
+    Parameters
+    ----------
+    half
+        Angle in radians from the axis of the word at which the degree is one half.
+    abreast
+        Trend of the degree with the share of the extents across that overlap.
+
+    Returns
+    -------
+    tuple of Term
+        Terms with values in nats.
+    """
     beside = (BORDER, 0.0) if abreast is Trend.RISING else (0.0, BORDER)
     return (
         falling_with_angle(half),
@@ -85,7 +128,13 @@ def direction_terms(half: float, abreast: Trend) -> tuple[Term, ...]:
 
 
 def support_terms() -> tuple[Term, ...]:
-    """Return the terms of ``on``: within the object's outline, the foot on it, and higher where heights are known."""
+    """Return the terms of ``on``: within the object's outline, the foot on it, and higher where heights are known.
+
+    Returns
+    -------
+    tuple of Term
+        Terms with values in nats.
+    """
     return (
         Term("across", (0.0, 0.5, 1.0), (EXTREME, BORDER, 0.0), Trend.RISING),
         # a thing that extends below the object is not on it: one half at a quarter of the depth; above, it may stand
@@ -101,6 +150,11 @@ def saying_terms() -> tuple[Term, ...]:
 
     A speaker chooses a landmark that singles out the subject, and words that fit a thing near it: of the dots of
     OneCommon, nine of ten are the nearest one in the half plane that the word names.
+
+    Returns
+    -------
+    tuple of Term
+        Terms with values in nats.
     """
     sizes = np.linspace(-1.0, 1.0, 9)
     chosen = np.log(np.maximum((1 + sizes) / 2, 0.05))
@@ -111,7 +165,13 @@ def saying_terms() -> tuple[Term, ...]:
 
 
 def graded_terms() -> dict[str, tuple[Term, ...]]:
-    """Return the terms of the words beside the ten, by model."""
+    """Return the terms of the words beside the ten, by model.
+
+    Returns
+    -------
+    dict
+        Terms by the name of the model.
+    """
     return {
         # prototype: touching or nearly; one half: a gap of three mean sizes, or a third of the other things nearer
         "nearness": (
@@ -168,6 +228,13 @@ def graded_terms() -> dict[str, tuple[Term, ...]]:
 def shipped_models() -> RelationModels:
     """Return the shipped models of all words, and of the pairs that people mention.
 
+    Returns
+    -------
+    RelationModels
+        Models by family, computed once.
+
+    Examples
+    --------
     >>> [term.feature for term in shipped_models()["support"].terms]
     ['across', 'foot', 'gap', 'rise']
     """

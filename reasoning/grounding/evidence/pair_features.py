@@ -34,13 +34,25 @@ MIN_DIRECTION_OFFSET = 0.5
 
 
 def view(pairs: PairGeometry, word: str) -> View:
-    """Return the features of every ordered pair for a word, or for ``saying``; arrays of shape (n, n).
+    """Return the features of every ordered pair for a word, or for ``saying``.
 
     Features of a direction: ``deviation`` (radians from the direction of the word), ``clear`` (distance of the near
     edges), ``trail`` and ``lead`` (the lesser and the greater of the offsets of starts and ends), ``forward`` and
     ``lateral`` (offsets along and across), ``abreast`` (share of the smaller extent across that the other covers),
     ``gap``, ``alike`` (difference of sizes). Features of support: see :func:`_support`. Features of saying: ``crowd``
     and ``figure``. Features of words beside the ten: see ``GRADED_VIEWS``.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs.
+    word
+        Name of the word, or ``saying``.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (n, n); angles in radians, all others without unit.
     """
     if word == "saying":
         return {"crowd": pairs.crowd, "figure": pairs.smaller}
@@ -241,6 +253,18 @@ def own_frame(pairs: PairGeometry, word: str) -> View | None:
 
     *In front of* and *behind* are judged by the front of the object, *opposite* by the fronts of both. ``aim`` is
     unknown for pairs whose fronts are not known.
+
+    Parameters
+    ----------
+    pairs
+        Geometry of the pairs of n subjects and m objects, with their poses.
+    word
+        Name of the word.
+
+    Returns
+    -------
+    dict or None
+        Features by name, each of shape (n, m), angles in radians; or None.
     """
     if word in OWN_WORDS:
         reverse = _facing(pairs.reverse)["aim"].T

@@ -42,9 +42,19 @@ MIN_SUPPORTED_SHARE = 0.6
 
 
 def supporting_box(boxes: Array) -> int | None:
-    """Return the index of the box that most others of n boxes (n, 2, 3) stand on, such as a tray; None without one.
+    """Return the index of the box that most others stand on, such as a tray; None without one.
 
     A box stands on another if its centre is within the other's outline and its underside is not below the other's.
+
+    Parameters
+    ----------
+    boxes
+        Boxes of n things, shape (n, 2, 3); boxes with 2 axes have no support.
+
+    Returns
+    -------
+    int or None
+        Position of the box, or None.
     """
     if len(boxes) <= MIN_SUPPORTED or boxes.shape[2] < 3:
         return None
@@ -60,10 +70,20 @@ def supporting_box(boxes: Array) -> int | None:
 
 
 def lean_on_surface(boxes: Array) -> Array:
-    """Return the lean of n boxes (n, 2, d) on the surface that holds them, shape (n, 2), in [0, 1].
+    """Return the lean of boxes on the surface that holds them.
 
     The surface is the box that most others stand on. Without one, it is their common bounding box with a margin of half
     of their mean spacing on every side.
+
+    Parameters
+    ----------
+    boxes
+        Boxes of n things, shape (n, 2, d).
+
+    Returns
+    -------
+    ndarray
+        Lean of each box, shape (n, 2), from 0 to 1: from left to right, and from near to far.
     """
     low, high = boxes[:, 0, :2], boxes[:, 1, :2]
     support = supporting_box(boxes)
@@ -79,7 +99,18 @@ def lean_on_surface(boxes: Array) -> Array:
 
 
 def lean_in_things(boxes: Array) -> Array:
-    """Return the lean of the centre of each box (rows) in each box (columns), shape (n, n, 2), in [0, 1]."""
+    """Return the lean of the centre of each box in each box.
+
+    Parameters
+    ----------
+    boxes
+        Boxes of n things, shape (n, 2, d).
+
+    Returns
+    -------
+    ndarray
+        Place of each centre (rows) in each box (columns) in [0, 1], shape (n, n, 2).
+    """
     low, extent = boxes[:, 0, :2], boxes[:, 1, :2] - boxes[:, 0, :2]
     middle = low + extent / 2
     share = (middle[:, None] - low[None]) / np.maximum(extent[None], 1e-9)
@@ -92,6 +123,22 @@ def place_degree(term: str, value: str | None, lean: Array) -> Array | None:
     ``far left`` of a part is the far left quarter or the extreme left: the degree is the mean of both readings. A
     place without a side (*at the edge*, *in a corner*) is the best of its sides.
 
+    Parameters
+    ----------
+    term
+        Kind of place, such as ``corner``, ``side``, ``edge`` or ``part``.
+    value
+        Words for the side, such as *far left*; None where none is named.
+    lean
+        Places in [0, 1] from left to right and from near to far, shape (…, 2).
+
+    Returns
+    -------
+    ndarray or None
+        Degrees in (0, 1], shape (…,), or None.
+
+    Examples
+    --------
     >>> place_degree("corner", "far left", np.array([[0.1, 0.9], [0.9, 0.9], [0.5, 0.5]])).round(2).tolist()
     [1.0, 0.05, 0.03]
     """

@@ -49,12 +49,31 @@ class SceneWords:
     between: Array
 
     def of(self, subject: int, other: int) -> dict[str, float]:
-        """Return the words that are likely of a pair, the most probable first."""
+        """Return the words that are likely of a pair, the most probable first.
+
+        Parameters
+        ----------
+        subject
+            Position of the subject.
+        other
+            Position of the object.
+
+        Returns
+        -------
+        dict
+            Probability by word, at least ``LIKELY``.
+        """
         found = {word: float(table[subject, other]) for word, table in self.degrees.items()}
         return dict(sorted(((w, p) for w, p in found.items() if p >= LIKELY), key=lambda one: -one[1]))
 
     def triples(self) -> list[tuple[int, int, int, float]]:
-        """Return subject, first, second and probability of all likely *between*, the most probable first."""
+        """Return subject, first, second and probability of all likely *between*, the most probable first.
+
+        Returns
+        -------
+        list of tuple
+            Positions of the three things, and the probability.
+        """
         n = len(self.between)
         places = np.argwhere(self.between >= LIKELY).tolist()
         found = [(i, j, k, float(self.between[i, j, k])) for i, j, k in places if j < k and i not in (j, k)]
@@ -72,6 +91,11 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
         Orientation of the things; None for axes along the sides of the boxes, and no fronts.
     models
         Models of the words; the shipped ones by default.
+
+    Returns
+    -------
+    SceneWords
+        Degrees of the words for all pairs, and of *between* for all triples.
 
     Raises
     ------

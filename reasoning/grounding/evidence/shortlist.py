@@ -119,6 +119,11 @@ def shortlist(
     deadline
         End of the time limit.
 
+    Returns
+    -------
+    Shortlist
+        The chosen things, and what is known of the rest.
+
     Raises
     ------
     OutOfMemoryError, OutOfTimeError

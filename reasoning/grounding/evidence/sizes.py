@@ -56,6 +56,18 @@ class SizeMixture:
 def size_model(usual: SizeRange) -> SizeModel:
     """Return the model of a usual size: its median is the typical length, and its range is two deviations either way.
 
+    Parameters
+    ----------
+    usual
+        Typical, least and greatest length and width of a kind, in metres.
+
+    Returns
+    -------
+    SizeModel
+        Mean and standard deviation of log length and log aspect.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> ontology = default_ontology()
     >>> plate = size_model(ontology.sizes.of(ontology.kinds.of_word("dinner plate").iri))
@@ -71,7 +83,20 @@ def size_model(usual: SizeRange) -> SizeModel:
 
 
 def usual_size(kind: str, sizes: Sizes) -> SizeModel | None:
-    """Return the usual size of a kind (class IRI); None where the ontology states only that of all things."""
+    """Return the usual size of a kind (class IRI); None where the ontology states only that of all things.
+
+    Parameters
+    ----------
+    kind
+        Class IRI of the kind.
+    sizes
+        Usual sizes of the ontology.
+
+    Returns
+    -------
+    SizeModel or None
+        The model, or None.
+    """
     usual = sizes.of(kind)
     return None if usual.stated_of == DX.THING else size_model(usual)
 
@@ -80,8 +105,19 @@ def from_above(model: SizeModel, reach: float = 0.0) -> SizeMixture:
     """Return the distribution of sizes in the plan for a thing on a table; a model learned from images is unchanged.
 
     The box of a thing of length l and width w at an angle a is l cos a + w sin a by l sin a + w cos a. A thing about as
-    wide as long is assumed to be round; its box is the same at every angle, except for a handle that stands out by
-    ``reach``, a share of the length.
+    wide as long is assumed to be round; its box is the same at every angle, except for a handle that stands out.
+
+    Parameters
+    ----------
+    model
+        Distribution of sizes of a kind.
+    reach
+        Length of the handle as a share of the thing's length.
+
+    Returns
+    -------
+    SizeMixture
+        Mixture over the angles at which the thing may lie.
     """
     straight = np.array([[model.length[0], model.aspect[0]]])
     spread = np.array([model.length[1], model.aspect[1]])
@@ -103,7 +139,18 @@ def from_above(model: SizeModel, reach: float = 0.0) -> SizeMixture:
 
 
 def in_image_from_above(model: SizeModel) -> SizeMixture:
-    """Return the distribution of sizes in an image from above, where things lie across and along equally often."""
+    """Return the distribution of sizes in an image from above, where things lie across and along equally often.
+
+    Parameters
+    ----------
+    model
+        Distribution of sizes of a kind.
+
+    Returns
+    -------
+    SizeMixture
+        Mixture over the angles, with height over width as the aspect.
+    """
     plan = from_above(model)
     if model.relative:
         return plan
@@ -116,6 +163,20 @@ def in_image_from_aside(kind: str, model: SizeModel, sizes: Sizes) -> SizeMixtur
 
     The faces that length, width and height make are equally likely, and the height is upright. A kind without a
     stated height, or with a size learned from images, has the distribution of :func:`in_image_from_above`.
+
+    Parameters
+    ----------
+    kind
+        Class IRI of the kind.
+    model
+        Distribution of its sizes.
+    sizes
+        Usual sizes of the ontology, for the height.
+
+    Returns
+    -------
+    SizeMixture
+        Mixture over the angles and over the faces.
     """
     plan, usual = in_image_from_above(model), sizes.of(kind)
     if model.relative or usual.stated_of == DX.THING:
@@ -132,6 +193,18 @@ def beside_each_other(known: Mapping[str, SizeMixture], kinds: Sequence[str]) ->
 
     The median length of the objects with a known size estimates that of the scene. The error of the estimate grows with
     the spread of the lengths and falls with their number.
+
+    Parameters
+    ----------
+    known
+        Distribution of sizes by kind; other kinds have none.
+    kinds
+        Kind (class IRI) of each object.
+
+    Returns
+    -------
+    dict
+        Distributions relative to the median length of the scene, by kind.
     """
     lengths = np.array([known[kind].length for kind in kinds if kind in known and not known[kind].relative])
     if not len(lengths):

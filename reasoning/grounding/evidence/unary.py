@@ -71,10 +71,21 @@ class UnaryWeights:
 
 
 def log_sizes(boxes: NDArray[np.float64], relative: bool) -> Array:
-    """Return natural logarithms of length and aspect of n boxes (n, 2, d), shape (n, 2).
+    """Return natural logarithms of length and aspect of boxes.
 
-    The aspect is the shorter over the longer side. With ``relative``, as for an image, lengths are in units of their
-    median, and the aspect is height over width. A side of length 0 is replaced by a millionth of the length.
+    The aspect is the shorter over the longer side. A side of length 0 is replaced by a millionth of the length.
+
+    Parameters
+    ----------
+    boxes
+        Boxes of n things, shape (n, 2, d).
+    relative
+        True for an image: lengths are in units of their median, and the aspect is height over width.
+
+    Returns
+    -------
+    ndarray
+        Log length and log aspect of each box, shape (n, 2).
     """
     boxes = np.asarray(boxes, dtype=np.float64)
     require_boxes(boxes)
@@ -142,10 +153,26 @@ def too_high(
     sizes: Sizes,
     learned: Mapping[str, SizeModel] | None = None,
 ) -> NDArray[np.bool_]:
-    """Return the mask (n1, n2) of boxes in metres that are much higher than usual for n1 kinds (class IRIs).
+    """Return the mask of boxes that are much higher than usual for kinds.
 
     Things that are lower than usual are not excluded, because another thing may hide a part of them. The mask is false
     for boxes without a height, and for kinds with a learned size.
+
+    Parameters
+    ----------
+    kinds
+        Kind (class IRI) of each of n1 objects.
+    boxes
+        Boxes of n2 things in metres, shape (n2, 2, d).
+    sizes
+        Usual sizes of the ontology.
+    learned
+        Learned sizes by kind.
+
+    Returns
+    -------
+    ndarray
+        Mask of shape (n1, n2).
     """
     if boxes.shape[2] < 3:
         return np.zeros((len(kinds), len(boxes)), dtype=bool)
@@ -161,7 +188,22 @@ def too_high(
 def looks_in_image(
     kinds: Sequence[str], sizes: Sizes, learned: Mapping[str, SizeModel] | None = None
 ) -> tuple[dict[str, SizeMixture], dict[str, SizeMixture]]:
-    """Return the relative sizes of the known kinds of the objects in an image: seen from above, and from the side."""
+    """Return the relative sizes of the known kinds of the objects in an image: seen from above, and from the side.
+
+    Parameters
+    ----------
+    kinds
+        Kind (class IRI) of each object.
+    sizes
+        Usual sizes of the ontology.
+    learned
+        Learned sizes by kind, which replace the usual ones.
+
+    Returns
+    -------
+    tuple
+        Distribution of sizes by kind from above, and from the side.
+    """
     known = _known(kinds, sizes, learned)
     above = {kind: in_image_from_above(model) for kind, model in known.items()}
     aside = {kind: in_image_from_aside(kind, model, sizes) for kind, model in known.items()}

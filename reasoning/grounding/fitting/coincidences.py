@@ -57,7 +57,18 @@ class JudgedTable:
     errors: Array
 
     def score(self, weights: CoincidenceWeights) -> float:
-        """Return the score of the table with these weights."""
+        """Return the score of the table with some weights.
+
+        Parameters
+        ----------
+        weights
+            Weights of the misfit and of the alternatives.
+
+        Returns
+        -------
+        float
+            Mean log probability of the true matches in nats, plus the weighted worth of the decisions; more is better.
+        """
         remaining = self.found.remaining(weights)
         absent = 1.0 - (1.0 - self.found.absent) * remaining
         of_truth = np.where(self.missing, absent, self.of_truth * remaining)
@@ -77,6 +88,11 @@ def fit_coincidences(settings: Sequence[Sequence[JudgedTable]], iterations: int 
         Tables of each setting.
     iterations
         Maximum number of steps of the search (Nelder and Mead 1965).
+
+    Returns
+    -------
+    CoincidenceWeights
+        The weights with the highest mean score, in which each setting counts the same.
 
     Raises
     ------

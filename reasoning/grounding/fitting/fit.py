@@ -37,7 +37,22 @@ from deixis.reasoning.grounding.fitting.parameters import Layout
 
 
 def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArray[np.float64]]:
-    """Return boxes (size, 2, 2) with centres anywhere in the unit square and extents between 0.02 and 0.3."""
+    """Return scenes of boxes with centres anywhere in the unit square and extents between 0.02 and 0.3.
+
+    Parameters
+    ----------
+    count
+        Number of scenes.
+    size
+        Number of boxes of a scene.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    list of ndarray
+        Boxes of each scene, least and greatest corners, shape (size, 2, 2).
+    """
     rng = np.random.default_rng(seed)
     centres = rng.uniform(0.0, 1.0, (count, size, 2))
     halves = rng.uniform(0.01, 0.15, (count, size, 2))
@@ -45,7 +60,20 @@ def random_scenes(count: int = 200, size: int = 8, seed: int = 1) -> list[NDArra
 
 
 def chance_degree(model: RelationModel, scenes: Iterable[PairGeometry]) -> float:
-    """Return the mean degree of a model over all ordered pairs of scenes and words of the model; 1 without pairs."""
+    """Return the mean degree of a model over all ordered pairs of scenes and words of the model; 1 without pairs.
+
+    Parameters
+    ----------
+    model
+        Model of a family of words.
+    scenes
+        Pairs of boxes of each scene.
+
+    Returns
+    -------
+    float
+        Mean degree, in (0, 1].
+    """
     if not model.terms:
         return 1.0
     found = degree_sum(model, scenes)
@@ -62,7 +90,20 @@ class DegreeSum:
 
 
 def degree_sum(model: RelationModel, scenes: Iterable[PairGeometry]) -> DegreeSum:
-    """Return the sum of degrees of a model over all ordered pairs of scenes and words of the model."""
+    """Return the sum of degrees of a model over all ordered pairs of scenes and words of the model.
+
+    Parameters
+    ----------
+    model
+        Model of a family of words.
+    scenes
+        Pairs of boxes of each scene.
+
+    Returns
+    -------
+    DegreeSum
+        Number of pairs and words, sum of their degrees, and derivative of the sum by the values of the model.
+    """
     words = [word for word, family in FAMILIES.items() if family == model.name]
     words = words or [word for word, family in GRADED_FAMILIES.items() if family == model.name] or [SAYING]
     count, total, slope = 0, 0.0, np.zeros(sum(len(term.knots) for term in model.terms))
@@ -134,7 +175,25 @@ def learn_relations(
 ) -> RelationModels:
     """Return the models that best fit the scenes and the prior, with their provenance.
 
-    Models of words that no scene states are returned unchanged. Raises SettingError for invalid settings.
+    Models of words that no scene states are returned unchanged.
+
+    Parameters
+    ----------
+    scenes
+        Examples of each scene.
+    prior
+        Models from which the fit starts, and towards which the prior draws.
+    settings
+        Settings of the fit; by default, those of :class:`FitSettings`.
+    sources
+        Names of the data, for the provenance.
+    version
+        Version of the software, for the provenance.
+
+    Returns
+    -------
+    RelationModels
+        Fitted models; the words of a family share one.
     """
     return fit_relations(scenes, prior, settings or FitSettings(), sources, version).models
 
@@ -146,7 +205,26 @@ def fit_relations(
     sources: Sequence[str] = (),
     version: str = "",
 ) -> RelationFit:
-    """Fit models like :func:`learn_relations`, and return them with the statistics for :func:`take_out`."""
+    """Fit models like :func:`learn_relations`, and return them with the statistics for :func:`take_out`.
+
+    Parameters
+    ----------
+    scenes
+        Examples of each scene.
+    prior
+        Models from which the fit starts, and towards which the prior draws.
+    settings
+        Settings of the fit.
+    sources
+        Names of the data, for the provenance.
+    version
+        Version of the software, for the provenance.
+
+    Returns
+    -------
+    RelationFit
+        Fitted models, and the statistics.
+    """
     examples = _examples(scenes)
     if not examples:
         return RelationFit(prior, None)
@@ -176,6 +254,24 @@ def take_out(
     same prior and bounds: a Newton step, whose difference from a new fit is of the order of the square of the scene's
     share. Returns None where a new fit is needed: few scenes, or fewer than half of the fitted ones, remain, or a
     family of words loses its last example.
+
+    Parameters
+    ----------
+    statistics
+        Statistics of the fit with all scenes.
+    scene
+        Examples of the scene to take out.
+    prior
+        The prior of the fit.
+    settings
+        The settings of the fit.
+    version
+        Version of the software, for the provenance.
+
+    Returns
+    -------
+    RelationFit or None
+        Models and statistics without the scene; None where a new fit is needed.
 
     Notes
     -----
@@ -282,7 +378,18 @@ _KNOTS = {
 
 
 def extended(model: RelationModel) -> RelationModel:
-    """Return the model with more knots, and with terms of value 0 for the features that the prior does not use."""
+    """Return the model with more knots, and with terms of value 0 for the features that the prior does not use.
+
+    Parameters
+    ----------
+    model
+        Model of a family of words, usually of the prior.
+
+    Returns
+    -------
+    RelationModel
+        Model with the same degrees and more free values.
+    """
     direction = model.name in {"horizontal", "vertical", "diagonal"}
     finer = _KNOTS.get("direction" if direction else model.name, {})
     known = {term.feature: term for term in model.terms}

@@ -43,6 +43,11 @@ def fit_powers(
     another
         Prior probability of another scene.
 
+    Returns
+    -------
+    ndarray
+        Powers of facts, of their upper bound, and of kinds, shape (3,).
+
     Raises
     ------
     SettingError
@@ -81,6 +86,11 @@ def likeliest_powers(
         Weight of each pair, shape (n,); by default, right and wrong pairs have the same total weight.
     held
         Known values of the first powers.
+
+    Returns
+    -------
+    ndarray
+        Powers of facts, of their upper bound, and of kinds, shape (3,).
 
     Raises
     ------

@@ -50,6 +50,11 @@ def said_pairs(
         Probability of each object's match, 1 by default. The weight of an example is that of the fact times the
         confidences of both objects.
 
+    Returns
+    -------
+    SaidPairs
+        The pairs of boxes, and the word, the ends and the weight of each example.
+
     Raises
     ------
     GraphError
@@ -105,7 +110,18 @@ class Likelihood:
         return total, gradient
 
     def information(self, values: Array) -> Array:
-        """Return the negated second derivative of the log-likelihood of the contrast between pairs, shape (k, k)."""
+        """Return the negated second derivative of the log-likelihood of the contrast between pairs.
+
+        Parameters
+        ----------
+        values
+            The k values of the models, in the order of the layout.
+
+        Returns
+        -------
+        ndarray
+            Positive semidefinite matrix of shape (k, k).
+        """
         total = np.zeros((len(values), len(values)))
         for scene in self.scenes:
             scores, slopes = scene.scores(values)
@@ -199,7 +215,22 @@ class _Designed:
 
 
 def hats(model: RelationModel, features: View, apart: NDArray[np.bool_]) -> Array:
-    """Return the weight of every knot of every term for every pair, shape (p, knots): linear interpolation."""
+    """Return the weight of every knot of every term for every pair, by linear interpolation.
+
+    Parameters
+    ----------
+    model
+        Model of a family of words.
+    features
+        Features of the pairs of a scene, by name, each of shape (n, n).
+    apart
+        Mask of the p pairs to use, shape (n, n).
+
+    Returns
+    -------
+    ndarray
+        Weights in [0, 1], shape (p, knots), the knots of all terms side by side.
+    """
     parts = []
     for term in model.terms:
         knots = np.array(term.knots)

@@ -34,23 +34,57 @@ class Layout:
         self.prior = np.concatenate([term.values for term in self.terms])
 
     def model(self, name: str) -> RelationModel:
-        """Return the model with a name."""
+        """Return the model with a name.
+
+        Parameters
+        ----------
+        name
+            Name of a model of the layout.
+
+        Returns
+        -------
+        RelationModel
+            The model with its initial values.
+        """
         return next(model for model in self.models if model.name == name)
 
     def columns(self, name: str) -> NDArray[np.int64]:
-        """Return the positions of all values of a model."""
+        """Return the positions of all values of a model.
+
+        Parameters
+        ----------
+        name
+            Name of a model.
+
+        Returns
+        -------
+        ndarray
+            Positions among the k values, increasing within each term.
+        """
         spans = [self.slices[name, term.feature] for term in self.model(name).terms]
         return np.concatenate([np.arange(span.start, span.stop) for span in spans])
 
     def steps(self) -> Array:
-        """Return the matrix that turns (first value, increments) of every term into values."""
+        """Return the matrix that turns (first value, increments) of every term into values.
+
+        Returns
+        -------
+        ndarray
+            Block-diagonal matrix of shape (k, k), with a lower triangle of ones for each term.
+        """
         from scipy.linalg import block_diag
 
         matrix: Array = block_diag(*(np.tril(np.ones((len(term.knots),) * 2)) for term in self.terms))
         return matrix
 
     def precision(self) -> Array:
-        """Return the prior's precision matrix: of differences from knot to knot and, with a small weight, of values."""
+        """Return the prior's precision matrix: of differences from knot to knot and, with a small weight, of values.
+
+        Returns
+        -------
+        ndarray
+            Symmetric matrix of shape (k, k).
+        """
         from scipy.linalg import block_diag
 
         blocks = []
@@ -61,7 +95,13 @@ class Layout:
         return matrix
 
     def bounds(self) -> list[tuple[float, float]]:
-        """Return the bounds of first values and increments; increments of a term with a trend have its sign."""
+        """Return the bounds of first values and increments; increments of a term with a trend have its sign.
+
+        Returns
+        -------
+        list of tuple
+            Least and greatest value of each of the k numbers.
+        """
         found = []
         for term in self.terms:
             low = 0.0 if term.trend is Trend.RISING else -MAX_STEP

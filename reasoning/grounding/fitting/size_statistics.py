@@ -24,7 +24,18 @@ Buckets = Mapping[int, tuple[int, int]]
 
 
 def steps(logarithm: float) -> int:
-    """Return the nearest step to a logarithm."""
+    """Return the nearest step to a logarithm.
+
+    Parameters
+    ----------
+    logarithm
+        Natural logarithm of a size or of a ratio.
+
+    Returns
+    -------
+    int
+        Number of steps of ``1 / SCALE``.
+    """
     return round(float(logarithm) * SCALE)
 
 
@@ -38,17 +49,45 @@ class Distribution:
         self.size = int(self._counts.sum())
 
     def median(self) -> float:
-        """Return the median."""
+        """Return the median.
+
+        Returns
+        -------
+        float
+            Median, a natural logarithm. There must be a value.
+        """
         return _median(self._values, self._counts)
 
     def median_deviation(self, centre: float) -> float:
-        """Return the median absolute deviation from a value."""
+        """Return the median absolute deviation from a value.
+
+        Parameters
+        ----------
+        centre
+            The value: the natural logarithm of a size or of a ratio.
+
+        Returns
+        -------
+        float
+            Median of the distances from ``centre``.
+        """
         away = np.abs(self._values - centre)
         order = np.argsort(away, kind="stable")
         return _median(away[order], self._counts[order])
 
     def deviations(self, centre: float) -> float:
-        """Return the sum of absolute deviations from a value."""
+        """Return the sum of absolute deviations from a value.
+
+        Parameters
+        ----------
+        centre
+            The value: the natural logarithm of a size or of a ratio.
+
+        Returns
+        -------
+        float
+            Sum over all values with their counts.
+        """
         return float(self._counts @ np.abs(self._values - centre))
 
 

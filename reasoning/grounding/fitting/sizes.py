@@ -42,13 +42,40 @@ class SizePrior:
 
 
 def usual_prior(usual: SizeModel) -> SizePrior:
-    """Return a usual size as a prior; its error has the same spread as things of the kind."""
+    """Return a usual size as a prior; its error has the same spread as things of the kind.
+
+    Parameters
+    ----------
+    usual
+        Usual size of a kind.
+
+    Returns
+    -------
+    SizePrior
+        Centre and spreads of log length and log aspect.
+    """
     centre, spread = np.array([usual.length, usual.aspect]).T
     return SizePrior(centre, spread, spread)
 
 
 def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
-    """Return the common prior of the views of several kinds, each (n, 2); raise SettingError without a view."""
+    """Return the common prior of the sizes of several kinds.
+
+    Parameters
+    ----------
+    kinds
+        Views of each kind: log length and log aspect, shape (n, 2).
+
+    Returns
+    -------
+    SizePrior
+        Centre, spread of a kind's centre, and spread within a kind.
+
+    Raises
+    ------
+    SettingError
+        There is no view.
+    """
     seen = [views for views in kinds if len(views)]
     if not seen:
         raise SettingError("`views` must have at least one view to learn a size")
@@ -59,18 +86,55 @@ def pooled_prior(kinds: Sequence[Array]) -> SizePrior:
 
 
 def pool(centre: Array, off_centre: Array, apart: Array, views: int, kinds: int) -> SizePrior:
-    """Return the common prior from sums of deviations: from the common median, and from the medians of the kinds."""
+    """Return the common prior from sums of deviations: from the common median, and from the medians of the kinds.
+
+    Parameters
+    ----------
+    centre
+        Median log length and log aspect of all views, shape (2,).
+    off_centre
+        Sum of the absolute deviations from ``centre``, shape (2,).
+    apart
+        Sum of the absolute deviations from the medians of the kinds, shape (2,).
+    views
+        Number of views.
+    kinds
+        Number of kinds.
+
+    Returns
+    -------
+    SizePrior
+        Centre, spread of a kind's centre, and spread within a kind.
+    """
     within = (SD_PER_MEAN_DEVIATION * apart + VIEWS_OF_PRIOR * PRIOR_SPREAD) / (views - kinds + VIEWS_OF_PRIOR)
     return SizePrior(centre, np.maximum(SD_PER_MEAN_DEVIATION * off_centre / views, within), within)
 
 
 def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
-    """Return the predictive distribution of sizes of a kind from n views (n, 2).
+    """Return the predictive distribution of the sizes of a kind from n views.
 
     The spread combines that of the views (median absolute deviation) with the prior's, which counts as
     ``VIEWS_OF_PRIOR`` views. The typical size is the mean of the views' median and the prior's centre, weighted by
-    precision; its uncertainty is added to the spread. ``relative`` is for views in images, which are upright and
-    relative to the scene. Raises SettingError without a view.
+    precision; its uncertainty is added to the spread.
+
+    Parameters
+    ----------
+    views
+        Log length and log aspect of each view, shape (n, 2).
+    prior
+        Prior of the kind's size.
+    relative
+        Whether the views are from images: upright, and relative to the scene.
+
+    Returns
+    -------
+    SizeModel
+        Mean and spread of log length and log aspect.
+
+    Raises
+    ------
+    SettingError
+        There is no view.
     """
     if not len(views):
         raise SettingError("`views` must have at least one view to learn a size")
@@ -79,7 +143,26 @@ def learn_size(views: Array, prior: SizePrior, relative: bool = False) -> SizeMo
 
 
 def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative: bool = False) -> SizeModel:
-    """Return the distribution of sizes from the median (2,) of n views and their median absolute deviation (2,)."""
+    """Return the distribution of sizes from the median of n views and their median absolute deviation.
+
+    Parameters
+    ----------
+    n
+        Number of views, at least 1.
+    median
+        Median log length and log aspect, shape (2,).
+    deviation
+        Median absolute deviations from ``median``, shape (2,).
+    prior
+        Prior of the kind's size.
+    relative
+        Whether the views are from images: upright, and relative to the scene.
+
+    Returns
+    -------
+    SizeModel
+        Mean and spread of log length and log aspect.
+    """
     spread = SD_PER_MEDIAN_DEVIATION * deviation
     variance = (n * spread**2 + VIEWS_OF_PRIOR * prior.within**2) / (n + VIEWS_OF_PRIOR)
     precision = n / variance + 1 / prior.between**2
@@ -92,7 +175,22 @@ def size_of(n: int, median: Array, deviation: Array, prior: SizePrior, relative:
 def learn_sizes(
     views: Mapping[str, Array], relative: bool = False, usual: Mapping[str, SizeModel] | None = None
 ) -> dict[str, SizeModel]:
-    """Return the sizes of kinds from views of each, (n, 2) with n >= 1, with usual sizes or the common prior."""
+    """Return the sizes of kinds from views of each, with usual sizes or the common prior.
+
+    Parameters
+    ----------
+    views
+        Views by kind (class IRI): log length and log aspect, shape (n, 2), with n >= 1.
+    relative
+        Whether the views are from images: upright, and relative to the scene.
+    usual
+        Usual sizes by kind, as priors; other kinds get the common prior of all views.
+
+    Returns
+    -------
+    dict
+        Distribution of sizes by kind.
+    """
     if not views:
         return {}
     pooled = pooled_prior(list(views.values()))

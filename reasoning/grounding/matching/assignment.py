@@ -14,10 +14,26 @@ from deixis.reasoning.kernel import njit
 
 @njit(cache=True, nogil=True)
 def solve_assignment(gain, column_of, price, profit):  # type: ignore[no-untyped-def]
-    """Fill in each row's column (r,), the prices (c,) and the profits (r,), and return the value.
+    """Solve a linear assignment: fill in each row's column, the prices and the profits, and return the value.
 
-    The last column of ``gain`` (r, c + 1) is the gain of staying unassigned; -inf rules a pair out. Where there is
-    no assignment the value is -inf, and the filled-in arrays have no meaning.
+    Where there is no assignment, the filled-in arrays have no meaning.
+
+    Parameters
+    ----------
+    gain
+        Gain of each pair, shape (r, c + 1), -inf for pairs that are ruled out; the last column is that of staying
+        unassigned.
+    column_of
+        Array to fill with the column of each row, or c; shape (r,).
+    price
+        Array to fill with the dual price of each column, shape (c,).
+    profit
+        Array to fill with the dual profit of each row, shape (r,).
+
+    Returns
+    -------
+    float
+        Sum of the gains, -inf where there is no assignment.
     """
     rows, columns = gain.shape[0], gain.shape[1] - 1
     row_of = np.full(columns + 1, -1)

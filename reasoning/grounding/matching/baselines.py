@@ -37,6 +37,18 @@ def blondel_similarity(problem: Problem, deadline: Deadline = Deadline.never()) 
 
     Blondel, Gajardo, Heymans, Senellart and Van Dooren, "A measure of similarity between graph vertices", SIAM Review
     46 (2004); here summed over the kinds of facts.
+
+    Parameters
+    ----------
+    problem
+        The problem; of the unary evidence, only the matches that are ruled out are used.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    NodeSimilarity
+        Similarity after the last iteration, and whether the iteration ended before the deadline.
     """
 
     def update(s: Matrix) -> Matrix:
@@ -56,6 +68,18 @@ def heymans_singh_similarity(problem: Problem, deadline: Deadline = Deadline.nev
     the nodes that the two have edges from and to, A3 and A4 of those that neither has; D1 to D4 of those that one of
     the two has and the other has not. A mean over no nodes is 0, but where neither of the two has any, A is the mean
     of all. Summed over the kinds of facts, which the paper does not have.
+
+    Parameters
+    ----------
+    problem
+        The problem; of the unary evidence, only the matches that are ruled out are used.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    NodeSimilarity
+        Similarity after the last iteration, and whether the iteration ended before the deadline.
     """
 
     def update(s: Matrix) -> Matrix:

@@ -53,9 +53,25 @@ def propagate(
 ) -> NDArray[np.int64] | None:
     """Find a map by cooled belief propagation; return None where ``deadline`` or ``effort`` leave too few steps.
 
-    The map has shape (n1,), with n2 for objects that are left out. ``scale`` is the unit of temperature, the mean range
-    of a fact's table (``scalable.mean_range``); ``effort`` multiplies the number of steps. Where the time is short,
-    cooling is faster.
+    Where the time is short, cooling is faster.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    scale
+        Unit of temperature in nats: the mean range of a fact's table (``scalable.mean_range``).
+    deadline
+        End of the time limit.
+    effort
+        Factor on the number of steps; 1 is the full search.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ndarray or None
+        Thing of each object, shape (n1,), with n2 for objects that are left out; None without enough steps.
     """
     slots, width, now = len(problem.kind), problem.unary.shape[1], time.perf_counter()
     cells = 1.0 + slots * width**2
@@ -83,11 +99,25 @@ def propagate(
 
 
 def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: int = STEPS) -> Messages:
-    """Return the marginals of belief propagation without cooling, shape (n1, n2 + 1), with an unknown error.
+    """Return the marginals of belief propagation without cooling, with an unknown error.
 
     They are exact where the facts form no cycle and objects do not compete for things. On a long description they are
-    overconfident, and serve to guide sampling. The iteration ends after ``steps``, at the ``deadline``, or when no
-    object's probabilities change by more than ``SETTLED`` in total.
+    overconfident, and serve to guide sampling. The iteration also ends when no object's probabilities change by more
+    than ``SETTLED`` in total.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    deadline
+        End of the time limit.
+    steps
+        Maximum number of rounds of messages.
+
+    Returns
+    -------
+    ndarray
+        Probability of each match, shape (n1, n2 + 1); the last column is that of being left out.
     """
     wiring, weights = _wire(problem), _costs(problem)
     np.exp(weights, out=weights)
@@ -107,7 +137,18 @@ def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: 
 
 
 def belief_seconds(problem: Compiled) -> float:
-    """Estimate the seconds of a step of :func:`beliefs`, with the preparation."""
+    """Estimate the seconds of a step of :func:`beliefs`, with the preparation.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Estimated time in seconds, by the number of messages and the size of the tables.
+    """
     width = problem.unary.shape[1]
     return float((len(problem.kind) + 20 * len(problem.tables)) * width**2 / CELLS_PER_SECOND)
 

@@ -26,7 +26,19 @@ from deixis.reasoning.kernel import njit
 
 @njit(cache=True)
 def pull(i, problem, unary, messages, candidates, counts):  # type: ignore[no-untyped-def]
-    """Move the maximum remaining evidence of object i's facts to its unary terms."""
+    """Move the maximum remaining evidence of object i's facts to its unary terms.
+
+    Parameters
+    ----------
+    i
+        The object.
+    problem
+        The problem in the layout of compiled loops.
+    unary, messages
+        Evidence of matches, shape (n1, n2 + 1), and moved evidence of each slot, shape (2m, n2 + 1); changed in place.
+    candidates, counts
+        Candidates of each object, shape (n1, n2 + 1), and their number, shape (n1,).
+    """
     out = unary.shape[1] - 1
     for slot in range(problem.first[i], problem.first[i + 1]):
         j, twin = problem.other[slot], problem.twin[slot]
@@ -46,7 +58,28 @@ def pull(i, problem, unary, messages, candidates, counts):  # type: ignore[no-un
 
 @njit(cache=True)
 def hand_out(i, share, problem, unary, messages, price, candidates, counts):  # type: ignore[no-untyped-def]
-    """Move a share of each candidate's deficit to the best one from object i to each of its facts; return the best."""
+    """Move a share of each candidate's deficit to the best one from object i to each of its facts; return the best.
+
+    Parameters
+    ----------
+    i
+        The object.
+    share
+        Share of the deficit that each fact gets; at most 1 over the number of facts.
+    problem
+        The problem in the layout of compiled loops.
+    unary, messages
+        Evidence of matches, shape (n1, n2 + 1), and moved evidence of each slot, shape (2m, n2 + 1); changed in place.
+    price
+        Price of each thing, shape (n2 + 1,).
+    candidates, counts
+        Candidates of each object, shape (n1, n2 + 1), and their number, shape (n1,).
+
+    Returns
+    -------
+    float
+        Value of the best candidate, in nats.
+    """
     best = -np.inf
     for a in range(counts[i]):
         p = candidates[i, a]
@@ -64,7 +97,26 @@ def hand_out(i, share, problem, unary, messages, price, candidates, counts):  # 
 
 @njit(cache=True)
 def drop_candidates(i, loss, unary, price, candidates, counts):  # type: ignore[no-untyped-def]
-    """Drop the candidates of object i that are more than ``loss`` below its best one; return how many."""
+    """Drop the candidates of object i that are more than ``loss`` below its best one; return how many.
+
+    Parameters
+    ----------
+    i
+        The object.
+    loss
+        Largest difference from the best candidate, in nats.
+    unary
+        Evidence of matches, shape (n1, n2 + 1); -inf for those that are dropped.
+    price
+        Price of each thing, shape (n2 + 1,).
+    candidates, counts
+        Candidates of each object, shape (n1, n2 + 1), and their number, shape (n1,); changed in place.
+
+    Returns
+    -------
+    int
+        Number of dropped candidates.
+    """
     best = -np.inf
     for a in range(counts[i]):
         best = max(best, unary[i, candidates[i, a]] - price[candidates[i, a]])
@@ -85,7 +137,21 @@ def drop_candidates(i, loss, unary, price, candidates, counts):  # type: ignore[
 def one_pass(forward, node, problem, loss):  # type: ignore[no-untyped-def]
     """Pass messages for every object once, forward or backward; return false where the node is closed.
 
-    ``loss`` is the bound minus the sought value: a candidate that is more below the best one is dropped.
+    Parameters
+    ----------
+    forward
+        Whether to take the objects in ascending order.
+    node
+        The node, which is changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    loss
+        The bound minus the sought value, in nats: a candidate that is more below the best one is dropped.
+
+    Returns
+    -------
+    bool
+        Whether the node is still open.
     """
     n1 = len(node.counts)
     for step in range(n1):
@@ -115,7 +181,27 @@ def _best(i, unary, price, candidates, counts):  # type: ignore[no-untyped-def]
 def tighten(node, problem, sought, bound, passes, patience, column_of):  # type: ignore[no-untyped-def]
     """Lower the bound of a node until it is below the sought value, or ``patience`` more passes would not suffice.
 
-    Fills in the map ``column_of`` of the last assignment, and returns the bound.
+    Parameters
+    ----------
+    node
+        The node, which is changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    sought
+        Value below which the node is closed, in nats.
+    bound
+        Upper bound of the node so far, in nats.
+    passes
+        Maximum number of passes.
+    patience
+        Number of further passes that must promise to close the node.
+    column_of
+        Array to fill with the map of the last assignment, shape (n1,).
+
+    Returns
+    -------
+    float
+        The lower bound, -inf for a closed node.
     """
     for turn in range(passes):
         if not one_pass(turn % 2 == 0, node, problem, bound - sought):
@@ -177,7 +263,17 @@ class Record(NamedTuple):
 def new_stack(problem: Compiled, cells: float) -> Stack:
     """Return a stack with the root: every object with every allowed candidate, and no messages.
 
-    It is as deep as the search needs, or as deep as ``cells`` numbers allow.
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    cells
+        Maximum size of the stack, in numbers of 8 bytes. The stack is not deeper than the search needs.
+
+    Returns
+    -------
+    Stack
+        The stack, with its depth at the root.
     """
     n1, width = problem.unary.shape
     slots = len(problem.kind)
@@ -203,7 +299,24 @@ def new_stack(problem: Compiled, cells: float) -> Stack:
 
 @njit(cache=True)
 def search(problem, stack, record, budget):  # type: ignore[no-untyped-def]
-    """Continue the search for ``budget`` nodes; return DONE, BUDGET, FULL (no room for maps) or DEEP (for depth)."""
+    """Continue the search for ``budget`` nodes; return DONE, BUDGET, FULL (no room for maps) or DEEP (for depth).
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    stack
+        Nodes from the root to the current one, changed in place.
+    record
+        The maps that are found, changed in place.
+    budget
+        Maximum number of nodes to visit.
+
+    Returns
+    -------
+    int
+        State of the search.
+    """
     column_of = np.empty(len(problem.unary), np.int64)
     while stack.depth[0] >= 0:
         d = stack.depth[0]
@@ -228,7 +341,20 @@ def search(problem, stack, record, budget):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def node_at(d, stack):  # type: ignore[no-untyped-def]
-    """Return a view of the node at depth d."""
+    """Return a view of the node at depth d.
+
+    Parameters
+    ----------
+    d
+        Depth, 0 for the root.
+    stack
+        The stack.
+
+    Returns
+    -------
+    Node
+        Arrays that share the memory of the stack.
+    """
     return Node(
         stack.unary[d], stack.messages[d], stack.candidates[d], stack.counts[d], stack.price[d], stack.profit[d]
     )
@@ -293,7 +419,20 @@ def _keep(labels, problem, record):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def evaluate(labels, problem):  # type: ignore[no-untyped-def]
-    """Return the value of a map (n1,) with n2 for objects that are left out."""
+    """Return the value of a map (n1,) with n2 for objects that are left out.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), with n2 for objects that are left out.
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Value in nats.
+    """
     value = 0.0
     for i in range(len(labels)):
         value += problem.unary[i, labels[i]]
@@ -305,7 +444,20 @@ def evaluate(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def child_bound(d, stack):  # type: ignore[no-untyped-def]
-    """Return an upper bound on the value of the next child of a node."""
+    """Return an upper bound on the value of the next child of a node.
+
+    Parameters
+    ----------
+    d
+        Depth of the node.
+    stack
+        The stack.
+
+    Returns
+    -------
+    float
+        Upper bound in nats.
+    """
     i, at = stack.branch[d], stack.position[d]
     if at >= stack.counts[d, i]:
         return -np.inf

@@ -90,7 +90,18 @@ class Coincidences:
     possible: NDArray[np.bool_]
 
     def remaining(self, weights: CoincidenceWeights = SHIPPED_WEIGHTS) -> Array:
-        """Return the factor of each object's probabilities of being any thing, shape (n1,), in (0, 1]."""
+        """Return the factor of each object's probabilities of being any thing.
+
+        Parameters
+        ----------
+        weights
+            Weights of the misfit and of the alternatives; by default, the shipped ones.
+
+        Returns
+        -------
+        ndarray
+            Share of the probability of matches that remains, shape (n1,), in (0, 1]; the rest is that of absence.
+        """
         odds = weights.misfit_factor * np.exp(np.minimum(weights.misfit_power * self.misfit, MAX_LOG_ODDS))
         odds += weights.alternatives_factor * self.alternatives**weights.alternatives_power
         odds *= np.exp(-np.maximum(self.unary, 0.0)) * self.possible * self.probability
@@ -109,8 +120,19 @@ class Coincidences:
 def coincidences(problem: Problem, marginals: Array) -> Coincidences:
     """Return the possible coincidences of a problem of n1 objects and n2 things.
 
-    ``marginals`` (n1, n2 + 1) is the posterior of the matches. The values of facts are expected values over the things
-    that the other object may be, and 0 where it is absent.
+    The values of facts are expected values over the things that the other object may be, and 0 where it is absent.
+
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    marginals
+        Posterior probability of each match, shape (n1, n2 + 1); the last column is that of absence.
+
+    Returns
+    -------
+    Coincidences
+        Evidence, misfit and alternatives of the likeliest match of each object.
     """
     n1, n2 = problem.unary.shape
     things, away = marginals[:, :n2].astype(np.float32), marginals[:, n2]
@@ -143,6 +165,20 @@ def coincidences(problem: Problem, marginals: Array) -> Coincidences:
 def discounted(problem: Problem, found: Posterior) -> Posterior:
     """Return the posterior with the probability that matches are coincidences added to that of absence.
 
+    Parameters
+    ----------
+    problem
+        The problem.
+    found
+        Its posterior.
+
+    Returns
+    -------
+    Posterior
+        Copy with new marginals; ``found`` itself where there are no facts, objects or things.
+
+    Examples
+    --------
     >>> nearer = np.array([[[0.0, 3.0], [-3.0, 0.0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), nearer, np.zeros((2, 2)), np.full(2, -5.0))
     >>> sure = Posterior(np.array([[0.99, 0.0, 0.01], [0.0, 0.99, 0.01]]), True, 0.0)

@@ -31,7 +31,18 @@ class Factors(NamedTuple):
 
 
 def factors(problem: Compiled) -> Factors:
-    """Return the posterior of a problem as factors, after moving evidence by messages."""
+    """Return the posterior of a problem as factors, after moving evidence by messages.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    Factors
+        Factors of matches, of unmatched things and of facts, with the logarithm of their common factor.
+    """
     stack, column_of = new_stack(problem, 1.0), np.empty(len(problem.unary), dtype=np.int64)
     node = node_at(0, stack)
     tighten(node, problem, LOWEST_VALUE, np.inf, PASSES, 10**18, column_of)
@@ -51,8 +62,22 @@ def add_up(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Sum the weights of maps, visiting at most ``nodes`` partial maps with a bound above ``threshold``.
 
-    Returns the sums by match (n1, n2 + 1), and an array (3,): the total sum, a bound on the missing mass (inf where the
-    nodes did not suffice), and the number of nodes.
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    parts
+        Its posterior as factors.
+    threshold
+        Bound on the sum below a partial map, at or below which the search turns back.
+    nodes
+        Maximum number of partial maps to visit.
+
+    Returns
+    -------
+    tuple
+        Sums by match, shape (n1, n2 + 1), and an array of shape (3,): the total sum, a bound on the missing mass
+        (infinite where the nodes did not suffice), and the number of nodes.
     """
     marginals, counts = np.zeros_like(parts.weights), np.zeros(3)
     _search(parts.weights, parts.idle, parts.facts, problem.first, problem.other, threshold, nodes, marginals, counts)

@@ -73,6 +73,22 @@ class Maps:
 def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int = 0) -> Optimum:
     """Find the best map by branch and bound, and prove it as far as the time until ``deadline`` allows.
 
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    deadline
+        End of the time limit.
+    seed
+        Seed of the search for a first map.
+
+    Returns
+    -------
+    Optimum
+        The best map found, an upper bound on the value of any map, and the size of the search.
+
+    Examples
+    --------
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
     >>> best = exact(problem)
@@ -102,8 +118,29 @@ def maps_within(
 ) -> Maps:
     """Find all maps whose value is at most ``margin`` nats below the best, up to a limit and a deadline.
 
-    A margin of 0 gives all optima. Raises MatchingError for a margin below 0 or a limit below 1.
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    margin
+        Largest difference from the best value, in nats; 0 gives all optima.
+    deadline
+        End of the time limit.
+    limit
+        Maximum number of maps.
 
+    Returns
+    -------
+    Maps
+        The maps, best first, and whether they are all. Where the best map is not proved in time, only this map.
+
+    Raises
+    ------
+    MatchingError
+        ``margin`` is below 0, or ``limit`` is below 1.
+
+    Examples
+    --------
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 2, 2), np.float32),
     ...                   np.array([[1.0, 1.0]]), np.zeros(1))
     >>> maps_within(problem).assignments.tolist(), maps_within(problem, 1.0).values.tolist()
@@ -133,7 +170,18 @@ def warm() -> None:
 
 
 def loose_bound(problem: Problem) -> float:
-    """Return an upper bound on the value of any map: the sum of the best value of each object and of each fact."""
+    """Return an upper bound on the value of any map: the sum of the best value of each object and of each fact.
+
+    Parameters
+    ----------
+    problem
+        The problem.
+
+    Returns
+    -------
+    float
+        Upper bound in nats.
+    """
     alone = np.maximum(problem.unary.max(axis=1, where=problem.allowed, initial=-np.inf), problem.absent)
     facts = np.maximum(problem.tables.max(axis=(1, 2), initial=0.0), 0.0)[problem.kinds]
     return float(alone.sum() + facts.sum(dtype=np.float64))

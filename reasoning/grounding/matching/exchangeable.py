@@ -22,6 +22,18 @@ def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
     and facts between the two hold in both directions. This is an equivalence relation, so that all orders of a group
     have the same value.
 
+    Parameters
+    ----------
+    problem
+        The problem.
+
+    Returns
+    -------
+    tuple of tuple of int
+        Positions of the objects of each group of at least two, sorted.
+
+    Examples
+    --------
     >>> alike = Problem(np.array([[0, 2], [1, 2]]), np.zeros(2, np.int64), np.zeros((1, 3, 3), np.float32),
     ...                 np.zeros((3, 3)), np.zeros(3))
     >>> exchangeable(alike)
@@ -43,6 +55,20 @@ def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
 def averaged(marginals: NDArray[Number], groups: tuple[tuple[int, ...], ...]) -> NDArray[Number]:
     """Return marginals (…, n1, n2 + 1) with the rows of each group replaced by their mean, which is exact.
 
+    Parameters
+    ----------
+    marginals
+        Probabilities of matches, shape (…, n1, n2 + 1).
+    groups
+        Positions of objects that can be swapped, from :func:`exchangeable`.
+
+    Returns
+    -------
+    ndarray
+        Copy, shape (…, n1, n2 + 1).
+
+    Examples
+    --------
     >>> averaged(np.array([[1.0, 0.0], [0.0, 1.0]]), ((0, 1),)).tolist()
     [[0.5, 0.5], [0.5, 0.5]]
     """

@@ -75,12 +75,27 @@ EVIDENCE_TOLERANCE = 0.2
 def sampled_marginals(
     problem: Compiled, groups: tuple[tuple[int, ...], ...], deadline: Deadline, seed: int
 ) -> tuple[Array, Array]:
-    """Return the marginals (n1, n2 + 1), and the error of each object's marginals (n1,).
+    """Estimate the marginals by sampling, and the error of each object's marginals.
 
     Ladders run in parts, each two parts twice as long as the two before, until the last two parts of all ladders agree
-    within ``TOLERANCE``; earlier parts are discarded as burn-in. All objects of a group in ``groups`` have the same
-    marginals. Where the ``deadline`` leaves time for less than two parts, the marginals are those of belief
-    propagation, and their errors are infinite.
+    within ``TOLERANCE``; earlier parts are discarded as burn-in. Where the deadline leaves time for less than two
+    parts, the marginals are those of belief propagation, and their errors are infinite.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    groups
+        Groups of exchangeable objects, which get the same marginals.
+    deadline
+        End of the time limit.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    tuple
+        Marginals, shape (n1, n2 + 1), and the standard error of each object's, shape (n1,).
     """
     n1 = len(problem.unary)
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
@@ -104,9 +119,24 @@ def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, see
     """Return the log-likelihood ratio in nats of the evidence against chance over all allowed maps, and its error.
 
     It is the logarithm of the sum over all maps of the exponential of their values, minus the same with the costs of
-    absence alone. The error is estimated from the differences of ladders and from a coarser integration rule; it is
-    infinite where the ``deadline`` left no time.
+    absence alone. The error is estimated from the differences of ladders and from a coarser integration rule.
 
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    deadline
+        End of the time limit.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    tuple
+        The ratio and its standard error, in nats; NaN and infinity where the deadline left no time.
+
+    Examples
+    --------
     >>> ends, nothing = np.zeros((0, 2), np.int64), np.zeros((0, 1, 1), np.float32)
     >>> alone = Problem(ends, ends[:, 0], nothing, np.array([[-2.0]]), np.array([-9.0]))
     >>> value, error = log_evidence(alone)
@@ -138,7 +168,20 @@ def warm() -> None:
 
 
 def believed_marginals(problem: Compiled, deadline: Deadline) -> Array:
-    """Return the marginals (n1, n2 + 1) of belief propagation until the deadline."""
+    """Return the marginals of belief propagation until the deadline, computed in one thread.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    ndarray
+        Probability of each match, shape (n1, n2 + 1); the last column is that of being left out.
+    """
     with threadpool_limits(1, "blas"):
         return beliefs(problem, deadline).astype(np.float64)
 

@@ -37,7 +37,20 @@ class KeptMap(NamedTuple):
 
 
 def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
-    """Return a copy of a map (n1,) with its gains."""
+    """Return a copy of a map with its gains.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), with n2 for objects that are left out.
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    KeptMap
+        State that :func:`exchange` and :func:`anneal` change in place.
+    """
     n1, width = problem.unary.shape
     state = KeptMap(labels.copy(), np.empty(width, dtype=np.int64), np.empty((n1, width), dtype=np.float32))
     refresh(state, problem)
@@ -46,7 +59,15 @@ def keep(labels: NDArray[np.int64], problem: Compiled) -> KeptMap:
 
 @njit(cache=True, nogil=True)
 def refresh(state, problem):  # type: ignore[no-untyped-def]
-    """Recompute holders and gains from the labels."""
+    """Recompute holders and gains from the labels.
+
+    Parameters
+    ----------
+    state
+        The map, changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    """
     labels, gains, holder = state.labels, state.gains, state.holder
     holder[:] = -1
     for i in range(len(labels)):
@@ -60,7 +81,19 @@ def refresh(state, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def exchange(i, p, state, problem):  # type: ignore[no-untyped-def]
-    """Give object i thing p (n2: leave it out), and the object that had p the thing of i."""
+    """Give object i thing p (n2: leave it out), and the object that had p the thing of i.
+
+    Parameters
+    ----------
+    i
+        The object.
+    p
+        The thing, or n2.
+    state
+        The map, changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    """
     old, j = state.labels[i], state.holder[p]
     out = len(state.holder) - 1
     _give(i, p, state, problem)
@@ -84,7 +117,15 @@ def _give(i, p, state, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def climb(labels, problem):  # type: ignore[no-untyped-def]
-    """Apply the best move or swap of one object after another, until none improves the map."""
+    """Apply the best move or swap of one object after another, until none improves the map.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    """
     out = problem.unary.shape[1] - 1
     holder = np.full(out + 1, -1)
     for i in range(len(labels)):
@@ -109,7 +150,19 @@ def climb(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def gains_of(i, labels, problem, gain):  # type: ignore[no-untyped-def]
-    """Fill ``gain`` (n2 + 1,) with the value of object i as each thing, with the other objects unchanged."""
+    """Fill ``gain`` (n2 + 1,) with the value of object i as each thing, with the other objects unchanged.
+
+    Parameters
+    ----------
+    i
+        The object.
+    labels
+        Thing of each object, shape (n1,).
+    problem
+        The problem in the layout of compiled loops.
+    gain
+        Array to fill, shape (n2 + 1,); -inf for matches that are not allowed.
+    """
     gain[:] = problem.unary[i]
     for slot in range(problem.first[i], problem.first[i + 1]):
         kind, q = problem.kind[problem.twin[slot]], labels[problem.other[slot]]
@@ -152,10 +205,33 @@ MIN_GAIN_SINGLE = 1e-4  # minimum improvement of a map: above the error of gains
 
 @njit(cache=True, nogil=True)
 def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
-    """Anneal for a number of sweeps over all objects, from a map whose value is ``ahead`` above that of ``best`` (n1,).
+    """Anneal for a number of sweeps over all objects, from a map.
 
-    Every better map is stored in ``best``. Returns the lead of the last map over it. ``noise`` holds
-    NOISE_TABLE_SIZE + n2 + 1 Gumbel numbers in single precision.
+    Every better map is stored in ``best``.
+
+    Parameters
+    ----------
+    state
+        The map, changed in place.
+    best
+        Best map so far, shape (n1,), changed in place.
+    ahead
+        Value of the map minus that of ``best``, in nats.
+    problem
+        The problem in the layout of compiled loops.
+    sweeps
+        Number of sweeps.
+    temperature
+        Temperature in nats; 0 only accepts gains.
+    noise
+        Gumbel numbers in single precision, shape (NOISE_TABLE_SIZE + n2 + 1,).
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    float
+        Value of the last map minus that of ``best``, in nats.
     """
     np.random.seed(seed)
     refresh(state, problem)
@@ -203,7 +279,24 @@ MIN_GAIN = 1e-6  # minimum improvement of a map
 
 @njit(cache=True, nogil=True)
 def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
-    """Reassign random sets of objects until ``patience`` sets in a row do not help; return the total gain."""
+    """Reassign random sets of objects until ``patience`` sets in a row do not help; return the total gain.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    patience
+        Number of sets without a gain after which to stop.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    float
+        Total gain in nats.
+    """
     np.random.seed(seed)
     n1, width = problem.unary.shape
     cells, row, things = np.empty(n1 * width), np.empty(width), np.empty(width, np.int64)
@@ -261,7 +354,22 @@ def _free(labels, chosen, things):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def combine(labels, other, problem):  # type: ignore[no-untyped-def]
-    """Copy into ``labels`` (n1,) each part of the other map with a higher value; return the total gain."""
+    """Copy into ``labels`` (n1,) each part of the other map with a higher value; return the total gain.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), changed in place.
+    other
+        Another map, shape (n1,).
+    problem
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Total gain in nats, at least 0.
+    """
     part = _parts(labels, other, problem)
     gain = np.zeros(len(labels))
     for i in range(len(labels)):

@@ -34,6 +34,18 @@ LOWEST = -700.0
 def log_prior(problem: Problem) -> float:
     """Return the log sum over all maps of the exponential of the values of absent objects alone.
 
+    Parameters
+    ----------
+    problem
+        The problem; only the costs of absence and the number of things count.
+
+    Returns
+    -------
+    float
+        Logarithm of the sum, in nats.
+
+    Examples
+    --------
     >>> none = np.zeros((0, 2), np.int64)
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 2, 2), np.float32), np.ones((2, 2)), np.zeros(2))
     >>> round(float(np.exp(log_prior(problem))))  # 2 maps that match both, 4 that match one, 1 that matches none
@@ -45,6 +57,18 @@ def log_prior(problem: Problem) -> float:
 def log_sum_without_facts(problem: Problem) -> float:
     """Return the logarithm of the sum over all maps of the exponential of their value without facts.
 
+    Parameters
+    ----------
+    problem
+        The problem; its facts are ignored.
+
+    Returns
+    -------
+    float
+        Logarithm of the sum, in nats: exact for small problems, the corrected Bethe approximation for large ones.
+
+    Examples
+    --------
     >>> none = np.zeros((0, 2), np.int64)
     >>> unary = np.log(np.array([[2.0, 1.0], [1.0, 1.0]]))
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 2, 2), np.float32), unary, np.zeros(2))
@@ -69,6 +93,18 @@ def entropy_without_facts(problem: Problem) -> float:
 
     It is the log sum minus its derivative by the power to which all weights are raised.
 
+    Parameters
+    ----------
+    problem
+        The problem; its facts are ignored.
+
+    Returns
+    -------
+    float
+        Entropy in nats, at least 0.
+
+    Examples
+    --------
     >>> none = np.zeros((0, 2), np.int64)
     >>> problem = Problem(none, none[:, 0], np.zeros((0, 3, 3), np.float32), np.zeros((3, 3)), np.full(3, -30.0))
     >>> round(float(np.exp(entropy_without_facts(problem))))  # three things in any order

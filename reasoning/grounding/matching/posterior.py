@@ -105,6 +105,11 @@ def posterior(
     chains
         False to use belief propagation instead of sampling, which needs less memory.
 
+    Returns
+    -------
+    Posterior
+        Marginals, shape (n1, n2 + 1), whether they are exact, and their error.
+
     Raises
     ------
     MatchingError
@@ -142,10 +147,30 @@ def exact_posterior(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Posterior | None:
-    """Return the posterior, exact up to the missing ``mass``; None where that takes too long.
+    """Return the posterior, exact up to a missing mass; None where that takes too long.
 
-    ``start`` (n1,) is a map of high value; by default, a short search finds one. Raises MatchingError for a
-    mass that is not between 0 and 1.
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    deadline
+        End of the time limit.
+    mass
+        Maximum share of the probability that may be missing from the sum, between 0 and 1.
+    seed
+        Seed of the search for a first map.
+    start
+        Map of high value, shape (n1,); by default, a short search finds one.
+
+    Returns
+    -------
+    Posterior or None
+        The posterior, or None where the sum is not complete in time.
+
+    Raises
+    ------
+    MatchingError
+        ``mass`` is not between 0 and 1, or ``start`` is not a map of the problem.
     """
     if not 0 < mass < 1:
         raise MatchingError(f"`mass` must be between 0 and 1, got {mass}")
@@ -183,6 +208,20 @@ def exact_posterior(
 def log_sum_bound(problem: Problem, enough: float) -> float:
     """Return an upper bound of the log sum over all maps; stop at a bound of at most ``enough``.
 
+    Parameters
+    ----------
+    problem
+        The problem.
+    enough
+        Bound in nats at which no tighter one is computed.
+
+    Returns
+    -------
+    float
+        Upper bound in nats.
+
+    Examples
+    --------
     >>> problem = Problem(np.zeros((0, 2), np.int64), np.zeros(0, np.int64), np.zeros((0, 1, 1), np.float32),
     ...                   np.array([[np.log(3.0)]]), np.zeros(1))
     >>> round(math.exp(log_sum_bound(problem, 0.0)), 6)

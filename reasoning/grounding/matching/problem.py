@@ -94,8 +94,20 @@ class Problem:
         return compile_problem(self)
 
     def value(self, assignment: NDArray[np.int64]) -> float:
-        """Return the value of a map (n1,), with ``UNMATCHED`` for objects left out; -inf if a match is not allowed.
+        """Return the value of a map; -inf if a match is not allowed.
 
+        Parameters
+        ----------
+        assignment
+            Thing of each object, with ``UNMATCHED`` for objects left out; shape (n1,).
+
+        Returns
+        -------
+        float
+            Value in nats.
+
+        Examples
+        --------
         >>> none = np.zeros((0, 2), np.int64)
         >>> problem = Problem(none, none[:, 0], np.zeros((0, 1, 1), np.float32), np.array([[2.0]]), np.array([-1.0]))
         >>> problem.value(np.array([0])), problem.value(np.array([UNMATCHED]))
@@ -111,7 +123,18 @@ class Problem:
         return float(facts + self.unary[objects, assignment[objects]].sum() + self.absent[~matched].sum())
 
     def require_map(self, assignment: NDArray[np.int64]) -> None:
-        """Raise MatchingError unless the array is a partial one-to-one map with allowed matches."""
+        """Raise MatchingError unless the array is a partial one-to-one map with allowed matches.
+
+        Parameters
+        ----------
+        assignment
+            Thing of each object, with ``UNMATCHED`` for objects left out; shape (n1,).
+
+        Raises
+        ------
+        MatchingError
+            The shape is wrong, a thing does not exist or is given to two objects, or a match is not allowed.
+        """
         n1, n2 = self.unary.shape
         if assignment.shape != (n1,) or ((assignment < UNMATCHED) | (assignment >= n2)).any():
             raise MatchingError(f"a map must give each of {n1} objects a thing from 0 to {n2 - 1}, or {UNMATCHED}")
@@ -123,9 +146,21 @@ class Problem:
 
 
 def empty_tables(kinds: int, things: int) -> NDArray[np.float32]:
-    """Allocate the tables of a problem (k, n2, n2), filled with 0, in a way that compiling it does not copy them.
+    """Allocate the tables of a problem, filled with 0, in a way that compiling it does not copy them.
 
     They are a view of the array that :class:`Compiled` holds; tables and a copy would take half as much memory again.
+
+    Parameters
+    ----------
+    kinds
+        Number k of tables.
+    things
+        Number n2 of things.
+
+    Returns
+    -------
+    ndarray
+        Zeros of shape (k, n2, n2).
     """
     return np.zeros((2 * kinds, things + 1, things + 1), np.float32)[:kinds, :things, :things]
 
@@ -149,6 +184,16 @@ def compile_problem(problem: Problem) -> Compiled:
     """Return the problem in the layout of compiled loops.
 
     All arrays are in C order, because loops would be compiled again for another order.
+
+    Parameters
+    ----------
+    problem
+        The problem of m facts, n1 objects and n2 things.
+
+    Returns
+    -------
+    Compiled
+        Its arrays. Tables of :func:`empty_tables` are shared with the problem, others are copied.
     """
     k, n2, _ = problem.tables.shape
     m, n1 = len(problem.ends), len(problem.absent)
@@ -183,10 +228,36 @@ def _room_of(tables: NDArray[np.float32]) -> NDArray[np.float32] | None:
 
 
 def to_labels(assignment: NDArray[np.int64], n2: int) -> NDArray[np.int64]:
-    """Return the map (n1,) with n2 for objects that are left out."""
+    """Return a map with n2 for objects that are left out, as compiled loops need it.
+
+    Parameters
+    ----------
+    assignment
+        Thing of each object, shape (n1,), with ``UNMATCHED`` for objects that are left out.
+    n2
+        Number of things.
+
+    Returns
+    -------
+    ndarray
+        Thing of each object, or n2; shape (n1,).
+    """
     return np.where(assignment == UNMATCHED, n2, assignment).astype(np.int64)
 
 
 def to_assignment(labels: NDArray[np.int64], n2: int) -> NDArray[np.int64]:
-    """Return the map (n1,) with ``UNMATCHED`` for objects that are left out."""
+    """Return a map with ``UNMATCHED`` for objects that are left out, as a problem needs it.
+
+    Parameters
+    ----------
+    labels
+        Thing of each object, shape (n1,), with n2 for objects that are left out.
+    n2
+        Number of things.
+
+    Returns
+    -------
+    ndarray
+        Thing of each object, or ``UNMATCHED``; shape (n1,).
+    """
     return np.where(labels == n2, UNMATCHED, labels).astype(np.int64)

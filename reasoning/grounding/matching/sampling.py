@@ -54,14 +54,40 @@ class Chains(NamedTuple):
 
 
 def new_chains(problem: Compiled, coldness: NDArray[np.float64]) -> Chains:
-    """Return chains at these coldnesses (K,); :func:`begin` draws their maps."""
+    """Return chains at given coldnesses; :func:`begin` draws their maps.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    coldness
+        Inverse temperature of each chain, shape (K,); 1 is that of the posterior.
+
+    Returns
+    -------
+    Chains
+        K chains without maps.
+    """
     rungs, (n1, width) = len(coldness), problem.unary.shape
     labels, holder = np.zeros((rungs, n1), np.int64), np.full((rungs, width), -1, np.int64)
     return Chains(labels, holder, np.zeros(rungs), coldness)
 
 
 def guide_by(beliefs: NDArray[np.floating], allowed: NDArray[np.bool_]) -> Guide:
-    """Return the guide by beliefs (n1, n2 + 1); matches that are not ``allowed`` (n1, n2 + 1) are never proposed."""
+    """Return the guide by beliefs; it never proposes a match that is not allowed.
+
+    Parameters
+    ----------
+    beliefs
+        Estimated probability of each match, shape (n1, n2 + 1).
+    allowed
+        Allowed matches, shape (n1, n2 + 1).
+
+    Returns
+    -------
+    Guide
+        Distributions from which chains draw proposals in constant time.
+    """
     chance = np.where(allowed, np.maximum(beliefs, 0.0).astype(np.float32) ** np.float32(FLATTENING), np.float32(0.0))
     chance /= np.maximum(chance.sum(axis=1, keepdims=True), np.float32(1e-30))
     chance *= np.float32(1.0 - EVEN_SHARE)
@@ -106,7 +132,19 @@ def _alias_tables(chance):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def begin(chains, problem, guide, seed):  # type: ignore[no-untyped-def]
-    """Draw a map by the guide for every chain."""
+    """Draw a map by the guide for every chain.
+
+    Parameters
+    ----------
+    chains
+        The chains, changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    guide
+        Distributions of the proposals.
+    seed
+        Seed of the random numbers.
+    """
     np.random.seed(seed)
     n1, width = guide.weight.shape
     for k in range(len(chains.coldness)):
@@ -143,7 +181,23 @@ def _worth(labels, problem):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def cool(chains, problem, guide, coldness, sweeps, seed):  # type: ignore[no-untyped-def]
-    """Run all chains for a number of sweeps at other coldnesses (K,) than their own, while cooling."""
+    """Run all chains for a number of sweeps at other coldnesses (K,) than their own, while cooling.
+
+    Parameters
+    ----------
+    chains
+        The chains, changed in place.
+    problem
+        The problem in the layout of compiled loops.
+    guide
+        Distributions of the proposals.
+    coldness
+        Inverse temperature of each chain, shape (K,).
+    sweeps
+        Number of sweeps.
+    seed
+        Seed of the random numbers.
+    """
     np.random.seed(seed)
     steps = sweeps * chains.labels.shape[1]
     for k in range(len(coldness)):
@@ -154,8 +208,27 @@ def cool(chains, problem, guide, coldness, sweeps, seed):  # type: ignore[no-unt
 def sample(chains, counts, sums, problem, guide, sweeps, seed):  # type: ignore[no-untyped-def]
     """Run every chain for a number of sweeps over all objects, with exchanges between temperatures after each.
 
-    After each sweep, ``counts`` (n1, n2 + 1) counts the things of the coldest chain, and the values of all chains are
-    added to ``sums`` (K,). Returns the number of exchanges made.
+    Parameters
+    ----------
+    chains
+        The chains, changed in place.
+    counts
+        Array to which the things of the coldest chain are added after each sweep, shape (n1, n2 + 1).
+    sums
+        Array to which the values of all chains are added after each sweep, shape (K,).
+    problem
+        The problem in the layout of compiled loops.
+    guide
+        Distributions of the proposals.
+    sweeps
+        Number of sweeps.
+    seed
+        Seed of the random numbers.
+
+    Returns
+    -------
+    int
+        Number of exchanges made.
     """
     np.random.seed(seed)
     n1, rungs = chains.labels.shape[1], len(chains.coldness)

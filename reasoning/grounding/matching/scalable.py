@@ -63,10 +63,33 @@ def scalable(
     effort: float = 1.0,
     start: NDArray[np.int64] | None = None,
 ) -> Found:
-    """Search a map of high value until ``deadline``, at least as good as ``start`` (default: all objects absent).
+    """Search a map of high value, at least as good as the start.
 
-    ``effort`` multiplies the number of steps. Raises MatchingError where ``start`` is not a map of the problem.
+    Parameters
+    ----------
+    problem
+        The problem of n1 objects and n2 things.
+    deadline
+        End of the time limit; the best map so far is returned then.
+    seed
+        Seed of the random numbers.
+    effort
+        Factor on the number of steps; 1 is the full search.
+    start
+        Map to start from, shape (n1,); by default, all objects are absent.
 
+    Returns
+    -------
+    Found
+        The best map, its value, and whether the search ended before the deadline.
+
+    Raises
+    ------
+    MatchingError
+        ``start`` is not a map of the problem.
+
+    Examples
+    --------
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
     >>> problem = Problem(np.array([[0, 1]]), np.array([0]), tables, np.zeros((2, 2)), np.full(2, -1.0))
     >>> found = scalable(problem)
@@ -87,10 +110,30 @@ def scalable(
 def search_from(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
-    """Search from ``labels`` (n1,); return the best map found, and whether the search ended before the deadline.
+    """Search from a map by annealing and belief propagation.
 
-    There are at most ``most`` turns of annealing. For many objects, annealing and belief propagation have a thread
-    each; for very many objects, only belief propagation is followed by annealing.
+    For many objects, annealing and belief propagation have a thread each; for very many objects, only belief
+    propagation is followed by annealing.
+
+    Parameters
+    ----------
+    labels
+        Map to start from, shape (n1,), with n2 for objects that are left out.
+    compiled
+        The problem in the layout of compiled loops.
+    deadline
+        End of the time limit.
+    seed
+        Seed of the random numbers.
+    effort
+        Factor on the number of steps; 1 is the full search.
+    most
+        Maximum number of turns of annealing.
+
+    Returns
+    -------
+    tuple
+        The best map found, shape (n1,), and whether the search ended before the deadline.
     """
     if len(labels) < MIN_PROPAGATED_OBJECTS or effort < MIN_PROPAGATION_EFFORT:
         return _annealed(labels, compiled, deadline, seed, effort, most)
@@ -147,7 +190,20 @@ def _propagated(
 
 
 def turns_and_sweeps(objects: int, width: int) -> tuple[list[tuple[float, int]], int]:
-    """Return the first temperature and number of temperatures of each turn, and the sweeps per temperature."""
+    """Return the first temperature and number of temperatures of each turn, and the sweeps per temperature.
+
+    Parameters
+    ----------
+    objects
+        Number n1 of objects.
+    width
+        Number of choices of an object, n2 + 1.
+
+    Returns
+    -------
+    tuple
+        Plan of the turns, and the number of sweeps. Temperatures are in units of :func:`mean_range`.
+    """
     turns = int(np.clip(TURN_CELLS / objects**2, 1, MAX_TURNS))
     fresh = math.ceil(FRESH_SHARE * turns)
     enough = max(SWEEPS, SWEEPS * (objects / MANY_OBJECTS) ** 0.2, min(SMALL_PROBLEM_SWEEPS / objects, MAX_SWEEPS))
@@ -188,7 +244,18 @@ def _cool(
 
 
 def mean_range(compiled: Compiled) -> float:
-    """Return the mean range of the facts' tables (largest minus least entry), or 1 where all of them are constant."""
+    """Return the mean range of the facts' tables (largest minus least entry), or 1 where all of them are constant.
+
+    Parameters
+    ----------
+    compiled
+        The problem in the layout of compiled loops.
+
+    Returns
+    -------
+    float
+        Mean range in nats.
+    """
     if len(compiled.kind) == 0:
         return 1.0
     tables = compiled.tables[: len(compiled.tables) // 2]  # each comes again transposed

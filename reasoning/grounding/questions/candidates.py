@@ -136,7 +136,18 @@ class Candidates:
         return tuple(i for i in range(self.assignments.shape[1]) if i not in skipped)
 
     def pinned(self, objects: Iterable[int]) -> Candidates:
-        """Return the same candidates with ``objects`` in no group, which may take more rows."""
+        """Return the same candidates with ``objects`` in no group, which may take more rows.
+
+        Parameters
+        ----------
+        objects
+            Positions of objects.
+
+        Returns
+        -------
+        Candidates
+            Candidates with the same maps.
+        """
         result = self
         for i in objects:
             group = next((group for group in result.groups if i in group), None)
@@ -154,18 +165,52 @@ class Candidates:
         return result
 
     def kept(self, rows: NDArray[np.bool_]) -> Candidates:
-        """Return the candidates of the rows in the mask (k,); raise SettingError for an empty mask."""
+        """Return the candidates of some rows.
+
+        Parameters
+        ----------
+        rows
+            Mask of the rows to keep, shape (k,).
+
+        Returns
+        -------
+        Candidates
+            The rows with their weights and the same groups.
+
+        Raises
+        ------
+        SettingError
+            The mask is empty.
+        """
         return Candidates(self.assignments[rows], self.weights[rows], self.groups, self.complete)
 
 
 def candidates_of(
     problem: Problem, deadline: Deadline = Deadline.never(), *, margin: float = 0.0, limit: int = MAX_LISTED_MAPS
 ) -> Candidates:
-    """Return the maps whose values are at most ``margin`` nats below the best, with weights exp(value).
+    """Return the maps whose values are close to the best, with weights exp(value).
 
     Where there are more than ``limit``, interchangeable objects get the things of the best map and are stored as
     groups; ``complete`` is then False, as it is where the deadline was reached.
 
+    Parameters
+    ----------
+    problem
+        The matching problem.
+    deadline
+        End of the time limit.
+    margin
+        Largest difference from the best value, in nats.
+    limit
+        Maximum number of listed maps, before groups are formed.
+
+    Returns
+    -------
+    Candidates
+        The maps, best first, with their weights and groups.
+
+    Examples
+    --------
     >>> none = np.zeros((0, 2), np.int64)
     >>> alike = Problem(none, none[:, 0], np.zeros((0, 9, 9), np.float32), np.ones((9, 9)), np.zeros(9))
     >>> found = candidates_of(alike, limit=100)

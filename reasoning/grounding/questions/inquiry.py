@@ -51,7 +51,26 @@ class Exchange:
 def update(situation: Situation, candidates: Candidates, question: Question, answer: str) -> Candidates:
     """Return the candidates that agree with an answer; all of them for ``DONT_KNOW``.
 
-    Raises ContradictionError where no candidate agrees.
+    Parameters
+    ----------
+    situation
+        The scene and what is known of it.
+    candidates
+        Groundings that are possible so far.
+    question
+        The question.
+    answer
+        One of the answers of the question, or ``DONT_KNOW``.
+
+    Returns
+    -------
+    Candidates
+        At least one candidate.
+
+    Raises
+    ------
+    ContradictionError
+        No candidate agrees with the answer.
     """
     if answer == DONT_KNOW:
         return candidates
@@ -77,6 +96,11 @@ class Inquiry:
 
         No question is asked twice, nor one that needs knowledge that the person did not have before. The dialogue ends
         after as many consecutive unusable answers as there are objects, and at least ``PATIENCE``.
+
+        Returns
+        -------
+        Question or None
+            The question, or None.
         """
         patience = max(PATIENCE, len(self.situation.objects))
         latest = self.exchanges[-patience:]
@@ -87,7 +111,20 @@ class Inquiry:
         return best_question(self.situation, self.candidates, self.kinds, barred | {e.question.look for e in unknown})
 
     def answered(self, question: Question, answer: str) -> Inquiry:
-        """Return the inquiry after an answer; an answer without an agreeing candidate is only recorded."""
+        """Return the inquiry after an answer; an answer without an agreeing candidate is only recorded.
+
+        Parameters
+        ----------
+        question
+            The question that was asked.
+        answer
+            Its answer.
+
+        Returns
+        -------
+        Inquiry
+            Inquiry with one exchange more.
+        """
         if answer == DONT_KNOW:
             return self._with(Exchange(question, answer, ExchangeOutcome.UNKNOWN), self.candidates)
         try:
@@ -127,5 +164,20 @@ class Inquiry:
 def begin(
     situation: Situation, candidates: Candidates, kinds: tuple[QuestionKind, ...] = tuple(QuestionKind)
 ) -> Inquiry:
-    """Return an inquiry without any questions asked."""
+    """Return an inquiry without any questions asked.
+
+    Parameters
+    ----------
+    situation
+        The scene and what is known of it.
+    candidates
+        Groundings to tell apart.
+    kinds
+        Kinds of questions that may be asked.
+
+    Returns
+    -------
+    Inquiry
+        The inquiry.
+    """
     return Inquiry(situation, candidates, candidates, kinds)

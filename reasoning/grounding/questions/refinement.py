@@ -49,9 +49,26 @@ def refine(
     """Ask questions that distinguish the likeliest groundings, and return the evidence with the answers.
 
     After the answers, the groundings that have become likely are listed and asked about in turn, up to one question
-    more than log2 of the initial number of groundings. ``start`` begins the dialogue about a situation. The time limit,
-    in seconds, does not include the person's time: half of it is for choosing questions, each time, and all of it for
-    grounding after the last answer; both together keep to it where no question was answered.
+    more than log2 of the initial number of groundings. The time limit does not include the person's time: half of it is
+    for choosing questions, each time, and all of it for grounding after the last answer; both together keep to it where
+    no question was answered.
+
+    Parameters
+    ----------
+    evidence
+        Evidence of the description and the scene.
+    implied
+        Facts that the description implies, which are not asked about.
+    start
+        Function that begins the dialogue about a situation; its result holds the dialogue of an inquiry, with seconds
+        for choosing questions, and returns the inquiry with the answers.
+    time_limit
+        Time limit in seconds.
+
+    Returns
+    -------
+    Refinement
+        Evidence with the answers, the last inquiry, and the deadline for grounding.
     """
     deadline = Deadline.after(time_limit)
     situation = situation_of(evidence.description, evidence.scene, implied)
@@ -79,12 +96,36 @@ def refine(
 
 
 def question_limit(inquiry: Inquiry) -> int:
-    """Return the maximum number of questions: those asked, and one more than log2 of the number of groundings."""
+    """Return the maximum number of questions: those asked, and one more than log2 of the number of groundings.
+
+    Parameters
+    ----------
+    inquiry
+        The dialogue so far.
+
+    Returns
+    -------
+    int
+        Maximum number of questions of the dialogue.
+    """
     return len(inquiry.exchanges) + math.ceil(math.log2(inquiry.candidates.count)) + 1
 
 
 def considered(evidence: Evidence, deadline: Deadline) -> Candidates:
-    """Return the groundings within the widest margin for which all can be listed; the first gets half of the time."""
+    """Return the groundings within the widest margin for which all can be listed; the first gets half of the time.
+
+    Parameters
+    ----------
+    evidence
+        Evidence of the description and the scene.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    Candidates
+        The groundings with their weights; an incomplete list where both margins have too many.
+    """
     wide = candidates_of(evidence.problem, deadline.share(0.5), margin=MARGINS[0])
     return wide if wide.complete else candidates_of(evidence.problem, deadline, margin=MARGINS[1])
 
@@ -95,6 +136,18 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
     A match is ruled out where some candidate before the dialogue contained it, and none does after it, nor any earlier
     candidate with the questioned objects as they are now. An incomplete list does not rule out maps that it does not
     contain: then only answers about a single object are used.
+
+    Parameters
+    ----------
+    evidence
+        Evidence before the dialogue.
+    done
+        The dialogue.
+
+    Returns
+    -------
+    Evidence
+        Evidence in which ruled out matches are not allowed, and things that answers determine are identified.
     """
     labels, allowed = evidence.labels.copy(), evidence.allowed.copy()
     doubted = evidence.doubted_labels

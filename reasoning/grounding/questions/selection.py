@@ -85,7 +85,22 @@ class Question:
 
 
 def answers_of(question: Question, situation: Situation, assignments: NDArray[np.int64]) -> list[str]:
-    """Return the answer of each of k maps (k, n1)."""
+    """Return the answer of each of k maps to a question.
+
+    Parameters
+    ----------
+    question
+        The question.
+    situation
+        The scene and what is known of it.
+    assignments
+        Thing of each object in each map, shape (k, n1); -1 for none.
+
+    Returns
+    -------
+    list of str
+        Answer of each map, as :func:`deixis.reasoning.grounding.questions.inquiry.update` compares them.
+    """
     things = situation.things
     subjects = assignments[:, question.subject]
     if question.kind is QuestionKind.POINTING:
@@ -106,8 +121,24 @@ def best_question(
 ) -> Question | None:
     """Return the question with the largest expected information, then the least effort, or None.
 
-    ``barred`` are topics and looks of questions to leave out. The question does not depend on the order of candidates,
-    objects or things, except for the choice among equivalent objects.
+    The question does not depend on the order of candidates, objects or things, except for the choice among equivalent
+    objects.
+
+    Parameters
+    ----------
+    situation
+        The scene and what is known of it.
+    candidates
+        Groundings to tell apart.
+    kinds
+        Kinds of questions that may be asked.
+    barred
+        Topics and looks of questions to leave out.
+
+    Returns
+    -------
+    Question or None
+        The question, or None where no question has information.
     """
     every, never = questions(situation, candidates, kinds), frozenset(barred)
     found = [question for question in every if never.isdisjoint((question.topic, question.look))]
@@ -117,7 +148,22 @@ def best_question(
 def questions(
     situation: Situation, candidates: Candidates, kinds: Collection[QuestionKind] = tuple(QuestionKind)
 ) -> Iterator[Question]:
-    """Yield every question that has information and that the description does not answer."""
+    """Yield every question that has information and that the description does not answer.
+
+    Parameters
+    ----------
+    situation
+        The scene and what is known of it.
+    candidates
+        Groundings to tell apart.
+    kinds
+        Kinds of questions that may be asked.
+
+    Yields
+    ------
+    Question
+        Question with its expected information in bits and its effort.
+    """
     marginals = _marginals(situation, candidates)
     asked = [i for i in candidates.stand_ins if marginals[i].max() < 1 - 1e-12]
     if QuestionKind.POINTING in kinds:

@@ -46,15 +46,43 @@ class Situation:
         return share
 
     def place(self, thing: int) -> str:
-        """Return the words for a thing in a question: its place and its id, or its id alone."""
+        """Return the words for a thing in a question: its place and its id, or its id alone.
+
+        Parameters
+        ----------
+        thing
+            Position of the thing.
+
+        Returns
+        -------
+        str
+            Words such as *the thing at the far left (p3)*.
+        """
         where = self.places[thing]
         return f"the thing {where} ({self.things[thing]})" if where else f"the thing {self.things[thing]}"
 
 
 def situation_of(description: RelationGraph, scene: SceneRelations, implied: Implications | None = None) -> Situation:
-    """Return the situation of a description and a scene; ``implied`` are the facts that it implies, if known.
+    """Return the situation of a description and a scene.
 
-    Raises SettingError for a scene without boxes.
+    Parameters
+    ----------
+    description
+        The objects and the facts.
+    scene
+        The things with their boxes and relations.
+    implied
+        Facts that the description implies; None where they are not known.
+
+    Returns
+    -------
+    Situation
+        What questions need to know of both.
+
+    Raises
+    ------
+    SettingError
+        The scene has no boxes.
     """
     if scene.boxes is None:
         raise SettingError("questions need a scene with boxes, and this scene has none")
@@ -107,6 +135,18 @@ def _settled(description: RelationGraph, relations: tuple[Relation, ...], implie
 def spoken(name: str) -> str:
     """Return an object's name in plain words: ``salad_fork`` is "salad fork".
 
+    Parameters
+    ----------
+    name
+        Name of an object in a script.
+
+    Returns
+    -------
+    str
+        The name with spaces for underscores.
+
+    Examples
+    --------
     >>> spoken("wine_glass_2")
     'wine glass 2'
     """

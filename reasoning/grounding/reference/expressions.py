@@ -38,11 +38,39 @@ class Attributes:
     gaps: NDArray[np.float64]
 
     def word(self, subject: int, thing: int) -> str:
-        """Return the wide relation that says most of a pair: ``top_left`` rather than ``top``."""
+        """Return the wide relation that says most of a pair: ``top_left`` rather than ``top``.
+
+        Parameters
+        ----------
+        subject
+            Position of the object.
+        thing
+            Position of the landmark.
+
+        Returns
+        -------
+        str
+            Name of the relation, without ``exactly_``.
+        """
         return self.related.relation(subject, thing).name.removeprefix("exactly_")
 
     def fitting(self, others: Sequence[int], word: str, thing: int) -> list[int]:
-        """Return those of some objects that a wide relation to one object fits, this object itself included."""
+        """Return those of some objects that a wide relation to one object fits, this object itself included.
+
+        Parameters
+        ----------
+        others
+            Positions of the objects.
+        word
+            Name of the relation, wide reading.
+        thing
+            Position of the landmark.
+
+        Returns
+        -------
+        list of int
+            Positions of the objects that fit, in the order of ``others``.
+        """
         names = self.related.names[np.asarray(others, dtype=np.int64), thing]
         fits = self._implying[word][names] | (names < 0)
         return [other for other, is_one in zip(others, fits.tolist(), strict=True) if is_one]
@@ -55,7 +83,22 @@ class Attributes:
         return {word: np.array([word in relation.broader for relation in relations.values()]) for word in wide}
 
     def share(self, words: Sequence[str | None], subject: int, other: int) -> bool:
-        """Return True unless both objects have a known word and the words differ."""
+        """Return True unless both objects have a known word and the words differ.
+
+        Parameters
+        ----------
+        words
+            Nouns or colours of all objects; None where unknown.
+        subject
+            Position of an object.
+        other
+            Position of another object.
+
+        Returns
+        -------
+        bool
+            False if the two words are known and differ.
+        """
         return words[subject] is None or words[other] is None or words[subject] == words[other]
 
 
@@ -96,6 +139,11 @@ def single_out(
     least
         Minimum number of relations.
 
+    Returns
+    -------
+    Description
+        Description; its ``rivals`` are the objects that no attribute rules out.
+
     Notes
     -----
     R. Dale, E. Reiter: Computational interpretations of the Gricean maxims in the generation of referring expressions.
@@ -127,7 +175,25 @@ def relate(
 ) -> Description:
     """Add relations to landmarks until nothing else fits the description; those that rule out most come first.
 
-    The first ``least`` relations are to the nearest landmarks; there are at most ``most``.
+    The first relations are to the nearest landmarks.
+
+    Parameters
+    ----------
+    description
+        Description with its rivals.
+    attributes
+        What can be said of the objects.
+    landmarks
+        Positions of the objects that relations may mention.
+    least
+        Minimum number of relations.
+    most
+        Maximum number of relations.
+
+    Returns
+    -------
+    Description
+        Description with the relations and the remaining rivals.
     """
     target, left = description.target, list(description.rivals)
     relations = list(description.relations)
@@ -152,6 +218,16 @@ def reading_order(attributes: Attributes) -> Iterator[int]:
     """Yield the objects of a scene: a landmark first, then always the one nearest to those before it.
 
     The landmark is the largest of the objects whose noun, or noun and colour, no other object has; else the largest.
+
+    Parameters
+    ----------
+    attributes
+        What can be said of the objects.
+
+    Yields
+    ------
+    int
+        Position of the next object.
     """
     n = len(attributes.sizes)
     everything = range(n)

@@ -42,6 +42,11 @@ def fit(model: Model, examples: Sequence[Example], penalty: float, iterations: i
         Squared distance of the weights from the start, in nats per example for a distance of 1.
     iterations
         Maximum number of steps of L-BFGS.
+
+    Returns
+    -------
+    dict
+        Weights by name, each of the shape that they have in ``model``.
     """
     from scipy.optimize import minimize
 
@@ -69,7 +74,20 @@ def fit(model: Model, examples: Sequence[Example], penalty: float, iterations: i
 
 
 def log_probability(model: Model, example: Example) -> Score | None:
-    """Return the log probability of the target; None if it is not a candidate."""
+    """Return the log probability of the target; None if it is not a candidate.
+
+    Parameters
+    ----------
+    model
+        The model.
+    example
+        A query, its room and its target.
+
+    Returns
+    -------
+    Score or None
+        Log probability in nats, shape (); None if the target is not a candidate.
+    """
     at = np.flatnonzero(model.candidates(example.query, example.room) == example.target)
     return model.scores(example.query, example.room)[int(at[0])] if len(at) else None
 
@@ -118,7 +136,18 @@ INITIAL: Mapping[str, float] = {
 
 
 def initial_weights(colours: Colours) -> dict[str, Array]:
-    """Return the weights from which a fit starts: those of INITIAL, and 0 for each relation's own deviations."""
+    """Return the weights from which a fit starts: those of INITIAL, and 0 for each relation's own deviations.
+
+    Parameters
+    ----------
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    dict
+        Weights by the name of the block.
+    """
     names = feature_names(colours)
     weights = {block: np.array([INITIAL.get(name, 0.0) for name in given]) for block, given in names.items()}
     for word, (family, _) in RELATIONS.items():
@@ -135,7 +164,18 @@ def initial_weights(colours: Colours) -> dict[str, Array]:
 
 
 def feature_names(colours: Colours) -> dict[str, tuple[str, ...]]:
-    """Return the names of the features of each block of weights, in order."""
+    """Return the names of the features of each block of weights, in order.
+
+    Parameters
+    ----------
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    dict
+        Names of features by the name of the block.
+    """
     boxes = np.arange(12.0).reshape(2, 2, 3)
     room, both = Room.of(("a", "b"), boxes, ("cup", "cup")), np.arange(2)
     pairs = Pairs(room, both, both, (both,))
@@ -161,7 +201,18 @@ def feature_names(colours: Colours) -> dict[str, tuple[str, ...]]:
 
 
 def weight_names(colours: Colours) -> dict[str, tuple[str, ...]]:
-    """Return the names of the weights of each block in a file of weights, in order."""
+    """Return the names of the weights of each block in a file of weights, in order.
+
+    Parameters
+    ----------
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    dict
+        Names of weights by the name of the block.
+    """
     return feature_names(colours) | {
         "calibration": ("power", "unread", "vain"),
         "towards": ("towards",),
@@ -170,7 +221,20 @@ def weight_names(colours: Colours) -> dict[str, tuple[str, ...]]:
 
 
 def named_weights(weights: Mapping[str, Array], colours: Colours) -> dict[str, dict[str, float]]:
-    """Return weights by the names of their features, to three digits, without words that keep to their family."""
+    """Return weights by the names of their features, to three digits, without words that keep to their family.
+
+    Parameters
+    ----------
+    weights
+        Weights by the name of the block.
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    dict
+        Weights by the name of the feature, for each block.
+    """
     names = weight_names(colours)
     return {
         block: dict(
@@ -182,7 +246,18 @@ def named_weights(weights: Mapping[str, Array], colours: Colours) -> dict[str, d
 
 
 def fit_calibration(held_out: Sequence[tuple[Model, Example]]) -> Array:
-    """Return the weights ``calibration`` that make the targets of held-out examples most probable."""
+    """Return the weights ``calibration`` that make the targets of held-out examples most probable.
+
+    Parameters
+    ----------
+    held_out
+        Examples, each with a model that was fitted without it.
+
+    Returns
+    -------
+    ndarray
+        The weights ``calibration``, shape (3,): power, its change by the share that was not used, and log odds.
+    """
     from scipy.optimize import minimize
 
     known = [(model, example) for model, example in held_out if log_probability(model, example) is not None]

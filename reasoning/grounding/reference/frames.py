@@ -19,6 +19,20 @@ def frame_of(query: Query, room: Room, model: Model) -> Frame | None:
 
     *Left* and *right* are the viewer's. *In front of* and *behind* are those of the landmark if the most probable one
     has a front, and the viewer's otherwise. Places (*in the corner*) are those of the table or the room.
+
+    Parameters
+    ----------
+    query
+        The query.
+    room
+        The scene.
+    model
+        The model, for the most probable landmark.
+
+    Returns
+    -------
+    Frame or None
+        The frame, or None.
     """
     if query.viewer is not None:
         return Frame.OBJECT if query.viewer.stance == "own" else Frame.VIEWER

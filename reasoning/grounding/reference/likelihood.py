@@ -48,15 +48,40 @@ class Score:
 
 
 def constant(value: Array) -> Score:
-    """Return a score that depends on no weight."""
+    """Return a score that depends on no weight.
+
+    Parameters
+    ----------
+    value
+        Log scores of any shape.
+
+    Returns
+    -------
+    Score
+        Score with these values.
+    """
     return Score(np.asarray(value, dtype=np.float64))
 
 
 def weighted(features: Array, name: str, weights: Mapping[str, Array]) -> Score:
-    """Return the products of features, shape (…, f), with weights, shape (f,).
+    """Return the products of features with weights.
 
     The weights of ``family/word`` are the sum of those of the family and the word; a word without weights has those of
     its family.
+
+    Parameters
+    ----------
+    features
+        Features, shape (…, f).
+    name
+        Name of the weights: ``family`` or ``family/word``.
+    weights
+        Weights by name, each of shape (f,).
+
+    Returns
+    -------
+    Score
+        Score of shape (…,).
     """
     names = tuple(part for part in dict.fromkeys((name.partition("/")[0], name)) if part in weights)
     total = sum((weights[part] for part in names), np.zeros(features.shape[-1]))
@@ -64,7 +89,20 @@ def weighted(features: Array, name: str, weights: Mapping[str, Array]) -> Score:
 
 
 def log_sum(score: Score, axis: int) -> Score:
-    """Return the logarithm of the sum of exponentials along an axis, which is dropped."""
+    """Return the logarithm of the sum of exponentials along an axis, which is dropped.
+
+    Parameters
+    ----------
+    score
+        Log scores.
+    axis
+        Axis to sum over.
+
+    Returns
+    -------
+    Score
+        Score with one axis fewer.
+    """
     top = score.value.max(axis=axis, keepdims=True)
     top = np.where(np.isfinite(top), top, 0.0)
     shares = np.exp(score.value - top)
@@ -75,7 +113,20 @@ def log_sum(score: Score, axis: int) -> Score:
 
 
 def log_mixture(parts: Sequence[Score], shares: Score) -> Score:
-    """Return the log probabilities of a mixture of distributions with log shares of shape (len(parts),)."""
+    """Return the log probabilities of a mixture of distributions with log shares.
+
+    Parameters
+    ----------
+    parts
+        Log probabilities of each distribution, all of the same shape.
+    shares
+        Log share of each distribution, shape (len(parts),).
+
+    Returns
+    -------
+    Score
+        Score of the shape of a part.
+    """
     joint = np.stack([part.value + share for part, share in zip(parts, shares.value, strict=True)])
     value = np.logaddexp.reduce(joint, axis=0)
     blame = np.exp(joint - value)
@@ -88,7 +139,20 @@ def _times(factor: Array) -> Pull:
 
 
 def log_shares(score: Score, axis: int) -> Score:
-    """Return log probabilities along an axis (log-softmax)."""
+    """Return log probabilities along an axis (log-softmax).
+
+    Parameters
+    ----------
+    score
+        Scores, up to a constant along the axis.
+    axis
+        Axis along which the probabilities add up to 1.
+
+    Returns
+    -------
+    Score
+        Log probabilities of the same shape.
+    """
     top = score.value.max(axis=axis, keepdims=True)
     value = score.value - top
     value = value - np.log(np.exp(value).sum(axis=axis, keepdims=True))
@@ -102,13 +166,34 @@ def log_shares(score: Score, axis: int) -> Score:
 
 
 def log_complement(score: Score, share: float) -> Score:
-    """Return log(1 - share p) of log probabilities, ``share`` in (0, 1)."""
+    """Return log(1 - share p) of the log probabilities of p.
+
+    Parameters
+    ----------
+    score
+        Log probabilities, at most 0.
+    share
+        Share, in (0, 1), which keeps the result finite.
+
+    Returns
+    -------
+    Score
+        Log probabilities of the same shape.
+    """
     p = share * np.exp(np.minimum(score.value, 0.0))
     return Score(np.log1p(-p), ((score, lambda given: -given * p / (1 - p)),))
 
 
 def add_gradients(result: Score, found: MutableMapping[str, Array]) -> None:
-    """Add the derivatives of a score of shape () by all weights to ``found``, arrays by the names of the weights."""
+    """Add the derivatives of a score by all weights to arrays of derivatives.
+
+    Parameters
+    ----------
+    result
+        Score of shape ().
+    found
+        Derivatives by the names of the weights; they are changed in place, or added.
+    """
     order: list[Score] = []
     seen: set[int] = set()
     open_nodes = [(result, iter(result.operands))]

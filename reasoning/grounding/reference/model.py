@@ -94,7 +94,20 @@ class Model:
     kept: dict[tuple[int, str], Any] | None = None
 
     def candidates(self, query: Query, room: Room) -> Indices:
-        """Return the objects that the query may mean: those that its noun may name, or all if it names none."""
+        """Return the objects that the query may mean: those that its noun may name, or all if it names none.
+
+        Parameters
+        ----------
+        query
+            The query.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Positions of the x candidates, increasing.
+        """
 
         def named() -> Indices:
             known = np.flatnonzero(self._fit(query.target, room) > 0)
@@ -103,7 +116,20 @@ class Model:
         return self._keep(query, "candidates", named)
 
     def scores(self, query: Query, room: Room) -> Score:
-        """Return the log probability of each candidate, shape (x,), summed over the readings of the query."""
+        """Return the log probability of each candidate, summed over the readings of the query.
+
+        Parameters
+        ----------
+        query
+            The query.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        Score
+            Log probabilities in nats, shape (x,), in the order of :meth:`candidates`.
+        """
         among, views = self.candidates(query, room), self._viewer(query, room)
         targets = self._keep(query, "readings", lambda: tuple(readings(query.target)))
         found = [self._description(target, room, among, target=True) for target in targets]
@@ -114,10 +140,22 @@ class Model:
         return log_mixture(scores, log_shares(weighted(lifted, "lifted", self.weights), 0))
 
     def probabilities(self, query: Query, room: Room) -> Array:
-        """Return the calibrated probability of each object, shape (n,).
+        """Return the calibrated probability of each object.
 
         The weights ``calibration`` are the logarithm of the power of the probabilities, its change by the share of the
         description that was not used, and the log odds that the description tells nothing.
+
+        Parameters
+        ----------
+        query
+            The query.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Probabilities, shape (n,), which add up to 1.
         """
         among = self.candidates(query, room)
         power, unread, vain = self.weights.get("calibration", np.array([0.0, 0.0, -30.0]))
@@ -129,7 +167,20 @@ class Model:
         return found
 
     def unused(self, query: Query, room: Room) -> float:
-        """Return the share of a description that is not used: words not understood, landmarks not in the room."""
+        """Return the share of a description that is not used: words not understood, landmarks not in the room.
+
+        Parameters
+        ----------
+        query
+            The query.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        float
+            Share, at least 0; 0 where all of the description is used.
+        """
         relations = query.target.relations
         unseen = sum(
             any(self._unseen(one, room) for one in relation.arguments) and not places_of(relation)
@@ -370,6 +421,16 @@ def places_of(said: Relation) -> tuple[Property, ...]:
 
     *On the left side of the table* is on the left, where the table itself is not an object of the scene, and *closest
     to the left edge of it* is leftmost.
+
+    Parameters
+    ----------
+    said
+        A relation to a landmark.
+
+    Returns
+    -------
+    tuple of Property
+        Properties of the position of the described object; none for other relations.
     """
     words = [one.word for argument in said.arguments for one in argument.properties if one.word in SIDES]
     if said.name in PLACES:
@@ -380,7 +441,20 @@ def places_of(said: Relation) -> tuple[Property, ...]:
 
 
 def rival_groups(room: Room, among: Indices) -> tuple[Indices, ...]:
-    """Return the positions of objects with the same label; objects without labels compete with all of these."""
+    """Return the positions of objects with the same label; objects without labels compete with all of these.
+
+    Parameters
+    ----------
+    room
+        The scene.
+    among
+        Positions of the objects that compete.
+
+    Returns
+    -------
+    tuple of ndarray
+        Positions in ``among`` of the objects of each label.
+    """
     groups: dict[str | None, list[int]] = {}
     for position, index in enumerate(among):
         groups.setdefault(room.labels[index], []).append(position)
@@ -398,7 +472,18 @@ def _people(room: Room, among: Iterable[Person]) -> Array:
 
 
 def stacked(features: Mapping[str, Array]) -> Array:
-    """Return features along a last axis, broadcast to one shape."""
+    """Return features along a last axis, broadcast to one shape.
+
+    Parameters
+    ----------
+    features
+        The f features by name, arrays that broadcast.
+
+    Returns
+    -------
+    ndarray
+        Features of the broadcast shape with a last axis of length f.
+    """
     return np.stack(np.broadcast_arrays(*features.values()), axis=-1)
 
 

@@ -44,7 +44,20 @@ class Nouns:
         self._is_plural = lru_cache(maxsize=10_000)(self._label_is_plural)
 
     def features(self, noun: str, room: Room) -> Array:
-        """Return features of each object."""
+        """Return the features of the fit of a noun to each object.
+
+        Parameters
+        ----------
+        noun
+            The noun; empty if the description has none.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Features in the order of ``NOUN_FEATURES``, shape (n, f).
+        """
         found = np.zeros((len(room), len(NOUN_FEATURES)))
         if not noun:
             found[:, -2] = 1.0
@@ -60,13 +73,39 @@ class Nouns:
         return found
 
     def similarity(self, noun: str, room: Room) -> Array:
-        """Return the fit of the noun to each object as one number; 0 without a noun or a label."""
+        """Return the fit of the noun to each object as one number; 0 without a noun or a label.
+
+        Parameters
+        ----------
+        noun
+            The noun; empty if the description has none.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Fits in [0, 1], shape (n,).
+        """
         if not noun:
             return np.zeros(len(room))
         return np.array([0.0 if label is None else self._pair(noun, label)[-1] for label in room.labels])
 
     def number(self, plural: bool, room: Room) -> Array:
-        """Return how the number of a noun agrees with that of each label, features NUMBER_FEATURES, shape (n, 3)."""
+        """Return how the number of a noun agrees with that of each label.
+
+        Parameters
+        ----------
+        plural
+            Whether the noun is in the plural.
+        room
+            The scene of n objects.
+
+        Returns
+        -------
+        ndarray
+            Features in the order of ``NUMBER_FEATURES``, 0 or 1, shape (n, 3).
+        """
         many = np.array([label is not None and self._is_plural(label) for label in room.labels], dtype=np.bool_)
         return np.stack([many & plural, ~many & plural, many & (not plural)], axis=1).astype(np.float64)
 

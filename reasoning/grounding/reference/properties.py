@@ -28,7 +28,20 @@ Each candidate is compared within the last group that it is in.
 
 
 def order(values: Array, rivals: Rivals) -> Features:
-    """Return features of having a large value among the rivals; ``values`` has shape (v, x)."""
+    """Return features of having a large value among the rivals.
+
+    Parameters
+    ----------
+    values
+        Values of x candidates for v viewers, shape (v, x).
+    rivals
+        Positions of the candidates that compete with each other.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (v, x).
+    """
     standard, greatest, rank, lead = (np.zeros(values.shape) for _ in range(4))
     greatest[:] = 1.0
     for group in rivals:
@@ -46,7 +59,22 @@ def order(values: Array, rivals: Rivals) -> Features:
 
 
 def placed(values: Array, rivals: Rivals, place: int) -> Features:
-    """Return features of being at a place of the order from the largest value, counted from 1 (-1 for the last)."""
+    """Return features of being at a place of the order from the largest value.
+
+    Parameters
+    ----------
+    values
+        Values of x candidates for v viewers, shape (v, x).
+    rivals
+        Positions of the candidates that compete with each other.
+    place
+        Place, counted from 1; -1 for the last.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (v, x).
+    """
     off = np.zeros(values.shape)
     for group in rivals:
         rank = (-values[:, group]).argsort(axis=1).argsort(axis=1)
@@ -55,7 +83,20 @@ def placed(values: Array, rivals: Rivals, place: int) -> Features:
 
 
 def middling(values: Array, rivals: Rivals) -> Features:
-    """Return features of being in the middle of an order."""
+    """Return features of being in the middle of an order.
+
+    Parameters
+    ----------
+    values
+        Values of x candidates for v viewers, shape (v, x).
+    rivals
+        Positions of the candidates that compete with each other.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (v, x).
+    """
     off = np.abs(order(values, rivals)["rank"] - 0.5)
     median = np.zeros(values.shape)
     for group in rivals:
@@ -207,7 +248,26 @@ FLAT |= {"low": "front", "lower": "front", "bottom": "front", "bottommost": "fro
 
 
 def side_values(room: Room, candidates: Indices, axis: int, sign: float, person: Person | None = None) -> Array:
-    """Return the coordinates of candidates along an axis of each view of a person, times the sign, shape (v, x)."""
+    """Return the coordinates of candidates along an axis of each view of a person, times the sign.
+
+    Parameters
+    ----------
+    room
+        The scene.
+    candidates
+        Positions of the x candidates.
+    axis
+        0 for left to right, 1 for near to far.
+    sign
+        1, or -1 for the opposite direction.
+    person
+        Person whose view counts; None for the viewer.
+
+    Returns
+    -------
+    ndarray
+        Coordinates in units of the scene's scale, shape (v, x).
+    """
     views = room.heading(person)
     heading = np.stack([views[:, 1], -views[:, 0]], axis=1) if axis == 0 else views
     result: Array = sign * heading @ room.centres[candidates, :2].T / room.scale
@@ -217,7 +277,26 @@ def side_values(room: Room, candidates: Indices, axis: int, sign: float, person:
 def property_features(
     said: Property, room: Room, candidates: Indices, rivals: Rivals, colours: Colours
 ) -> tuple[str, Features] | None:
-    """Return the name of the weights of a property and its features, or None if nothing in a scene shows it."""
+    """Return the name of the weights of a property and its features, or None if nothing in a scene shows it.
+
+    Parameters
+    ----------
+    said
+        The property.
+    room
+        The scene.
+    candidates
+        Positions of the x candidates.
+    rivals
+        Positions of the candidates that compete with each other.
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    tuple or None
+        Name of the weights, and features by name, each of shape (v, x) or (1, x).
+    """
     word = said.word
     if word in FLAT and room.is_flat:
         word = FLAT[word]
@@ -250,7 +329,22 @@ def property_features(
 
 
 def called_by(word: str, room: Room, colours: Colours) -> NDArray[np.bool_] | None:
-    """Return which objects are vivid and likely to be called by a word for a colour; None for another word."""
+    """Return which objects are vivid and likely to be called by a word for a colour; None for another word.
+
+    Parameters
+    ----------
+    word
+        The word.
+    room
+        The scene of n objects.
+    colours
+        Known colour terms.
+
+    Returns
+    -------
+    ndarray or None
+        Mask of shape (n,), or None.
+    """
     from deixis.reasoning.grounding.evidence.colours import colour_evidence
 
     term = colours.of_word(word)

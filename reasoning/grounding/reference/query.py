@@ -69,14 +69,26 @@ class Description:
         return (self.noun, *self.other_nouns)
 
     def parts(self) -> Iterator[Description]:
-        """Yield this description and those of all objects that it mentions."""
+        """Yield this description and those of all objects that it mentions.
+
+        Yields
+        ------
+        Description
+            Description; this one first.
+        """
         yield self
         for relation in self.relations:
             for argument in relation.arguments:
                 yield from argument.parts()
 
     def without_relations(self) -> Description:
-        """Return the noun and its properties alone."""
+        """Return the noun and its properties alone.
+
+        Returns
+        -------
+        Description
+            Copy with no relations.
+        """
         return replace(self, relations=())
 
 
@@ -84,6 +96,16 @@ def readings(said: Description) -> Iterator[Description]:
     """Yield a description, and the one in which its last phrase belongs to the described object.
 
     In *the pillow on the bed that is closest to the door*, the bed or the pillow may be closest to the door.
+
+    Parameters
+    ----------
+    said
+        The description.
+
+    Yields
+    ------
+    Description
+        Reading; the description as it was parsed comes first.
     """
     yield said
     last = said.relations[-1] if said.relations else None

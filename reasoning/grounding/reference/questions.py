@@ -46,6 +46,11 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
     enough
         Probability of an object from which on no more questions are asked.
 
+    Returns
+    -------
+    Question or None
+        The question, or None.
+
     Notes
     -----
     A question with a share q of the probability on *yes* gains the entropy of q. Of the COMPARED questions that
@@ -79,11 +84,25 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
 
 
 def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
-    """Return about the least expected number of yes-or-no questions until an object has the probability ``enough``.
+    """Return about the least expected number of yes-or-no questions until an object is probable enough.
 
     It is the mean length of a Huffman code (1952) for the objects, without the least probable ones that together have
     less than the share ``1 - enough``: for these, no question needs to be asked.
 
+    Parameters
+    ----------
+    shares
+        Probabilities of the objects, shape (n,).
+    enough
+        Probability of an object from which on no more questions are asked.
+
+    Returns
+    -------
+    float
+        Expected number of questions, at least 0.
+
+    Examples
+    --------
     >>> fewest_questions(np.array([0.96, 0.04])), fewest_questions(np.array([0.5, 0.3, 0.2]))
     (0.0, 1.5)
     """
@@ -99,7 +118,24 @@ def fewest_questions(shares: Array, enough: float = DECIDED) -> float:
 
 
 def answered(probabilities: Array, room: Room, question: Question, yes: bool) -> Array:
-    """Return the probabilities after an answer, which is wrong in a share of WRONG_ANSWERS."""
+    """Return the probabilities after an answer, which is wrong in a share of WRONG_ANSWERS.
+
+    Parameters
+    ----------
+    probabilities
+        Probability of each object before the answer, shape (n,).
+    room
+        The scene.
+    question
+        The question.
+    yes
+        The answer.
+
+    Returns
+    -------
+    ndarray
+        Probabilities, shape (n,), which add up to 1.
+    """
     among = np.isin(np.array(room.ids), question.yes)
     after = probabilities * np.where(among == yes, 1 - WRONG_ANSWERS, WRONG_ANSWERS)
     result: Array = after / after.sum()

@@ -39,11 +39,33 @@ class Pairs:
     rivals: tuple[Indices, ...]
 
     def of(self, matrix: Array) -> Array:
-        """Return the entries of a matrix over all objects, shape (1, x, a)."""
+        """Return the entries of a matrix over all objects, for these candidates and landmarks.
+
+        Parameters
+        ----------
+        matrix
+            Values of all pairs of the n objects, shape (n, n).
+
+        Returns
+        -------
+        ndarray
+            Entries, shape (1, x, a).
+        """
         return matrix[np.ix_(self.candidates, self.landmarks)][None]
 
     def least(self, values: Array) -> Array:
-        """Return 1 where a candidate has the least value among its rivals, of arrays of shape (v, x, a)."""
+        """Return 1 where a candidate has the least value among its rivals.
+
+        Parameters
+        ----------
+        values
+            Values of each candidate and landmark for v viewers, shape (v, x, a).
+
+        Returns
+        -------
+        ndarray
+            Array of 0 and 1, shape (v, x, a).
+        """
         found = np.zeros(values.shape)
         for group in self.rivals:
             among = values[:, group]
@@ -51,7 +73,18 @@ class Pairs:
         return found
 
     def rank(self, values: Array) -> Array:
-        """Return the share of the rivals with a lesser value, of arrays of shape (v, x, a)."""
+        """Return the share of the rivals with a lesser value.
+
+        Parameters
+        ----------
+        values
+            Values of each candidate and landmark for v viewers, shape (v, x, a).
+
+        Returns
+        -------
+        ndarray
+            Shares in [0, 1], shape (v, x, a).
+        """
         found = np.zeros(values.shape)
         for group in self.rivals:
             among = values[:, group]
@@ -65,7 +98,20 @@ Family = Callable[[Pairs, float], Features]
 
 
 def proximity(pairs: Pairs, sign: float) -> Features:
-    """Return features of nearness (sign 1) or of distance (sign -1)."""
+    """Return features of nearness (sign 1) or of distance (sign -1).
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for near, -1 for far.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a).
+    """
     room = pairs.room
     gap, distance = pairs.of(room.gaps), pairs.of(room.distances)
     plane = np.hypot(*np.moveaxis(pairs.of(room.offsets[:, :, :2].reshape(len(room), len(room), 2)), -1, 0))
@@ -85,7 +131,20 @@ def proximity(pairs: Pairs, sign: float) -> Features:
 
 
 def support(pairs: Pairs, sign: float) -> Features:
-    """Return features of standing or lying on a landmark (sign 1), or of being under it (sign -1)."""
+    """Return features of standing or lying on a landmark (sign 1), or of being under it (sign -1).
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for on, -1 for under.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a).
+    """
     room = pairs.room
     low, high, middle = room.boxes[:, 0, 2], room.boxes[:, 1, 2], room.centres[:, 2]
     rise = pairs.of(room.offsets[:, :, 2])
@@ -112,7 +171,20 @@ def support(pairs: Pairs, sign: float) -> Features:
 
 
 def inside(pairs: Pairs, sign: float) -> Features:
-    """Return features of being in a landmark."""
+    """Return features of being in a landmark.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        Not used: the relation has no opposite.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a).
+    """
     del sign
     room = pairs.room
     gap = pairs.of(room.gaps)
@@ -127,7 +199,20 @@ def inside(pairs: Pairs, sign: float) -> Features:
 
 
 def sideways(pairs: Pairs, sign: float) -> Features:
-    """Return features of being to the right of a landmark (sign 1) or to its left (sign -1) for each viewer."""
+    """Return features of being to the right of a landmark (sign 1) or to its left (sign -1) for each viewer.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for right, -1 for left.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (v, x, a).
+    """
     room = pairs.room
     right = np.stack([room.views[:, 1], -room.views[:, 0]], axis=1)
     return _along(pairs, sign * right)
@@ -138,6 +223,18 @@ def ahead(pairs: Pairs, sign: float) -> Features:
 
     Three frames are compared: the viewer's (in front is nearer to the viewer), the landmark's own front, and the room's
     (in front is on the side away from the wall).
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for in front, -1 for behind.
+
+    Returns
+    -------
+    dict
+        Features by name, arrays that broadcast to (v, x, a).
     """
     room = pairs.room
     offset = np.moveaxis(pairs.of(room.offsets), 0, 0)[0][..., :2]
@@ -170,7 +267,20 @@ def ahead(pairs: Pairs, sign: float) -> Features:
 
 
 def between(pairs: Pairs, sign: float) -> Features:
-    """Return features of being between two landmarks; the landmarks are all pairs of ``pairs.landmarks``."""
+    """Return features of being between two landmarks; the landmarks are all pairs of ``pairs.landmarks``.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and the a landmarks.
+    sign
+        Not used: the relation has no opposite.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a * a).
+    """
     del sign
     room, ends = pairs.room, pairs.landmarks
     offset = room.offsets[np.ix_(pairs.candidates, ends)][..., :2]
@@ -192,7 +302,20 @@ def between(pairs: Pairs, sign: float) -> Features:
 
 
 def toward(pairs: Pairs, sign: float) -> Features:
-    """Return features of facing a landmark, or of standing opposite it, or (sign -1) of turning the back to it."""
+    """Return features of facing a landmark, or of standing opposite it, or (sign -1) of turning the back to it.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for facing, -1 for turning the back.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a).
+    """
     room = pairs.room
     offset = room.offsets[np.ix_(pairs.candidates, pairs.landmarks)][..., :2]
     length = np.maximum(np.linalg.norm(offset, axis=2), 0.3)
@@ -217,12 +340,38 @@ def toward(pairs: Pairs, sign: float) -> Features:
 
 
 def larger(pairs: Pairs, sign: float) -> Features:
-    """Return features of being bigger (sign 1) or smaller (sign -1) than a landmark."""
+    """Return features of being bigger (sign 1) or smaller (sign -1) than a landmark.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        1 for bigger, -1 for smaller.
+
+    Returns
+    -------
+    dict
+        The feature ``log_ratio``, in [-1, 1], shape (1, x, a).
+    """
     return {"log_ratio": np.tanh(-sign * pairs.of(_larger(pairs.room)))}
 
 
 def cornered(pairs: Pairs, sign: float) -> Features:
-    """Return features of being at a corner or an end of a landmark."""
+    """Return features of being at a corner or an end of a landmark.
+
+    Parameters
+    ----------
+    pairs
+        The candidates and landmarks.
+    sign
+        Not used: the relation has no opposite.
+
+    Returns
+    -------
+    dict
+        Features by name, each of shape (1, x, a).
+    """
     del sign
     room = pairs.room
     middle = room.centres[pairs.candidates][:, None, :2]

@@ -61,7 +61,30 @@ class Room:
         viewer: bool = False,
         places: Mapping[Person, Array] | None = None,
     ) -> Room:
-        """Return a room of boxes with 2 or 3 axes, with unknown colours and fronts where none are given."""
+        """Return a room of boxes with 2 or 3 axes, with unknown colours and fronts where none are given.
+
+        Parameters
+        ----------
+        ids
+            Names of the n objects.
+        boxes
+            Least and greatest corners, shape (n, 2, 2) or (n, 2, 3).
+        labels
+            Category of each object, or None.
+        colours
+            Mean colours in sRGB, 0 to 255, shape (n, 3); NaN if unknown.
+        fronts
+            Unit vectors in the plane, shape (n, 2); NaN if unknown.
+        viewer
+            Whether the y axis points away from a viewer.
+        places
+            Places of the speaker and the addressee in the plane, shape (2,) each, where known.
+
+        Returns
+        -------
+        Room
+            The room; boxes without heights get heights of 0.
+        """
         n = len(ids)
         if boxes.shape[-1] == 2:
             boxes = np.concatenate([boxes, np.zeros((n, 2, 1))], axis=2)
@@ -179,9 +202,19 @@ class Room:
         return {person: (way / max(float(np.linalg.norm(way)), 1e-9))[None] for person, way in apart.items()}
 
     def heading(self, person: Person | None) -> Array:
-        """Return the directions in which a person may look, shape (1 or v, 2).
+        """Return the directions in which a person may look.
 
         People sit opposite each other unless the places of both are known. Without any known place, each is the viewer.
+
+        Parameters
+        ----------
+        person
+            The person, or None for the viewer.
+
+        Returns
+        -------
+        ndarray
+            Unit vectors in the plane: of shape (1, 2) where the direction is known, and of shape (v, 2) otherwise.
         """
         if person is None or not self.headings:
             return self.views
@@ -240,6 +273,17 @@ class Room:
 
 
 def circle(count: int) -> Array:
-    """Return unit vectors in evenly spaced directions, shape (count, 2)."""
+    """Return unit vectors in evenly spaced directions.
+
+    Parameters
+    ----------
+    count
+        Number of directions.
+
+    Returns
+    -------
+    ndarray
+        Unit vectors, shape (count, 2), counter-clockwise from the x axis.
+    """
     angles = np.arange(count) * (2 * np.pi / count)
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)

@@ -64,6 +64,18 @@ PLACES = {
 def paraphrase(query: Query) -> str:
     """Return what a query says of the object, as a noun phrase with its viewer.
 
+    Parameters
+    ----------
+    query
+        The query.
+
+    Returns
+    -------
+    str
+        The noun phrase.
+
+    Examples
+    --------
     >>> desk = Description("desk", relations=(Relation("with", (Description("monitor"),)),))
     >>> paraphrase(Query(Description("chair", (Property("colour", "red"),), (Relation("left", (desk,)),))))
     'the red chair to the left of the desk with the monitor'
@@ -73,7 +85,18 @@ def paraphrase(query: Query) -> str:
 
 
 def noun_phrase(said: Description) -> str:
-    """Return a description as a noun phrase."""
+    """Return a description as a noun phrase.
+
+    Parameters
+    ----------
+    said
+        The description.
+
+    Returns
+    -------
+    str
+        The noun phrase with the definite article.
+    """
     before = [_adjective(one) for one in said.properties if one.positive and not _is_place(one)]
     after = [_place(one) for one in said.properties if one.positive and _is_place(one)]
     after += [f"not {_adjective(one)}" for one in said.properties if not one.positive]
@@ -157,5 +180,16 @@ def _viewer(said: Viewer) -> str:
 
 
 def named(noun: str) -> str:
-    """Return a noun with its indefinite article, ``an object`` where there is none."""
+    """Return a noun with its indefinite article, ``an object`` where there is none.
+
+    Parameters
+    ----------
+    noun
+        The noun; empty if there is none.
+
+    Returns
+    -------
+    str
+        Words such as *a chair*.
+    """
     return with_article(noun or "object")

@@ -34,14 +34,36 @@ class Bridge:
     admits: tuple[int, ...]
 
     def forward(self, relation: int) -> int:
-        """Return the target relation that a source relation admits."""
+        """Return the target relation that a source relation admits.
+
+        Parameters
+        ----------
+        relation
+            Relation of the source calculus, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of the target calculus, as a bit mask.
+        """
         mask = 0
         for code in bits(relation):
             mask |= self.admits[code]
         return mask
 
     def backward(self, relation: int) -> int:
-        """Return the source relation that a target relation admits."""
+        """Return the source relation that a target relation admits.
+
+        Parameters
+        ----------
+        relation
+            Relation of the target calculus, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of the source calculus, as a bit mask.
+        """
         return sum(1 << code for code, admitted in enumerate(self.admits) if admitted & relation)
 
     @cached_property
@@ -55,6 +77,13 @@ class Bridge:
 def boxes_to_directions() -> Bridge:
     """Return the bridge from the rectangle algebra to cardinal directions, those between the centres of the boxes.
 
+    Returns
+    -------
+    Bridge
+        Bridge from ``ra`` to ``cd``.
+
+    Examples
+    --------
     >>> bridge = boxes_to_directions()
     >>> bridge.target.members(bridge.forward(bridge.source.relation(["<,d"])))
     ('SW', 'W', 'NW')
@@ -75,6 +104,13 @@ def boxes_to_directions() -> Bridge:
 def boxes_to_regions() -> Bridge:
     """Return the bridge from the rectangle algebra to RCC-8 for regions that are boxes: one atom each.
 
+    Returns
+    -------
+    Bridge
+        Bridge from ``ra`` to ``rcc8``.
+
+    Examples
+    --------
     >>> bridge = boxes_to_regions()
     >>> bridge.target.members(bridge.forward(bridge.source.relation(["d,d", "d,s", "<,="])))
     ('DC', 'TPP', 'NTPP')
@@ -90,6 +126,13 @@ def bounds_to_regions() -> Bridge:
     meet where the one box spans the other on x and is spanned by it on y. (For what combining the two calculi takes:
     Li and Cohn 2012.)
 
+    Returns
+    -------
+    Bridge
+        Bridge from ``ra`` to ``rcc8``.
+
+    Examples
+    --------
     >>> bridge = bounds_to_regions()
     >>> bridge.target.members(bridge.forward(bridge.source.relation(["d,d"])))
     ('DC', 'EC', 'PO', 'TPP', 'NTPP')
@@ -101,7 +144,13 @@ def bounds_to_regions() -> Bridge:
 
 @cache
 def directions_to_distances() -> Bridge:
-    """Return the bridge from cardinal directions to distance: ``EQ`` exactly where ``same``."""
+    """Return the bridge from cardinal directions to distance: ``EQ`` exactly where ``same``.
+
+    Returns
+    -------
+    Bridge
+        Bridge from ``cd`` to ``distance``.
+    """
     source, target = calculus("cd"), calculus("distance")
     here = target.relation([SAME])
     admits = [target.universal & ~here] * len(source.atoms)
@@ -111,19 +160,37 @@ def directions_to_distances() -> Bridge:
 
 @cache
 def joint_to_directions() -> Bridge:
-    """Return the bridge from direction with distance to direction alone."""
+    """Return the bridge from direction with distance to direction alone.
+
+    Returns
+    -------
+    Bridge
+        Bridge from the joint calculus to ``cd``.
+    """
     return _part(0, "cd")
 
 
 @cache
 def joint_to_distances() -> Bridge:
-    """Return the bridge from direction with distance to distance alone."""
+    """Return the bridge from direction with distance to distance alone.
+
+    Returns
+    -------
+    Bridge
+        Bridge from the joint calculus to ``distance``.
+    """
     return _part(1, "distance")
 
 
 @cache
 def names_to_boxes() -> Bridge:
-    """Return the bridge from the ten names to the rectangle-algebra atoms that each admits."""
+    """Return the bridge from the ten names to the rectangle-algebra atoms that each admits.
+
+    Returns
+    -------
+    Bridge
+        Bridge from ``ten`` to ``ra``.
+    """
     from deixis.ontology.tbox import default_ontology
     from deixis.reasoning.qualitative.calculi.ten import named_parts
 
@@ -133,6 +200,18 @@ def names_to_boxes() -> Bridge:
 def to_ra(names: int) -> int:
     """Return a relation of ``ten`` as a relation of the rectangle algebra, whose closure decides consistency.
 
+    Parameters
+    ----------
+    names
+        Relation of ``ten``, as a bit mask.
+
+    Returns
+    -------
+    int
+        Relation of the rectangle algebra, as a bit mask.
+
+    Examples
+    --------
     >>> calculus("ra").members(to_ra(calculus("ten").relation(["top_left"])))
     ('<,mi', '<,>', 'm,mi', 'm,>')
     """
@@ -198,11 +277,33 @@ class Link(Protocol):
         ...
 
     def forward(self, relation: int) -> int:
-        """Return the target atoms that at least one atom of a source relation admits."""
+        """Return the target atoms that at least one atom of a source relation admits.
+
+        Parameters
+        ----------
+        relation
+            Relation of the source calculus, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of the target calculus, as a bit mask.
+        """
         ...
 
     def backward(self, relation: int) -> int:
-        """Return the source atoms that admit at least one atom of a target relation."""
+        """Return the source atoms that admit at least one atom of a target relation.
+
+        Parameters
+        ----------
+        relation
+            Relation of the target calculus, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of the source calculus, as a bit mask.
+        """
         ...
 
 
@@ -211,6 +312,18 @@ def links_between(calculi: Sequence[Calculus]) -> tuple[Link, ...]:
 
     Boxes are taken as the bounding boxes of the regions of RCC-8.
 
+    Parameters
+    ----------
+    calculi
+        Calculi of networks over the same things.
+
+    Returns
+    -------
+    tuple of Link
+        The bridges, each with its source and target calculus.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> [(link.source.name, link.target.name) for link in links_between([calculus("rcc8"), calculus("ra")])]
     [('ra', 'rcc8')]

@@ -30,6 +30,18 @@ MAX_TABLE_ATOMS = 320  # maximum atoms of a table calculus; OPRA of granularity 
 def bits(relation: int) -> Iterator[int]:
     """Yield the positions of the atoms in a relation in ascending order.
 
+    Parameters
+    ----------
+    relation
+        Relation as a bit mask.
+
+    Yields
+    ------
+    int
+        Position of an atom.
+
+    Examples
+    --------
     >>> list(bits(0b1010))
     [1, 3]
     """
@@ -61,15 +73,50 @@ class Calculus(ABC):
 
     @abstractmethod
     def converse(self, relation: int) -> int:
-        """Return the relation of b to a, where ``relation`` is the relation of a to b."""
+        """Return the converse of a relation.
+
+        Parameters
+        ----------
+        relation
+            Relation of a to b, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of b to a, as a bit mask.
+        """
 
     @abstractmethod
     def compose(self, first: int, second: int) -> int:
-        """Return the weak composition: the atoms possible from a to c where a ``first`` b and b ``second`` c."""
+        """Return the weak composition: the atoms possible from a to c where a ``first`` b and b ``second`` c.
+
+        Parameters
+        ----------
+        first
+            Relation of a to b, as a bit mask.
+        second
+            Relation of b to c, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of a to c, as a bit mask.
+        """
 
     @abstractmethod
     def pieces(self, relation: int) -> tuple[int, ...]:
-        """Split the relation into tractable ones: one piece if it is tractable itself, none if it is empty."""
+        """Split the relation into tractable ones: one piece if it is tractable itself, none if it is empty.
+
+        Parameters
+        ----------
+        relation
+            Relation as a bit mask.
+
+        Returns
+        -------
+        tuple of int
+            Disjoint relations whose union is ``relation``.
+        """
 
     @property
     def universal(self) -> int:
@@ -83,7 +130,23 @@ class Calculus(ABC):
         return {sign.casefold(): code for sign, code in codes.items()} | codes if self.any_case else codes
 
     def code(self, atom: str) -> int:
-        """Return the code of an atom by its sign or an alias; UnknownAtomError names the nearest sign."""
+        """Return the code of an atom by its sign or an alias; UnknownAtomError names the nearest sign.
+
+        Parameters
+        ----------
+        atom
+            Sign of the atom, or an alias.
+
+        Returns
+        -------
+        int
+            Position of the atom, from 0.
+
+        Raises
+        ------
+        UnknownAtomError
+            The calculus has no such atom; the message names the nearest sign.
+        """
         found = self._codes.get(atom)
         if found is None and self.any_case:
             found = self._codes.get(atom.casefold())
@@ -98,14 +161,41 @@ class Calculus(ABC):
         return found
 
     def relation(self, atoms: Iterable[str]) -> int:
-        """Return the relation of these atoms."""
+        """Return the relation of these atoms.
+
+        Parameters
+        ----------
+        atoms
+            Signs or aliases of atoms.
+
+        Returns
+        -------
+        int
+            Relation as a bit mask.
+
+        Raises
+        ------
+        UnknownAtomError
+            The calculus has no such atom.
+        """
         mask = 0
         for atom in atoms:
             mask |= 1 << self.code(atom)
         return mask
 
     def members(self, relation: int) -> tuple[str, ...]:
-        """Return the signs of a relation's atoms, in the order of their codes."""
+        """Return the signs of a relation's atoms, in the order of their codes.
+
+        Parameters
+        ----------
+        relation
+            Relation as a bit mask.
+
+        Returns
+        -------
+        tuple of str
+            Signs of its atoms.
+        """
         return tuple(self.atoms[code] for code in bits(relation))
 
 
@@ -142,8 +232,20 @@ class Subclass:
         return hulls
 
     def split(self, relation: int) -> tuple[int, ...]:
-        """Split ``relation`` into disjoint members: the largest that fits, then the largest that fits in the rest.
+        """Split a relation into disjoint members: the largest that fits, then the largest that fits in the rest.
 
+        Parameters
+        ----------
+        relation
+            Relation as a bit mask.
+
+        Returns
+        -------
+        tuple of int
+            Members whose union is ``relation``.
+
+        Examples
+        --------
         >>> from deixis.reasoning.qualitative.calculi.registry import calculus
         >>> from deixis.reasoning.qualitative.calculi.tractable import ORD_HORN
         >>> allen = calculus("allen")
@@ -193,7 +295,13 @@ class TableCalculus(Calculus):
         return table
 
     def possible(self) -> NDArray[np.bool_]:
-        """Return the composition as truth values, shape (k, k, k): a to b, b to c, a to c."""
+        """Return the composition as truth values, shape (k, k, k): a to b, b to c, a to c.
+
+        Returns
+        -------
+        ndarray
+            Truth values, shape (k, k, k), for k atoms.
+        """
         k = len(self.atoms)
         return atoms_within(self.composition.reshape(k, k, -1), k)
 
@@ -267,7 +375,18 @@ class ProductCalculus(Calculus):
         return self.code_of([axis.code(sign) for axis, sign in zip(self.axes, signs, strict=True)])
 
     def code_of(self, codes: Sequence[int]) -> int:
-        """Return the atom's code from the codes on the axes."""
+        """Return the atom's code from the codes on the axes.
+
+        Parameters
+        ----------
+        codes
+            Code of an atom on each axis.
+
+        Returns
+        -------
+        int
+            Code of the atom of the product.
+        """
         total = 0
         for axis, code in zip(self.axes, codes, strict=True):
             total = total * len(axis.atoms) + code
@@ -276,6 +395,18 @@ class ProductCalculus(Calculus):
     def of_axes(self, relations: Sequence[int]) -> int:
         """Return the product of one relation per axis.
 
+        Parameters
+        ----------
+        relations
+            Relation on each axis, as a bit mask.
+
+        Returns
+        -------
+        int
+            Relation of the product, as a bit mask.
+
+        Examples
+        --------
         >>> from deixis.reasoning.qualitative.calculi.registry import calculus
         >>> ra = calculus("ra")
         >>> ra.members(ra.of_axes([ra.axes[0].relation(["<", "m"]), ra.axes[1].relation(["="])]))
@@ -288,7 +419,18 @@ class ProductCalculus(Calculus):
         return total
 
     def boxes(self, relation: int) -> tuple[tuple[int, ...], ...]:
-        """Write the relation as a disjoint union of few products (tuples of axis relations), not always fewest."""
+        """Write the relation as a disjoint union of few products (tuples of axis relations), not always fewest.
+
+        Parameters
+        ----------
+        relation
+            Relation as a bit mask.
+
+        Returns
+        -------
+        tuple of tuple of int
+            Products, each with one relation per axis.
+        """
         return _boxes(relation, [len(axis.atoms) for axis in self.axes])
 
     def converse(self, relation: int) -> int:
@@ -334,12 +476,30 @@ def _boxes(relation: int, sizes: Sequence[int]) -> tuple[tuple[int, ...], ...]:
 def coarsening(
     name: str, atoms: Sequence[str], parts: Sequence[int], fine: Calculus, source: str = ""
 ) -> TableCalculus:
-    """Return the calculus whose atoms are ``parts``, relations of ``fine`` that are disjoint and cover every atom.
+    """Return the calculus whose atoms are relations of a finer one.
 
     The composition of two atoms contains every atom that shares a finer atom with the composition of the parts: it is
     exact where the composition of ``fine`` is. The identity of ``fine`` is part of one atom, which need not be neutral.
     Closure does not decide consistency, because the coarse calculus cannot distinguish two parts of one atom; translate
     into the finer calculus to decide.
+
+    Parameters
+    ----------
+    name
+        Name of the coarse calculus.
+    atoms
+        Signs of its atoms.
+    parts
+        Relation of ``fine`` for each atom, as bit masks; they are disjoint and cover every atom.
+    fine
+        The finer calculus.
+    source
+        Publication that defines the coarse calculus.
+
+    Returns
+    -------
+    TableCalculus
+        The coarse calculus, with its composition table and converses.
     """
     n = len(parts)
     converses = [parts.index(fine.converse(part)) for part in parts]
@@ -362,6 +522,18 @@ def coarsening(
 def atoms_of(relation: int) -> tuple[int, ...]:
     """Return the atoms of a relation, each as a relation of its own.
 
+    Parameters
+    ----------
+    relation
+        Relation as a bit mask.
+
+    Returns
+    -------
+    tuple of int
+        Bit masks with one bit each, ascending.
+
+    Examples
+    --------
     >>> atoms_of(0b110)
     (2, 4)
     """

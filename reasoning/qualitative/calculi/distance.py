@@ -86,6 +86,18 @@ def distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
 
     Closure does not decide it: distances that obey the triangle inequality three by three need not fit in the plane.
 
+    Parameters
+    ----------
+    ranges
+        Names of the ranges, and the bounds between them in units of the reference length.
+
+    Returns
+    -------
+    TableCalculus
+        The calculus, with one atom for each range and one for the same place.
+
+    Examples
+    --------
     >>> distance = distance_calculus()
     >>> distance.members(distance.compose(distance.relation(["near"]), distance.relation(["near"])))
     ('same', 'near', 'medium')
@@ -156,8 +168,23 @@ class _Shape(Enum):
 def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculus:
     """Return the calculus of tiles and ranges, with ``8 len(ranges.names) + 1`` atoms; closure does not decide it.
 
-    Raises SettingError for more than seven ranges.
+    Parameters
+    ----------
+    ranges
+        Names of the ranges, and the bounds between them in units of the reference length.
 
+    Returns
+    -------
+    TableCalculus
+        The calculus, with signs such as ``W,far``.
+
+    Raises
+    ------
+    SettingError
+        There are more than seven ranges.
+
+    Examples
+    --------
     >>> joint = direction_distance_calculus()
     >>> joint.members(joint.compose(joint.relation(["W,far"]), joint.relation(["N,near"])))
     ('NW,far',)

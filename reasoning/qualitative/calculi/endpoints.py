@@ -21,8 +21,22 @@ from deixis.reasoning.qualitative.calculi.tractable import EVERY_ORDER, ORD_HORN
 
 
 def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
-    """Return the code of each atom's converse, shape (atoms,), from the atom of every ordered pair, ``codes`` (m, m).
+    """Return the code of each atom's converse, from the atom of every ordered pair of some things.
 
+    Parameters
+    ----------
+    codes
+        Code of the atom of each ordered pair of m things, shape (m, m).
+    atoms
+        Number of atoms of the calculus.
+
+    Returns
+    -------
+    ndarray
+        Code of each converse, shape (atoms,); -1 for an atom that no pair has.
+
+    Examples
+    --------
     >>> converses_in(np.array([[1, 0], [2, 1]]), 3).tolist()
     [2, 1, 0]
     """
@@ -32,11 +46,24 @@ def converses_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.int64]:
 
 
 def composition_in(codes: NDArray[np.integer], atoms: int) -> NDArray[np.uint64]:
-    """Return the composition table, shape (atoms, atoms), as bit masks.
+    """Return the composition table, from the atom of every ordered pair of some things.
 
-    ``codes`` (m, m) is the atom of every ordered pair. An entry holds the atoms of all pairs i, k for which some j has
-    the row's atom from i and the column's to k.
+    An entry holds the atoms of all pairs i, k for which some j has the row's atom from i and the column's to k.
 
+    Parameters
+    ----------
+    codes
+        Code of the atom of each ordered pair of m things, shape (m, m).
+    atoms
+        Number of atoms of the calculus, at most 64.
+
+    Returns
+    -------
+    ndarray
+        Bit masks of the atoms, shape (atoms, atoms).
+
+    Examples
+    --------
     >>> order = np.array([[1, 0], [2, 1]])  # of two numbers: 0 for less, 1 for equal, 2 for greater
     >>> bin(composition_in(order, 3)[0, 1])
     '0b1'
@@ -84,6 +111,13 @@ _TILE_ALIASES = {
 def point_algebra() -> TableCalculus:
     """Return the point algebra: ``<``, ``=``, ``>`` (Vilain and Kautz 1986). Every relation is tractable.
 
+    Returns
+    -------
+    TableCalculus
+        The calculus, with the atoms in this order.
+
+    Examples
+    --------
     >>> point = point_algebra()
     >>> point.members(point.compose(point.relation(["<", "="]), point.relation(["<"])))
     ('<',)
@@ -105,6 +139,13 @@ def point_algebra() -> TableCalculus:
 def interval_algebra() -> TableCalculus:
     """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in ontology.allen.
 
+    Returns
+    -------
+    TableCalculus
+        The calculus; Ord-Horn is its tractable subclass.
+
+    Examples
+    --------
     >>> allen = interval_algebra()
     >>> allen.members(allen.compose(allen.relation(["m"]), allen.relation(["mi"])))
     ('fi', '=', 'f')
@@ -125,18 +166,52 @@ def interval_algebra() -> TableCalculus:
 
 
 def rectangle_algebra(allen: TableCalculus) -> ProductCalculus:
-    """Return the algebra of rectangles, sides along x and y: an Allen relation per axis (Balbiani et al. 1998)."""
+    """Return the algebra of rectangles, sides along x and y: an Allen relation per axis (Balbiani et al. 1998).
+
+    Parameters
+    ----------
+    allen
+        The interval algebra.
+
+    Returns
+    -------
+    ProductCalculus
+        The product of two axes, with 169 atoms.
+    """
     return ProductCalculus("ra", (allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1998, 1999")
 
 
 def block_algebra(allen: TableCalculus) -> ProductCalculus:
-    """Return the algebra of blocks, edges along x, y and z: an Allen relation per axis (Balbiani and others 2002)."""
+    """Return the algebra of blocks, edges along x, y and z: an Allen relation per axis (Balbiani and others 2002).
+
+    Parameters
+    ----------
+    allen
+        The interval algebra.
+
+    Returns
+    -------
+    ProductCalculus
+        The product of three axes, with 2197 atoms.
+    """
     return ProductCalculus("ba", (allen, allen, allen), source="Balbiani, Condotta and Fariñas del Cerro 1999, 2002")
 
 
 def cardinal_directions(point: TableCalculus) -> ProductCalculus:
     """Return the calculus of points in nine tiles of the plane: order on x and on y (Frank 1991; Ligozat 1998).
 
+    Parameters
+    ----------
+    point
+        The point algebra.
+
+    Returns
+    -------
+    ProductCalculus
+        The product of two axes, with nine atoms such as ``NW``.
+
+    Examples
+    --------
     >>> cd = cardinal_directions(point_algebra())
     >>> cd.members(cd.compose(cd.relation(["N"]), cd.relation(["SE"])))
     ('SE', 'E', 'NE')

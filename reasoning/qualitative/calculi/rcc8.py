@@ -45,6 +45,13 @@ d         e         p         t         n         T         N         =
 def region_connection_calculus() -> TableCalculus:
     """Return RCC-8 with its composition table.
 
+    Returns
+    -------
+    TableCalculus
+        The calculus, with its tractable subclass.
+
+    Examples
+    --------
     >>> rcc8 = region_connection_calculus()
     >>> rcc8.members(rcc8.compose(rcc8.relation(["EC"]), rcc8.relation(["NTPP"])))
     ('PO', 'TPP', 'NTPP')
@@ -77,6 +84,18 @@ def mereological_calculus(rcc8: Calculus) -> TableCalculus:
     The composition of RCC-5 atoms in RCC-8 is a union of RCC-5 atoms, so that closure decides RCC-5 where it decides
     RCC-8.
 
+    Parameters
+    ----------
+    rcc8
+        RCC-8, from whose table that of RCC-5 is derived.
+
+    Returns
+    -------
+    TableCalculus
+        RCC-5, with its tractable subclass.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> rcc5 = calculus("rcc5")
     >>> rcc5.members(rcc5.compose(rcc5.relation(["DR"]), rcc5.relation(["PP"])))

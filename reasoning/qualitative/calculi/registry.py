@@ -92,9 +92,19 @@ def _build(name: str) -> Calculus:
 
 
 def with_same_tables(brought: TableCalculus) -> Calculus | None:
-    """Return the calculus with the same atoms and tables as ``brought``, in any order; None if no calculus has them.
+    """Return the calculus with the same atoms and tables as another one, in any order; None if no calculus has them.
 
     Its atoms may have other signs there, but each must be a sign or an alias here.
+
+    Parameters
+    ----------
+    brought
+        A calculus, for example from a file of another program.
+
+    Returns
+    -------
+    Calculus or None
+        Calculus of the registry, or None.
     """
     for name in CALCULI:
         known = calculus(name)

@@ -17,7 +17,20 @@ UNNAMED = "overlap"
 
 
 def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalculus:
-    """Return the calculus of the ten exact names and ``overlap``."""
+    """Return the calculus of the ten exact names and ``overlap``.
+
+    Parameters
+    ----------
+    vocabulary
+        Relations of the ontology.
+    rectangles
+        The rectangle algebra.
+
+    Returns
+    -------
+    TableCalculus
+        The calculus, with eleven atoms.
+    """
     parts = named_parts(vocabulary)
     return coarsening(
         "ten",
@@ -31,6 +44,18 @@ def ten_names(vocabulary: Relations, rectangles: ProductCalculus) -> TableCalcul
 def named_parts(vocabulary: Relations) -> dict[str, int]:
     """Map each of the eleven names to its rectangle-algebra atoms; an atom with several names goes to ``overlap``.
 
+    Parameters
+    ----------
+    vocabulary
+        Relations of the ontology.
+
+    Returns
+    -------
+    dict
+        Relation of the rectangle algebra, as a bit mask, by name.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> calculus("ra").members(named_parts(default_ontology().relations)["top_left"])

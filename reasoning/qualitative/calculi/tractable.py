@@ -22,8 +22,20 @@ def _dimension(relation: int) -> int:
 
 
 def convex_closure(relation: int) -> int:
-    """Return the least convex Allen relation above ``relation``: an interval in the lattice of places (Ligozat 1996).
+    """Return the least convex Allen relation above another one: an interval in the lattice of places (Ligozat 1996).
 
+    Parameters
+    ----------
+    relation
+        Allen relation as a bit mask.
+
+    Returns
+    -------
+    int
+        Convex relation as a bit mask; 0 for the empty relation.
+
+    Examples
+    --------
     >>> bin(convex_closure(0b101))
     '0b111'
     """
@@ -99,6 +111,18 @@ _RCC8_OF_RCC5 = (_DC | _EC, _PO, _PARTS, _WHOLES, _EQ)
 def rcc8_of_rcc5(relation: int) -> int:
     """Return the RCC-8 relation equivalent to a relation of RCC-5, which ignores boundaries.
 
+    Parameters
+    ----------
+    relation
+        Relation of RCC-5 as a bit mask.
+
+    Returns
+    -------
+    int
+        Relation of RCC-8 as a bit mask.
+
+    Examples
+    --------
     >>> bin(rcc8_of_rcc5(0b00001))
     '0b11'
     """

@@ -9,8 +9,22 @@ from numpy.typing import NDArray
 
 
 def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
-    """Return relations as words of 64 atoms each, shape (relations, words).
+    """Return relations as words of 64 atoms each.
 
+    Parameters
+    ----------
+    relations
+        Relations as bit masks.
+    atoms
+        Number of atoms of the calculus.
+
+    Returns
+    -------
+    ndarray
+        Words, shape (relations, words), the lowest atoms first.
+
+    Examples
+    --------
     >>> words_of([1 << 64 | 3], 65).tolist()
     [[3, 1]]
     """
@@ -22,13 +36,38 @@ def words_of(relations: Sequence[int], atoms: int) -> NDArray[np.uint64]:
 
 
 def relation_of(words: NDArray[np.uint64]) -> int:
-    """Return the relation in words of 64 atoms each, shape (words,)."""
+    """Return the relation in words of 64 atoms each.
+
+    Parameters
+    ----------
+    words
+        Words of one relation, shape (words,), the lowest atoms first.
+
+    Returns
+    -------
+    int
+        Relation as a bit mask.
+    """
     return int.from_bytes(words.astype("<u8").tobytes(), "little")
 
 
 def atoms_within(words: NDArray[np.uint64], atoms: int) -> NDArray[np.bool_]:
-    """Return the truth value of each atom of the relations in words (..., words), shape (..., atoms).
+    """Return the truth value of each atom of relations in words.
 
+    Parameters
+    ----------
+    words
+        Words of relations, shape (…, words).
+    atoms
+        Number of atoms of the calculus.
+
+    Returns
+    -------
+    ndarray
+        Truth values, shape (…, atoms).
+
+    Examples
+    --------
     >>> atoms_within(words_of([1 << 64 | 3], 65), 65).nonzero()[1].tolist()
     [0, 1, 64]
     """
@@ -40,8 +79,20 @@ def atoms_within(words: NDArray[np.uint64], atoms: int) -> NDArray[np.bool_]:
 
 
 def words_with(held: NDArray[np.bool_]) -> NDArray[np.uint64]:
-    """Return the relations with these atoms (..., atoms), as words (..., words).
+    """Return relations as words of 64 atoms each, from the truth values of their atoms.
 
+    Parameters
+    ----------
+    held
+        Truth value of each atom, shape (…, atoms).
+
+    Returns
+    -------
+    ndarray
+        Words, shape (…, words).
+
+    Examples
+    --------
     >>> words_with(np.arange(65) > 62).tolist()
     [9223372036854775808, 1]
     """

@@ -74,6 +74,11 @@ def satisfies(boxes: Boxes, network: Network) -> bool:
     network
         A network of n things in a calculus that boxes are related in.
 
+    Returns
+    -------
+    bool
+        False for boxes at the bound of a distance range, unless both ranges are permitted.
+
     Examples
     --------
     >>> ra = calculus("ra")
@@ -90,13 +95,38 @@ def satisfies(boxes: Boxes, network: Network) -> bool:
 def rectangles(networks: Sequence[Network], closed: Closed, without: str = "") -> Network:
     """Return the constraints on boxes in the rectangle algebra that the networks imply.
 
-    The network in the calculus ``without`` is left out. Regions of ``rcc8`` are taken to be the boxes themselves.
+    Regions of ``rcc8`` are taken to be the boxes themselves.
+
+    Parameters
+    ----------
+    networks
+        Networks over the same things, each in its own calculus.
+    closed
+        Function that returns what closing leaves of a pair, by the name of the calculus.
+    without
+        Name of the calculus whose network is left out; by default, none is.
+
+    Returns
+    -------
+    Network
+        Network in the rectangle algebra over the same things.
     """
     return _Pairs([network for network in networks if network.calculus.name != without], closed).rectangles()
 
 
 def unrelated(networks: Sequence[Network]) -> tuple[str, ...]:
-    """Return the names of the networks' calculi in which boxes are not related here, or with other distance ranges."""
+    """Return the names of the networks' calculi in which boxes are not related here, or with other distance ranges.
+
+    Parameters
+    ----------
+    networks
+        Networks, each in its own calculus.
+
+    Returns
+    -------
+    tuple of str
+        Names, in the order of the networks.
+    """
     names = [network.calculus.name for network in networks]
     known = pair_types().atoms
     return tuple(
@@ -122,6 +152,11 @@ def find_boxes(
         When to stop.
     seed
         The seed of the random starts.
+
+    Returns
+    -------
+    FoundBoxes
+        Boxes that were verified, or None with the reason.
     """
     odd = unrelated(networks)
     if odd:

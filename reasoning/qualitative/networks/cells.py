@@ -23,19 +23,66 @@ class Cells(ABC):
 
     @abstractmethod
     def restrict(self, ends: tuple[Any, ...], words: Words, start: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Intersect pairs (firsts, seconds, ids) with relations; return the first constraint not dealt with."""
+        """Intersect pairs with relations; return the first constraint not dealt with.
+
+        Parameters
+        ----------
+        ends
+            First and second thing of each of m constraints, and the row of its relation, arrays of shape (m,).
+        words
+            Different relations in words of 64 atoms, shape (k, words).
+        start
+            Position of the constraint to begin with.
+        bookkeeping
+            The arrays of the loops.
+
+        Returns
+        -------
+        int
+            Position of a constraint; m where all have been dealt with.
+        """
 
     @abstractmethod
     def advance(self, budget: int, bookkeeping: tuple[Any, ...]) -> int:
-        """Propagate changes; return CLOSED, EMPTIED, PAUSED or FULL."""
+        """Propagate changes; return CLOSED, EMPTIED, PAUSED or FULL.
+
+        Parameters
+        ----------
+        budget
+            Maximum number of changes to propagate in this call.
+        bookkeeping
+            The arrays of the loops.
+
+        Returns
+        -------
+        int
+            State in which the loop stopped.
+        """
 
     @abstractmethod
     def relation(self, first: int, second: int) -> int:
-        """Return the current relation of a pair."""
+        """Return the current relation of a pair.
+
+        Parameters
+        ----------
+        first, second
+            Numbers of two things.
+
+        Returns
+        -------
+        int
+            Relation as a bit mask.
+        """
 
     @abstractmethod
     def relations(self) -> Words:
-        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs.
+
+        Returns
+        -------
+        ndarray
+            Words of 64 atoms, shape (n, n, words), row to column.
+        """
 
 
 class Masks(Cells):

@@ -42,7 +42,13 @@ class Closure:
         return self.emptied is None
 
     def known_pairs(self) -> NDArray[np.int64]:
-        """Return the pairs i < j, (m, 2), whose relation is not universal."""
+        """Return the pairs i < j whose relation is not universal.
+
+        Returns
+        -------
+        ndarray
+            Numbers of the things, shape (m, 2).
+        """
         calculus = self.network.calculus
         axes = calculus.axes if isinstance(calculus, ProductCalculus) and len(self.parts) > 1 else (calculus,)
         everything = [words_of((axis.universal,), len(axis.atoms))[0] for axis in axes]
@@ -50,7 +56,18 @@ class Closure:
         return np.argwhere(np.triu(np.logical_or.reduce(known), 1))
 
     def relation(self, first: int, second: int) -> int:
-        """Return the relation of two things as a set of atoms."""
+        """Return the relation of two things after closure.
+
+        Parameters
+        ----------
+        first, second
+            Numbers of two things.
+
+        Returns
+        -------
+        int
+            Relation of ``first`` to ``second``, as a bit mask.
+        """
         relations = [relation_of(part[first, second]) for part in self.parts]
         return relations[0] if len(relations) == 1 else of_axes(self.network.calculus, relations)
 
@@ -108,7 +125,22 @@ def close(
 
 
 def opened_states(network: Network, joint: bool = False, traced: bool = False) -> tuple[NetworkState, ...]:
-    """Return the states of a network's axes, or of the whole, with the stated constraints, not yet propagated."""
+    """Return the states of a network's axes, or of the whole, with the stated constraints, not yet propagated.
+
+    Parameters
+    ----------
+    network
+        The network.
+    joint
+        Whether to keep a product calculus whole, also where its axes are independent.
+    traced
+        Whether to record the changes, for explanations.
+
+    Returns
+    -------
+    tuple of NetworkState
+        One state for each axis, or one for the whole.
+    """
     axes = None if joint else on_axes(network)
     parts = (network,) if axes is None else axes
     states = tuple(NetworkState(part.calculus, part.size, traced) for part in parts)
@@ -120,13 +152,45 @@ def opened_states(network: Network, joint: bool = False, traced: bool = False) -
 def closed_states(
     network: Network, deadline: Deadline = Deadline.never(), progress: Progress | None = None, traced: bool = False
 ) -> tuple[tuple[NetworkState, ...], bool]:
-    """Return the states of the axes, or of the whole, closed up to a contradiction; False if out of time."""
+    """Return the states of the axes, or of the whole, closed up to a contradiction; False if out of time.
+
+    Parameters
+    ----------
+    network
+        The network.
+    deadline
+        End of the time limit.
+    progress
+        Function that is called with the number of propagated changes and the number with the waiting ones.
+    traced
+        Whether to record the changes, for explanations.
+
+    Returns
+    -------
+    tuple
+        The states, and whether closing was completed.
+    """
     states = opened_states(network, traced=traced)
     return states, close_states(states, deadline, progress)
 
 
 def close_states(states: Sequence[NetworkState], deadline: Deadline, progress: Progress | None) -> bool:
-    """Close states in turn, up to the first contradiction; return False if ``deadline`` came first."""
+    """Close states in turn, up to the first contradiction; return False if the deadline came first.
+
+    Parameters
+    ----------
+    states
+        States of the axes, which are changed in place.
+    deadline
+        End of the time limit.
+    progress
+        Function that is called with the number of propagated changes and the number with the waiting ones.
+
+    Returns
+    -------
+    bool
+        False if out of time.
+    """
     for state in states:
         if any(each.emptied is not None for each in states):
             return True
@@ -136,11 +200,39 @@ def close_states(states: Sequence[NetworkState], deadline: Deadline, progress: P
 
 
 def whole_relation(calculus: Calculus, states: Sequence[NetworkState], first: int, second: int) -> int:
-    """Return the relation of two things from the states of the axes, or of the whole."""
+    """Return the relation of two things from the states of the axes, or of the whole.
+
+    Parameters
+    ----------
+    calculus
+        Calculus of the network.
+    states
+        States of its axes, or one of the whole.
+    first, second
+        Numbers of two things.
+
+    Returns
+    -------
+    int
+        Relation in ``calculus``, as a bit mask.
+    """
     relations = [state.relation(first, second) for state in states]
     return relations[0] if len(relations) == 1 else of_axes(calculus, relations)
 
 
 def of_axes(calculus: Calculus, relations: Sequence[int]) -> int:
-    """Return the product of the relations on the axes; the relation itself if there is one axis."""
+    """Return the product of the relations on the axes; the relation itself if there is one axis.
+
+    Parameters
+    ----------
+    calculus
+        A calculus.
+    relations
+        Relation on each axis, as bit masks.
+
+    Returns
+    -------
+    int
+        Relation in ``calculus``, as a bit mask.
+    """
     return calculus.of_axes(relations) if isinstance(calculus, ProductCalculus) else relations[0]

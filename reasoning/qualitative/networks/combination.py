@@ -54,7 +54,25 @@ class JointClosure:
         return self.emptied is None
 
     def relation(self, calculus: str, first: int, second: int) -> int:
-        """Return the relation of two things in one calculus."""
+        """Return the relation of two things in one calculus.
+
+        Parameters
+        ----------
+        calculus
+            Name of the calculus.
+        first, second
+            Numbers of two things.
+
+        Returns
+        -------
+        int
+            Relation of ``first`` to ``second``, as a bit mask.
+
+        Raises
+        ------
+        NetworkError
+            No network is in this calculus.
+        """
         for network, state in zip(self.networks, self.states, strict=True):
             if network.calculus.name == calculus:
                 return state.relation(first, second)
@@ -207,6 +225,16 @@ def solve_jointly(
     scenario
         Whether to look for boxes also where the verdict does not need them.
 
+    Returns
+    -------
+    JointSolution
+        The verdict, with the closure, and boxes or the reason why there are none.
+
+    Raises
+    ------
+    NetworkError
+        The networks are over different things, or two are in one calculus.
+
     Examples
     --------
     >>> from deixis.reasoning.qualitative.calculi.bridges import links_between
@@ -273,6 +301,25 @@ def joint_conflict(
     """Return a deletion-minimal set of constraints that joint closure refutes; None if it refutes none in time.
 
     If closure refutes nothing, return a set that solving shows no boxes to satisfy.
+
+    Parameters
+    ----------
+    networks
+        Networks over the same things, each in its own calculus.
+    bridges
+        What joins the calculi.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    JointConflict or None
+        The constraints, and whether the set is known to be minimal; None where no contradiction was found.
+
+    Raises
+    ------
+    NetworkError
+        The networks are over different things, or two are in one calculus.
     """
     stated = [(n.calculus.name, c) for n in networks for c in n.constraints]
 

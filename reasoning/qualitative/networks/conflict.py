@@ -88,7 +88,18 @@ def minimal_conflict(
 
 
 def closure_decides(network: Network) -> bool:
-    """Return True if closure alone decides the consistency of these constraints and of every subset of them."""
+    """Return True if closure alone decides the consistency of these constraints and of every subset of them.
+
+    Parameters
+    ----------
+    network
+        The network.
+
+    Returns
+    -------
+    bool
+        False where closure may miss a contradiction.
+    """
     chosen = network.calculus
     if decider(chosen) is not None or not chosen.decided_by_closure:
         return False
@@ -98,7 +109,20 @@ def closure_decides(network: Network) -> bool:
 
 
 def refuting(network: Network, deadline: Deadline) -> Core | None:
-    """Return the constraints on which a failed closure rests, in their order; None if closure does not fail in time."""
+    """Return the constraints on which a failed closure rests, in their order; None if closure does not fail in time.
+
+    Parameters
+    ----------
+    network
+        The network.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    tuple of Constraint or None
+        The constraints, not always a minimal set, or None.
+    """
     network = network.only(without_leaves(network))
     if not network.constraints:
         return None
@@ -117,6 +141,16 @@ def without_leaves(network: Network) -> Core:
     """Return the constraints that remain when constraints to dead ends are removed, such as all constraints of a tree.
 
     A thing with a single, satisfiable constraint can be placed wherever the others are.
+
+    Parameters
+    ----------
+    network
+        The network.
+
+    Returns
+    -------
+    tuple of Constraint
+        Constraints that may contradict each other; none for a satisfiable tree.
     """
     about: dict[int, set[int]] = {}
     for position, c in enumerate(network.constraints):
@@ -137,7 +171,24 @@ def without_leaves(network: Network) -> Core:
 
 
 def resting(network: Network, small: Network, state: NetworkState, first: int, second: int) -> Core:
-    """Return the constraints of ``network`` that a pair's relation rests on; ``small`` is its compact form."""
+    """Return the constraints that a pair's relation rests on.
+
+    Parameters
+    ----------
+    network
+        The network.
+    small
+        Its compact form, of the things that constraints relate.
+    state
+        Traced state of ``small`` or of one of its axes.
+    first, second
+        Numbers of two things in ``small``.
+
+    Returns
+    -------
+    tuple of Constraint
+        Constraints of ``network``, in their order.
+    """
     needed = state.support(first, second)
     firsts, seconds = small.arrays.firsts, small.arrays.seconds
     chosen = needed[np.minimum(firsts, seconds), np.maximum(firsts, seconds)]

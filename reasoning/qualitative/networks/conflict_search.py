@@ -102,7 +102,23 @@ class ConflictSearch:
             queue_edges(self._algebra, self._memory)
 
     def run(self, deadline: Deadline = Deadline.never()) -> bool | None:
-        """Continue the search: True if all candidates are settled, False if they cannot be, None if out of time."""
+        """Continue the search: True if all candidates are settled, False if they cannot be, None if out of time.
+
+        Parameters
+        ----------
+        deadline
+            End of the time limit, after which the search can be continued.
+
+        Returns
+        -------
+        bool or None
+            Result of the search.
+
+        Raises
+        ------
+        LimitError
+            The search does not fit in memory.
+        """
         from deixis.reasoning.qualitative.networks import search_kernels
 
         budget = FIRST_STEPS if interprets() else STEPS_PER_CHECK
@@ -140,13 +156,32 @@ class ConflictSearch:
         return int(self._memory.counts[CONFLICTS])
 
     def tractable(self) -> NDArray[np.unsignedinteger[Any]]:
-        """Return the least tractable relation that contains the remaining relation of each pair, (axes, n, n)."""
+        """Return the least tractable relation that contains the remaining relation of each pair, (axes, n, n).
+
+        Returns
+        -------
+        ndarray
+            Relations as bit masks, shape (axes, n, n).
+        """
         hulls = self._algebra.hulls
         return np.stack([hulls[axis][mask] for axis, mask in enumerate(self.masks)])
 
 
 def require_room(axes: int, things: int) -> None:
-    """Raise LimitError if a search on this many axes and things would not fit in memory."""
+    """Raise LimitError if a search on this many axes and things would not fit in memory.
+
+    Parameters
+    ----------
+    axes
+        Number of axes of the calculus.
+    things
+        Number of things.
+
+    Raises
+    ------
+    LimitError
+        The search would take more than ``MAX_BYTES``.
+    """
     if axes * things**2 * BYTES_PER_EDGE > MAX_BYTES:
         raise LimitError(
             f"a search among {things:,} things takes more than {MAX_BYTES >> 20:,} MB; "
@@ -156,7 +191,25 @@ def require_room(axes: int, things: int) -> None:
 
 @lru_cache(maxsize=16)
 def algebra(axes: tuple[TableCalculus, ...], atomic: bool) -> Algebra:
-    """Return the tables of the calculi on the axes; raise LimitError for more than 64 atoms on one."""
+    """Return the tables of the calculi on the axes.
+
+    Parameters
+    ----------
+    axes
+        Calculus of each axis.
+    atomic
+        Whether the search is for atoms; tractable relations are then not listed.
+
+    Returns
+    -------
+    Algebra
+        Tables as arrays.
+
+    Raises
+    ------
+    LimitError
+        An axis has more than 64 atoms.
+    """
     from deixis.reasoning.qualitative.networks.search_kernels import Algebra
 
     most = max(len(axis.atoms) for axis in axes)

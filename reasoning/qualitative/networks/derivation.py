@@ -121,7 +121,17 @@ def _in_rounds(network: Network, first: int, second: int, goal: int, deadline: D
 def contradiction(network: Network, deadline: Deadline = Deadline.never()) -> Step | None:
     """Return the derivation of the empty relation from constraints that closure refutes; best given a minimal conflict.
 
-    Returns None if closure finds no contradiction, or not in time.
+    Parameters
+    ----------
+    network
+        The network; only small ones are practical.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    Step or None
+        The last step with its premises; None if closure finds no contradiction, or not in time.
     """
     if refuting(network, deadline) is None:
         return None
@@ -129,7 +139,20 @@ def contradiction(network: Network, deadline: Deadline = Deadline.never()) -> St
 
 
 def require_pair(network: Network, first: int, second: int) -> None:
-    """Raise NetworkError if one of two things is not in the network."""
+    """Raise NetworkError if one of two things is not in the network.
+
+    Parameters
+    ----------
+    network
+        The network.
+    first, second
+        Numbers of two things.
+
+    Raises
+    ------
+    NetworkError
+        A number is below 0, or not below the size of the network.
+    """
     for thing in (first, second):
         if not 0 <= thing < network.size:
             raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")

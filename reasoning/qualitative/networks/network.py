@@ -99,7 +99,18 @@ class Network:
         )
 
     def name(self, thing: int) -> str:
-        """Return the name of a thing, or its number if it has none."""
+        """Return the name of a thing, or its number if it has none.
+
+        Parameters
+        ----------
+        thing
+            Number of the thing.
+
+        Returns
+        -------
+        str
+            Its name, or the number in digits.
+        """
         return str(thing) if self.names is None else self.names[thing]
 
     def to_networkx(self) -> nx.MultiDiGraph[Any]:
@@ -140,16 +151,45 @@ class Network:
         return graph
 
     def only(self, constraints: Iterable[Constraint]) -> Network:
-        """Return the same things with other constraints."""
+        """Return the same things with other constraints.
+
+        Parameters
+        ----------
+        constraints
+            Constraints on the same things.
+
+        Returns
+        -------
+        Network
+            The network with only these constraints.
+        """
         return replace(self, constraints=tuple(constraints))
 
     def compact(self) -> tuple[Network, NDArray[np.int64]]:
-        """Return the network of the things that constraints relate, and their numbers here, in order."""
+        """Return the network of the things that constraints relate, and their numbers here, in order.
+
+        Returns
+        -------
+        tuple
+            The smaller network, and the number here of each of its things, shape (k,).
+        """
         (small,), kept = compacted([self])
         return small, kept
 
     def stated(self, first: int, second: int) -> int:
-        """Return the intersection of the constraints on one pair; the identity for a thing and itself."""
+        """Return the intersection of the constraints on one pair; the identity for a thing and itself.
+
+        Parameters
+        ----------
+        first, second
+            Numbers of two things.
+
+        Returns
+        -------
+        int
+            Relation of ``first`` to ``second`` as a bit mask; the universal one where nothing is stated, 0 for a
+            contradiction.
+        """
         relation = self.calculus.universal if first != second else 1 << self.calculus.identity
         for constraint in self.constraints:
             if (constraint.first, constraint.second) == (first, second):
@@ -160,7 +200,18 @@ class Network:
 
 
 def compacted(networks: Sequence[Network]) -> tuple[tuple[Network, ...], NDArray[np.int64]]:
-    """Return networks over the things that a constraint of any network relates, and their numbers here, in order."""
+    """Return networks over the things that a constraint of any network relates, and their numbers here, in order.
+
+    Parameters
+    ----------
+    networks
+        Networks over the same things.
+
+    Returns
+    -------
+    tuple
+        The smaller networks, and the number of each of their things in the given ones, shape (k,).
+    """
     ends = [end for network in networks for end in (network.arrays.firsts, network.arrays.seconds)]
     kept = np.unique(np.concatenate(ends))
     place = {int(thing): position for position, thing in enumerate(kept)}
@@ -178,6 +229,17 @@ def on_axes(network: Network) -> tuple[Network, ...] | None:
 
     Composition and intersection of products are products, so that the axes are independent networks (Balbiani,
     Condotta and Fariñas del Cerro 1998, for rectangles). The empty relation is empty on every axis.
+
+    Parameters
+    ----------
+    network
+        A network in a product calculus, or in another one.
+
+    Returns
+    -------
+    tuple of Network or None
+        Networks in the calculi of the axes, or the network itself in a calculus that is not a product; None where a
+        relation is not a product.
     """
     from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 

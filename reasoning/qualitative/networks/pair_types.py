@@ -54,7 +54,18 @@ class PairTypes:
     atoms: Mapping[str, NDArray[np.int64]]  # by calculus (types,): the code of the atom
 
     def permitted(self, relations: Mapping[str, int]) -> NDArray[np.bool_]:
-        """Return True for each type that has an atom of every given relation, by calculus: shape (types,)."""
+        """Return True for each type that has an atom of every given relation.
+
+        Parameters
+        ----------
+        relations
+            Relation of the pair as a bit mask, by the name of the calculus.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (types,).
+        """
         left = np.ones(len(self.reaches), dtype=np.bool_)
         for name, relation in relations.items():
             codes = self.atoms[name]
@@ -66,6 +77,13 @@ class PairTypes:
 def pair_types() -> PairTypes:
     """Return the types of pairs of boxes.
 
+    Returns
+    -------
+    PairTypes
+        Orders on the axes and distances of all types, with the atom of each calculus; computed once.
+
+    Examples
+    --------
     >>> types = pair_types()
     >>> len(types.orders), len(types.reaches), sorted(types.atoms)
     (17, 849, ['cd', 'direction-distance', 'distance', 'ra', 'rcc8', 'ten'])
@@ -116,11 +134,27 @@ class Piece:
 
 
 def piece_around(permitted: NDArray[np.bool_], kept: int, order: NDArray[np.int64]) -> Piece:
-    """Return a large piece of the permitted types (types,) that contains type ``kept``.
+    """Return a large piece of the permitted types that contains a given type.
 
-    The eleven constraints that single out the type, ten orders and the distance, are widened one by one, in the
-    ``order`` (11,) given, as long as no forbidden type enters.
+    The eleven constraints that single out the type, ten orders and the distance, are widened one by one as long as no
+    forbidden type enters.
 
+    Parameters
+    ----------
+    permitted
+        Mask of the permitted types, shape (types,).
+    kept
+        Position of the type to contain, which must be permitted.
+    order
+        Order in which the constraints are widened, shape (11,).
+
+    Returns
+    -------
+    Piece
+        Constraints that no forbidden type satisfies.
+
+    Examples
+    --------
     >>> types = pair_types()
     >>> apart = types.permitted({"rcc8": 1})  # DC
     >>> piece = piece_around(apart, int(np.flatnonzero(apart)[0]), np.arange(11))

@@ -178,8 +178,19 @@ def _round(
 def rounded(placement: Placement, whole: bool) -> Boxes | None:
     """Return the boxes of a placement that fits, with coordinates for which the equations hold exactly.
 
-    Coordinates are binary fractions whose pairwise sums are exact in floating point; whole numbers, at any scale, if
-    ``whole`` is True. Returns None if there are no such coordinates.
+    Coordinates are binary fractions whose pairwise sums are exact in floating point.
+
+    Parameters
+    ----------
+    placement
+        Boxes that satisfy the constraints up to rounding, with the equations that must hold exactly.
+    whole
+        Whether the coordinates must be whole numbers, at any scale.
+
+    Returns
+    -------
+    ndarray or None
+        Boxes of shape (n, 2, 2), or None if there are no such coordinates.
     """
     solved = _solved(placement.equations)
     common = math.lcm(1, *(part.denominator for parts in solved.values() for part in parts.values()))

@@ -27,7 +27,22 @@ Step = Proof[PairRelation]
 
 
 def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
-    """Yield the lines of a proof in words, each conclusion first and its premises indented below."""
+    """Yield the lines of a proof in words, each conclusion first and its premises indented below.
+
+    Parameters
+    ----------
+    step
+        Last step of the proof.
+    network
+        The network, for the names of the things.
+    depth
+        Depth of the step in the proof, 0 for the last one.
+
+    Yields
+    ------
+    str
+        Line, indented by four spaces for each level.
+    """
     claim, calculus = step.claim, network.calculus
     where = f" {step.source}" if step.source is not None else ""
     what = f"{network.name(claim.first)} {worded(calculus, claim.relation)} {network.name(claim.second)}"
@@ -39,6 +54,20 @@ def step_lines(step: Step, network: Network, depth: int = 0) -> Iterator[str]:
 def worded(calculus: Calculus, relation: int) -> str:
     """Write a relation for people: its atoms, or for each axis of a product the relation there, ``any`` if universal.
 
+    Parameters
+    ----------
+    calculus
+        Calculus of the relation.
+    relation
+        Relation as a bit mask.
+
+    Returns
+    -------
+    str
+        The relation in parentheses; *( nothing )* for the empty one.
+
+    Examples
+    --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> ra = calculus("ra")
     >>> worded(ra, ra.of_axes([ra.axes[0].relation(["<", "m"]), ra.axes[1].universal]))
@@ -78,9 +107,21 @@ class Rounds:
         self._tables: list[RelationTable] = [table]
 
     def derive(self, first: int, second: int, goal: int, deadline: Deadline) -> Step | None:
-        """Return the derivation of a relation within ``goal``; of any pair's empty relation if ``first`` is -1.
+        """Return the derivation of a pair's relation.
 
-        Returns None if the rounds end, or ``deadline`` comes, before that.
+        Parameters
+        ----------
+        first, second
+            Numbers of two things; -1 for the empty relation of any pair.
+        goal
+            Relation as a bit mask, in which the derived one must be contained; 0 for the empty relation.
+        deadline
+            End of the time limit.
+
+        Returns
+        -------
+        Step or None
+            The last step with its premises; None if the rounds end or the time is up before.
         """
         while True:
             pair: tuple[int, int] | None = (first, second)

@@ -108,7 +108,18 @@ def solve(
 
 
 def decider(calculus: Calculus) -> Link | None:
-    """Return the bridge to a calculus that decides this one: the ten names are sets of rectangle-algebra atoms."""
+    """Return the bridge to a calculus that decides this one: the ten names are sets of rectangle-algebra atoms.
+
+    Parameters
+    ----------
+    calculus
+        A calculus.
+
+    Returns
+    -------
+    Link or None
+        The bridge; None for every calculus except ``ten``.
+    """
     if calculus.name != "ten":
         return None
     from deixis.reasoning.qualitative.calculi.bridges import names_to_boxes
@@ -118,13 +129,39 @@ def decider(calculus: Calculus) -> Link | None:
 
 
 def translated(network: Network, bridge: Link) -> Network:
-    """Return the same constraints in the calculus across the bridge."""
+    """Return the same constraints in the calculus across the bridge.
+
+    Parameters
+    ----------
+    network
+        A network in the source calculus of the bridge.
+    bridge
+        Bridge to another calculus.
+
+    Returns
+    -------
+    Network
+        Network in the target calculus, over the same things.
+    """
     constraints = (replace(c, relation=bridge.forward(c.relation)) for c in network.constraints)
     return Network(bridge.target, network.size, tuple(constraints), network.names)
 
 
 def scenario(network: Network, deadline: Deadline = Deadline.never()) -> Network | None:
-    """Return a consistent network of one atom per pair, within the stated relations; None if not found in time."""
+    """Return a consistent network of one atom per pair, within the stated relations; None if not found in time.
+
+    Parameters
+    ----------
+    network
+        The network.
+    deadline
+        End of the time limit.
+
+    Returns
+    -------
+    Network or None
+        The atomic network; None also where the network is inconsistent.
+    """
     solution = solve(network, deadline, scenario=True)
     return solution.scenario if solution.verdict is Verdict.CONSISTENT else None
 
@@ -292,7 +329,20 @@ def _joined(network: Network) -> _Part:
 
 
 def atomic_network(network: Network, atoms: Masks) -> Network:
-    """Return the network of one atom for every pair i < j, from the atoms on the axes, (axes, n, n)."""
+    """Return the network of one atom for every pair i < j, from the atoms on the axes.
+
+    Parameters
+    ----------
+    network
+        The network, for its calculus, things and names.
+    atoms
+        Bit mask with one atom for each pair on each axis, shape (axes, n, n).
+
+    Returns
+    -------
+    Network
+        Network with n (n - 1) / 2 constraints.
+    """
     calculus = network.calculus
     codes = np.zeros(atoms.shape[1:], dtype=np.int64)
     for axis, mask in zip(calculus.factors, atoms, strict=True):

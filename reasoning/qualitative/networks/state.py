@@ -55,7 +55,23 @@ class NetworkState:
         return int(self._clock[1])
 
     def add(self, network: Network) -> bool:
-        """Intersect with all constraints of a network; return False if a pair is emptied."""
+        """Intersect with all constraints of a network; return False if a pair is emptied.
+
+        Parameters
+        ----------
+        network
+            A network over the same things, in the same calculus.
+
+        Returns
+        -------
+        bool
+            False after a contradiction.
+
+        Raises
+        ------
+        LimitError
+            The trail of a traced state does not fit in memory.
+        """
         arrays = network.arrays
         return self.restrict(arrays.firsts, arrays.seconds, arrays.ids, arrays.relations)
 
@@ -66,7 +82,27 @@ class NetworkState:
         ids: NDArray[np.int64],
         relations: tuple[int, ...],
     ) -> bool:
-        """Intersect pairs (m,), (m,) with ``relations[ids]``; return False if a pair is emptied."""
+        """Intersect the relations of pairs with given ones; return False if a pair is emptied.
+
+        Parameters
+        ----------
+        firsts, seconds
+            Numbers of the things of m pairs, shape (m,) each.
+        ids
+            Position of each pair's relation in ``relations``, shape (m,).
+        relations
+            Different relations, as bit masks.
+
+        Returns
+        -------
+        bool
+            False after a contradiction.
+
+        Raises
+        ------
+        LimitError
+            The trail of a traced state does not fit in memory.
+        """
         if not len(firsts) or self.emptied is not None:
             return self.emptied is None
         words, done = words_of(relations, self._atoms), 0
@@ -77,7 +113,25 @@ class NetworkState:
         return self.emptied is None
 
     def close(self, deadline: Deadline = Deadline.never(), progress: Progress | None = None) -> bool:
-        """Close the network, up to a contradiction; return False if ``deadline`` came first."""
+        """Close the network, up to a contradiction; return False if the deadline came first.
+
+        Parameters
+        ----------
+        deadline
+            End of the time limit, after which closing can be continued.
+        progress
+            Function that is called with the number of propagated changes and the number with the waiting ones.
+
+        Returns
+        -------
+        bool
+            False if out of time.
+
+        Raises
+        ------
+        LimitError
+            The trail of a traced state does not fit in memory.
+        """
         from deixis.reasoning.qualitative.networks.kernels import CLOSED, EMPTIED, FULL
 
         if self.emptied is not None or not self.size:
@@ -106,7 +160,18 @@ class NetworkState:
         self._trail = longer
 
     def support(self, first: int, second: int) -> NDArray[np.bool_]:
-        """Return the pairs i <= k, (n, n), whose constraints led to the relation of this one."""
+        """Return the pairs i <= k whose constraints led to the relation of this one.
+
+        Parameters
+        ----------
+        first, second
+            Numbers of two things. The state must be traced.
+
+        Returns
+        -------
+        ndarray
+            Mask of the pairs, shape (n, n).
+        """
         from deixis.reasoning.qualitative.networks.kernels import support
 
         needed = np.zeros((self.size, self.size), dtype=np.bool_)
@@ -114,21 +179,55 @@ class NetworkState:
         return needed
 
     def relation(self, first: int, second: int) -> int:
-        """Return the current relation of a pair."""
+        """Return the current relation of a pair.
+
+        Parameters
+        ----------
+        first, second
+            Numbers of two things.
+
+        Returns
+        -------
+        int
+            Relation of ``first`` to ``second``, as a bit mask.
+        """
         return self._cells.relation(first, second)
 
     def relations(self) -> NDArray[np.uint64]:
-        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs.
+
+        Returns
+        -------
+        ndarray
+            Words of 64 atoms, shape (n, n, words), row to column.
+        """
         return self._cells.relations()
 
     def distinct(self) -> tuple[tuple[int, ...], NDArray[np.int64]]:
-        """Return the distinct relations, and for each pair (n, n) the position of its relation among them."""
+        """Return the distinct relations, and the position of each pair's relation among them.
+
+        Returns
+        -------
+        tuple
+            Relations as bit masks, and positions, shape (n, n).
+        """
         words = self.relations()
         relations, ids = distinct_rows(words.reshape(-1, words.shape[2]))
         return relations, ids.reshape(self.size, self.size)
 
     def masks(self) -> NDArray[np.uint64]:
-        """Return the current relations of all pairs, (n, n); raise LimitError in a calculus of more than 64 atoms."""
+        """Return the current relations of all pairs in a calculus of at most 64 atoms.
+
+        Returns
+        -------
+        ndarray
+            Bit masks, shape (n, n).
+
+        Raises
+        ------
+        LimitError
+            The calculus has more than 64 atoms.
+        """
         if self._atoms > 64:
             raise LimitError(
                 f"products are searched with up to 64 atoms an axis; {self.calculus.name} has {self._atoms}"
@@ -137,7 +236,18 @@ class NetworkState:
 
 
 def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[np.int64]]:
-    """Return the distinct rows (m, words of 64 atoms) as relations, and each row's position (m,) among them."""
+    """Return the distinct rows as relations, and each row's position among them.
+
+    Parameters
+    ----------
+    words
+        Relations in words of 64 atoms, shape (m, words).
+
+    Returns
+    -------
+    tuple
+        Relations as bit masks, and positions, shape (m,).
+    """
     if words.shape[1] == 1:
         values, ids = np.unique(words[:, 0], return_inverse=True)
         return tuple(int(value) for value in values), ids.astype(np.int64)
@@ -148,7 +258,20 @@ def distinct_rows(words: NDArray[np.uint64]) -> tuple[tuple[int, ...], NDArray[n
 
 
 def require_size(calculus: Calculus, size: int) -> None:
-    """Raise LimitError, before anything is allocated, if a network of that size would not fit in memory."""
+    """Raise LimitError, before anything is allocated, if a network of that size would not fit in memory.
+
+    Parameters
+    ----------
+    calculus
+        Calculus of the network.
+    size
+        Number of things.
+
+    Raises
+    ------
+    LimitError
+        The network would not fit in memory.
+    """
     table = tables(calculus)
     bits = (16 if table.small else table.atoms) + 2 * 64 * ((table.atoms + 63) // 64)  # bytes of a pair
     if size * size * bits // 8 > MAX_BYTES:

@@ -41,7 +41,23 @@ class Tables:
 
 @lru_cache(maxsize=64)
 def tables(calculus: Calculus) -> Tables:
-    """Return the arrays of a calculus; raise LimitError for too many axes, or atoms on one."""
+    """Return the arrays of a calculus.
+
+    Parameters
+    ----------
+    calculus
+        The calculus.
+
+    Returns
+    -------
+    Tables
+        Arrays for the loops.
+
+    Raises
+    ------
+    LimitError
+        The calculus has too many axes, or too many atoms on one.
+    """
     axes = calculus.factors
     largest = max(len(axis.atoms) for axis in axes)
     if len(axes) > MAX_AXES or largest > (MAX_TABLE_ATOMS if len(axes) == 1 else MAX_AXIS_ATOMS):
@@ -71,7 +87,18 @@ def tables(calculus: Calculus) -> Tables:
 
 
 def is_wide(calculus: Calculus) -> bool:
-    """Return True if a relation of the calculus takes several words, on its only axis."""
+    """Return True if a relation of the calculus takes several words, on its only axis.
+
+    Parameters
+    ----------
+    calculus
+        A calculus.
+
+    Returns
+    -------
+    bool
+        True if the calculus has one axis with more than ``MAX_AXIS_ATOMS`` atoms.
+    """
     return len(calculus.factors) == 1 and len(calculus.atoms) > MAX_AXIS_ATOMS
 
 
@@ -100,6 +127,17 @@ def in_parts(
 ) -> tuple[NDArray[np.unsignedinteger[Any]], NDArray[np.unsignedinteger[Any]]]:
     """Return compositions and converses of relations that are cut into parts, by look-up.
 
+    Parameters
+    ----------
+    axis
+        Calculus of the relations.
+    parts
+        Number of parts.
+    width
+        Number of atoms of a part.
+    dtype
+        Unsigned type with a bit for each atom.
+
     Returns
     -------
     compositions : ndarray, (parts, 2^width, parts, 2^width)
@@ -120,7 +158,18 @@ def in_parts(
 
 
 def half_of(atoms: int) -> int:
-    """Return the number of atoms in the lower part of a relation that is cut in two."""
+    """Return the number of atoms in the lower part of a relation that is cut in two.
+
+    Parameters
+    ----------
+    atoms
+        Number of atoms of the calculus.
+
+    Returns
+    -------
+    int
+        Half of the atoms, rounded up.
+    """
     return (atoms + 1) // 2
 
 

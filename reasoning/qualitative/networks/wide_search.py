@@ -77,7 +77,18 @@ class WideSearch:
         self._limit, self._until_restart = float(FIRST_RESTART), FIRST_RESTART
 
     def run(self, deadline: Deadline = Deadline.never()) -> bool | None:
-        """Continue the search: True if every pair has one atom, False if that is impossible, None if out of time."""
+        """Continue the search: True if every pair has one atom, False if that is impossible, None if out of time.
+
+        Parameters
+        ----------
+        deadline
+            End of the time limit, after which the search can be continued.
+
+        Returns
+        -------
+        bool or None
+            Result of the search.
+        """
         while self._state.close(deadline):
             if self._state.emptied is not None:
                 if not self._go_back(self._state.emptied):
@@ -89,7 +100,13 @@ class WideSearch:
         return None
 
     def relations(self) -> NDArray[np.uint64]:
-        """Return the current relations of all pairs, (n, n, words of 64 atoms)."""
+        """Return the current relations of all pairs.
+
+        Returns
+        -------
+        ndarray
+            Words of 64 atoms, shape (n, n, words), row to column.
+        """
         return self._state.relations()
 
     def _decide(self) -> bool:
