@@ -171,6 +171,19 @@ PHRASE_STARTS = frozenset(
 def meaning(phrase: str) -> Phrase:
     """Return what a phrase means that one of the patterns matches.
 
+    Parameters
+    ----------
+    phrase
+        Phrase of the language without its objects, such as ``at the far left corner of``. It must match a pattern of
+        the language.
+
+    Returns
+    -------
+    Phrase
+        Term of the claim, its value, and its distance in metres.
+
+    Examples
+    --------
     >>> meaning("at the far-left corner of"), meaning("about 2 cm away from").metres
     (Phrase(term='corner', value='far left', metres=None), 0.02)
     >>> meaning("in a row from left to right").value, meaning("the 2nd from the left of").value
@@ -222,6 +235,18 @@ def meaning(phrase: str) -> Phrase:
 def adjective_property(word: str) -> Phrase | None:
     """Return the claim that an adjective makes of a thing; None for a word that makes none.
 
+    Parameters
+    ----------
+    word
+        Adjective, in any case.
+
+    Returns
+    -------
+    Phrase or None
+        Term and value of the claim; None for a word that makes no claim.
+
+    Examples
+    --------
     >>> adjective_property("big"), adjective_property("nested"), adjective_property("fork")
     (Phrase(term='size', value='big', metres=None), Phrase(term='nested', value=None, metres=None), None)
     """
@@ -235,6 +260,18 @@ def adjective_property(word: str) -> Phrase | None:
 def phrase_of(claim: Claim) -> str | None:
     """Return the phrase of a claim, without its objects; None where the language has none.
 
+    Parameters
+    ----------
+    claim
+        Claim to say.
+
+    Returns
+    -------
+    str or None
+        The phrase, which :func:`meaning` reads as the same term, value and distance.
+
+    Examples
+    --------
     >>> phrase_of(Claim("corner", ("lamp",), ("desk",), value="far left"))
     'at far left corner of'
     >>> phrase_of(Claim("distance_more", ("fork",), ("plate",), metres=0.025))
@@ -303,5 +340,16 @@ def _decimal(number: float) -> str:
 
 
 def is_collective(term: str) -> bool:
-    """Return True for the term of a claim about all of its subjects together, as *in a row*."""
+    """Return True for the term of a claim about all of its subjects together, as *in a row*.
+
+    Parameters
+    ----------
+    term
+        Term of a claim, such as ``row``.
+
+    Returns
+    -------
+    bool
+        False for a claim about each subject by itself.
+    """
     return term in COLLECTIVE or term == "count" or term.startswith("none_")

@@ -101,6 +101,19 @@ class Reading:
 def joined_choices(stated: Sequence[StatedFact]) -> Iterator[StatedFact]:
     """Yield facts in order; a choice between relations of one pair becomes one fact with all these relations.
 
+    Parameters
+    ----------
+    stated
+        Stated facts in the order of the text. Those with the same ``alternative`` are the options of one choice.
+
+    Yields
+    ------
+    StatedFact
+        Each fact of the text. A choice is joined if all of its options are facts about the same pair, in the same
+        reading, and all are denied or none is; its weight is the sum of theirs, at most 1.
+
+    Examples
+    --------
     >>> from deixis.grammar.english.reader import read_english
     >>> script = read_english("The fork is either left of the plate or on the plate.")
     >>> [str(fact.content) for fact in script.reading.stated], [str(fact) for fact in script.facts]

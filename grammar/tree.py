@@ -315,7 +315,23 @@ class TreeBuilder(Transformer[Token, Statement]):
 
 
 def value_of(token: Token) -> str:
-    """Return the value that a word, a number or a quoted text stands for."""
+    """Return the value that a word, a number or a quoted text stands for.
+
+    Parameters
+    ----------
+    token
+        Token of the grammar.
+
+    Returns
+    -------
+    str
+        Text without its quotation marks, or words with spaces instead of underscores.
+
+    Raises
+    ------
+    StatementError
+        If a quoted text is empty or has a control character.
+    """
     if token.type == "STRING":
         unquote(token[1:-1], source_of(token))
         return str(token[1:-1])

@@ -52,7 +52,7 @@ def inspect(folder: Path) -> FolderState:
     Parameters
     ----------
     folder
-        The folder.
+        Folder that may hold a memory; it may be missing.
 
     Returns
     -------
@@ -192,7 +192,7 @@ def create(folder: Path, fill: Callable[[ox.Store], None], digest: str) -> None:
     Parameters
     ----------
     folder
-        The folder.
+        Empty folder of the new memory.
     fill
         Function that fills the new store.
     digest
@@ -310,12 +310,12 @@ def one_line(error: BaseException) -> str:
     Parameters
     ----------
     error
-        The error.
+        Error whose text may have several lines.
 
     Returns
     -------
     str
-        The text.
+        Text with single spaces instead of line ends.
     """
     return " ".join(str(error).split())
 
@@ -381,6 +381,13 @@ def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
     ------
     None
         Nothing; errors in the block are turned.
+
+    Raises
+    ------
+    DamagedMemoryError
+        If the store is corrupt.
+    MemoryWriteError
+        For any other error of the store or the system.
     """
     try:
         yield

@@ -69,7 +69,13 @@ class OnDemand(Generic[Held]):
         self.release()
 
     def require_usable(self) -> None:
-        """Raise MemoryFormatError if this is closed."""
+        """Raise MemoryFormatError if this is closed.
+
+        Raises
+        ------
+        MemoryFormatError
+            If this session is closed.
+        """
         if self._closed:
             raise MemoryFormatError(f"{self.path}: this session is closed; open a new one")
 

@@ -116,7 +116,13 @@ class OwnerLock:
         return lock
 
     def sign(self) -> None:
-        """Write the owner's process, command and starting time into the lock file."""
+        """Write the owner's process, command and starting time into the lock file.
+
+        Raises
+        ------
+        MemoryWriteError
+            If the lock file cannot be written.
+        """
         command = " ".join([Path(sys.argv[0]).name, *sys.argv[1:]])[:200]
         owner = {"pid": os.getpid(), "command": command, "since": datetime.now(UTC).isoformat(timespec="seconds")}
         try:

@@ -52,7 +52,20 @@ ON_SURFACE = frozenset({*PLACES, "on"})
 
 
 def claim_to_dict(claim: Claim, surface: str | None = None) -> dict[str, Any]:
-    """Return a claim as it appears in the JSON output of the commands; ``surface`` is the name of the surface."""
+    """Return a claim as it appears in the JSON output of the commands.
+
+    Parameters
+    ----------
+    claim
+        Claim to export.
+    surface
+        Name of the surface, which becomes the argument of a claim about a place on it.
+
+    Returns
+    -------
+    dict
+        Relation, subjects, arguments, value and weight, with the file, line and column of a claim that has a source.
+    """
     nothing = claim.relation.startswith("none_")
     relation = claim.relation.removeprefix("none_")
     subject, arguments = ("*", claim.subjects) if nothing else (claim.subjects[0], claim.arguments)

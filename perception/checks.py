@@ -167,14 +167,14 @@ def items(entry: Mapping[str, Any], key: str, where: str) -> list[Any]:
     entry
         Parsed JSON of an object.
     key
-        The key.
+        Key of the list.
     where
         Place of the object, for the message.
 
     Returns
     -------
     list of object
-        The list.
+        Entries of the list, which are not checked.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def shown(value: object) -> str:
     Parameters
     ----------
     value
-        The value.
+        Value of any type, whose text may be long.
 
     Returns
     -------

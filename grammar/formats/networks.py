@@ -267,6 +267,11 @@ def network_lines(networks: Sequence[Network], comment: str = "") -> Iterator[st
     ------
     str
         A line without its end.
+
+    Raises
+    ------
+    NetworkError
+        If the network has no things.
     """
     size = networks[0].size
     if size < 1:

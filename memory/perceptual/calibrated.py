@@ -33,7 +33,19 @@ MAX_CHANGED_SHARE = 0.1
 
 
 def write_calibrations(folder: Path, calibrations: Sequence[Calibration], views: Set[ViewPlace], compared: str) -> None:
-    """Write calibrations in one step, with the name of the comparison; ignore errors of the disk."""
+    """Write calibrations in one step, with the name of the comparison; ignore errors of the disk.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory.
+    calibrations
+        Calibrations to keep.
+    views
+        Category and id of each view that they were computed from.
+    compared
+        Name of the comparison.
+    """
     content = {"calibrations": [asdict(each) for each in calibrations], "compared": compared, "views": sorted(views)}
     new = folder / (CALIBRATION + ".new")
     with contextlib.suppress(OSError):
@@ -42,7 +54,23 @@ def write_calibrations(folder: Path, calibrations: Sequence[Calibration], views:
 
 
 def read_calibrations(folder: Path, views: Set[ViewPlace], compared: str) -> tuple[Calibration, ...] | None:
-    """Return the stored calibrations, or None where they are for other views or another comparison."""
+    """Return the stored calibrations, or None where they are for other views or another comparison.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory.
+    views
+        Category and id of each view of the memory now.
+    compared
+        Name of the comparison.
+
+    Returns
+    -------
+    tuple of Calibration or None
+        Calibrations as they were written. They are valid as long as at most ``MAX_CHANGED_SHARE`` of the views have
+        changed.
+    """
     try:
         content = json.loads((folder / CALIBRATION).read_text(encoding="utf-8"))
         if content.pop("sum") != _sum(content) or content["compared"] != compared:

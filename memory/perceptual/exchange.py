@@ -51,7 +51,24 @@ class Imported:
 
 
 def export_views(memory: PerceptualMemory, file: str | Path, progress: Progress | None = None) -> None:
-    """Write the content of a memory into one file; the same content gives the same bytes. Raises MemoryWriteError."""
+    """Write the content of a memory into one file; the same content gives the same bytes.
+
+    Parameters
+    ----------
+    memory
+        Memory to export, as it is at the time of the call.
+    file
+        File to write; it is replaced only once all is written.
+    progress
+        Called with the number of views done, and the number of all views.
+
+    Raises
+    ------
+    MemoryWriteError
+        If the file cannot be written.
+    DamagedMemoryError
+        If a view or a record is damaged.
+    """
     with memory.snapshot() as now:
         path = Path(file)
         new = path.with_name(path.name + ".new")
@@ -79,6 +96,20 @@ def import_views(file: str | Path, memory: PerceptualMemory, progress: Progress 
 
     The learned state of a category is imported where it describes exactly the views that the category has afterwards;
     elsewhere it is left out, and the category is named in the result.
+
+    Parameters
+    ----------
+    file
+        Archive of views.
+    memory
+        Memory that receives the views.
+    progress
+        Called with the number of views done, and twice the number of views, since they are checked first.
+
+    Returns
+    -------
+    Imported
+        Numbers of new views and records, and the categories whose state is left out.
 
     Raises
     ------
@@ -142,7 +173,18 @@ def _records(
 
 
 def is_archive(file: Path) -> bool:
-    """Return whether a file is an archive of views, judging by its first bytes."""
+    """Return whether a file is an archive of views, judging by its first bytes.
+
+    Parameters
+    ----------
+    file
+        File, which may be missing.
+
+    Returns
+    -------
+    bool
+        False also for a file that cannot be read.
+    """
     try:
         with file.open("rb") as opened:
             return opened.read(len(_BEGINNING)) == _BEGINNING
@@ -151,7 +193,24 @@ def is_archive(file: Path) -> bool:
 
 
 def counted(views: Iterable[View], total: int, progress: Progress | None, before: int = 0) -> Iterator[View]:
-    """Iterate over views; call ``progress`` after each with the number done, ``before`` included, and ``total``."""
+    """Iterate over views, and report the progress after each.
+
+    Parameters
+    ----------
+    views
+        Views to pass on.
+    total
+        Number of all views.
+    progress
+        Called with the number of views done, and ``total``.
+    before
+        Number of views done before the first.
+
+    Yields
+    ------
+    View
+        The views in order.
+    """
     for done, view in enumerate(views, start=before + 1):
         yield view
         if progress is not None:
@@ -163,13 +222,35 @@ def _add(archive: zipfile.ZipFile, name: str, content: bytes) -> None:
 
 
 def view_file(view: View) -> bytes:
-    """Return a view as a safetensors file."""
+    """Return a view as a safetensors file.
+
+    Parameters
+    ----------
+    view
+        View to write.
+
+    Returns
+    -------
+    bytes
+        Content of the file; equal views give equal bytes.
+    """
     said = {"id": view.id, "category": view.category, "time": view.time.isoformat(), "metadata": dict(view.metadata)}
     return pack(arrays_by_name(view.descriptors, view.points), json.dumps(said, sort_keys=True))
 
 
 def category_file(record: CategoryRecord) -> bytes:
-    """Return a category's record as a safetensors file."""
+    """Return a category's record as a safetensors file.
+
+    Parameters
+    ----------
+    record
+        Record to write.
+
+    Returns
+    -------
+    bytes
+        Content of the file; equal records give equal bytes.
+    """
     said = {"name": record.name, "metadata": dict(record.metadata)}
     return pack(record.state, json.dumps(said, sort_keys=True))
 
@@ -205,13 +286,35 @@ class Archive(Closing):
         return self._views
 
     def records(self) -> Iterator[CategoryRecord]:
-        """Iterate over the records of categories."""
+        """Iterate over the records of categories.
+
+        Yields
+        ------
+        CategoryRecord
+            Records in the order of the archive.
+
+        Raises
+        ------
+        ImportFormatError
+            If an entry is malformed.
+        """
         for name, said, arrays in self._entries("categories/"):
             with _EntryErrors(self.file, name):
                 yield CategoryRecord(said["name"], arrays, said["metadata"])
 
     def views(self) -> Iterator[View]:
-        """Iterate over the views."""
+        """Iterate over the views.
+
+        Yields
+        ------
+        View
+            Views in the order of the archive, read one by one.
+
+        Raises
+        ------
+        ImportFormatError
+            If an entry is malformed.
+        """
         for name, said, arrays in self._entries("views/"):
             with _EntryErrors(self.file, name):
                 time = datetime.fromisoformat(said["time"])

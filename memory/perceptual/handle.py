@@ -74,7 +74,18 @@ class Places(NamedTuple):
 
 
 def read_places(source: Any) -> Places:
-    """Read the key of each view from a database or a snapshot of one."""
+    """Read the key of each view from a database or a snapshot of one.
+
+    Parameters
+    ----------
+    source
+        ``plyvel.DB``, or a snapshot of one.
+
+    Returns
+    -------
+    Places
+        Keys by the ids of the views, and the error that ended the reading, if any.
+    """
     found: dict[str, bytes] = {}
     try:
         for key in source.iterator(prefix=keys.VIEW, include_value=False, verify_checksums=True):
@@ -97,20 +108,44 @@ class WriteBatch:
     views: int = 0
 
     def add(self, view: View) -> None:
-        """Add a view that does not exist, or was dropped before."""
+        """Add a view that does not exist, or was dropped before.
+
+        Parameters
+        ----------
+        view
+            View to write.
+        """
         said, arrays = write_view(view)
         self.pairs += (said, arrays)
         self.places[view.id] = said[0]
         self.views += 1
 
     def move(self, said: ViewHeader, category: str) -> None:
-        """Move an existing view to another category; its arrays stay where they are."""
+        """Move an existing view to another category; its arrays stay where they are.
+
+        Parameters
+        ----------
+        said
+            Header of the view.
+        category
+            Name of the new category.
+        """
         moved = write_about(said.moved(category))
         self.pairs += ((said.key, None), moved)
         self.places[said.id] = moved[0]
 
     def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
-        """Drop an existing view, the keys of its arrays, and that of its lesson."""
+        """Drop an existing view, the keys of its arrays, and that of its lesson.
+
+        Parameters
+        ----------
+        view_id
+            Id of the view.
+        key
+            Key of its header.
+        arrays
+            Keys of its arrays.
+        """
         self.pairs += [(each, None) for each in (key, *arrays, keys.name_key(keys.LESSON, view_id))]
         self.places[view_id] = None
         self.views -= 1
@@ -167,21 +202,46 @@ class Handle:
 
         If LevelDB frees one while it is being closed, the process ends: so a source without users is freed after the
         closing.
+
+        Parameters
+        ----------
+        source
+            Snapshot or iterator of the database.
+
+        Returns
+        -------
+        object
+            The given source.
         """
         self._sources.add(source)
         return source
 
     def let_go(self, source: Any) -> None:
-        """Free a source that :meth:`keep` registered; a closed database frees its own."""
+        """Free a source that :meth:`keep` registered; a closed database frees its own.
+
+        Parameters
+        ----------
+        source
+            Snapshot or iterator that :meth:`keep` returned.
+        """
         with contextlib.suppress(MemoryFormatError), self:
             source.close()
             self._sources.discard(source)
 
     def places(self) -> dict[str, bytes]:
-        """Return the key of each view by its id. Hold :attr:`writing`, and do not change the result.
+        """Return the key of each view by its id.
 
-        Raises DamagedMemoryError where not all keys can be read, as the view that a new one replaces may then be
-        unknown.
+        Hold :attr:`writing`, and do not change the result.
+
+        Returns
+        -------
+        dict
+            Keys of headers by the ids of the views.
+
+        Raises
+        ------
+        DamagedMemoryError
+            If not all keys can be read, as the view that a new one replaces may then be unknown.
         """
         found = self._places or self._read_places()
         if found.damage is not None:
@@ -189,11 +249,33 @@ class Handle:
         return found.by_id
 
     def place_of(self, view_id: str) -> bytes | None:
-        """Return the key of a view, or None; unreadable keys count as missing."""
+        """Return the key of a view, or None; unreadable keys count as missing.
+
+        Parameters
+        ----------
+        view_id
+            Id of the view.
+
+        Returns
+        -------
+        bytes or None
+            Key of its header.
+        """
         return (self._places or self._read_places()).by_id.get(view_id)
 
     def lacks(self, id: str) -> bool:
-        """Return True if there is certainly no view with this id now."""
+        """Return True if there is certainly no view with this id now.
+
+        Parameters
+        ----------
+        id
+            Id of the view.
+
+        Returns
+        -------
+        bool
+            False if the view exists, or keys cannot be read.
+        """
         found = self._places or self._read_places()
         return found.damage is None and id not in found.by_id
 
@@ -208,6 +290,20 @@ class Handle:
 
         After a failure the log may end in half a batch, and later entries could not be found: so nothing more is
         written until the memory is opened again.
+
+        Parameters
+        ----------
+        change
+            Keys with their new values.
+        sync
+            If True, the change also survives a crash of the machine.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        MemoryWriteError
+            If this write fails, or one before it failed.
         """
         there, before = self.places(), self.counts
         counts = StoreCounts(before.batches + 1, before.views + change.views, before.lost)
@@ -235,8 +331,21 @@ class Handle:
     def write_with(self, change: WriteBatch, commit: Callable[[str], None]) -> None:
         """Write a change if another store commits, and nothing if it does not, also after a crash.
 
-        ``commit`` is called with the id of the journal, which the other store must store in its commit; see
-        :mod:`deixis.memory.journal`. Hold :attr:`writing`.
+        Hold :attr:`writing`. See :mod:`deixis.memory.journal`.
+
+        Parameters
+        ----------
+        change
+            Keys with their new values.
+        commit
+            Called with the id of the journal, which the other store must store in its commit.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        MemoryWriteError
+            If the change cannot be written.
         """
         self._require_sound()
         entry = JournalEntry(new_id(), tuple(change.pairs), change.views)
@@ -264,7 +373,13 @@ class Handle:
         clear_journal(self.folder)
 
     def settle(self, where: Path) -> None:
-        """Complete or roll back an interrupted write, if there is a journal of one."""
+        """Complete or roll back an interrupted write, if there is a journal of one.
+
+        Parameters
+        ----------
+        where
+            Folder of the journal: that of the memory, or of its copy.
+        """
         entry = read_journal(where)
         if entry is not None:
             with self as db:
@@ -288,7 +403,21 @@ class Handle:
     def write_all(self, changes: Iterable[WriteBatch], new: Sequence[str]) -> None:
         """Write changes with new views, each in one step: all of them or none, also after a crash.
 
-        ``new`` are the ids of the views. Hold :attr:`writing`.
+        Hold :attr:`writing`.
+
+        Parameters
+        ----------
+        changes
+            Changes, of which at most two are held at a time.
+        new
+            Ids of the views in all changes.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        MemoryWriteError
+            If a change cannot be written.
         """
         id, waiting = None, None
         try:
@@ -322,7 +451,13 @@ class Handle:
             raise MemoryWriteError(f"{self._failed}; close the memory, remove the cause, and open it again")
 
     def disowned(self) -> Any:
-        """Remove the database from a forked child without closing it, and renew the locks: other threads are gone."""
+        """Remove the database from a forked child without closing it, and renew the locks: other threads are gone.
+
+        Returns
+        -------
+        plyvel.DB
+            The open database, which must never be freed: that would close it.
+        """
         db, self._db = self._db, None
         self.inherited = True
         self.writing, self._guard = threading.RLock(), threading.RLock()
@@ -351,7 +486,15 @@ class Handle:
             self._scratch.remove()
 
     def only_read(self, scratch: ScratchFolder, reason: str) -> None:
-        """Refuse all writes from now on: this is a copy, in ``scratch``, of a folder that cannot be written."""
+        """Refuse all writes from now on, because this is a copy of a folder that cannot be written.
+
+        Parameters
+        ----------
+        scratch
+            Folder of the copy, which is removed with the handle.
+        reason
+            Message of the errors.
+        """
         self._scratch, self._read_only = scratch, reason
 
 
@@ -368,13 +511,37 @@ os.register_at_fork(after_in_child=_disown)
 
 
 def closed() -> MemoryFormatError:
-    """Return the error for a memory that was closed."""
+    """Return the error for a memory that was closed.
+
+    Returns
+    -------
+    MemoryFormatError
+        Error that says to open the memory again.
+    """
     return MemoryFormatError("this memory is closed: open it again")
 
 
 @contextlib.contextmanager
 def wrap_level_errors(folder: Path) -> Iterator[None]:
-    """Turn errors of LevelDB or the system into errors of Deixis."""
+    """Turn errors of LevelDB or the system into errors of Deixis.
+
+    Parameters
+    ----------
+    folder
+        Folder of the memory, which the errors name.
+
+    Yields
+    ------
+    None
+        None, once.
+
+    Raises
+    ------
+    DamagedMemoryError
+        If LevelDB reports corruption.
+    MemoryWriteError
+        For any other error of LevelDB or the system.
+    """
     try:
         yield
     except (plyvel.Error, OSError) as error:
@@ -383,7 +550,22 @@ def wrap_level_errors(folder: Path) -> Iterator[None]:
 
 
 def raise_level_error(folder: Path, error: BaseException) -> None:
-    """Raise an error of LevelDB or the system as an error of Deixis; return for other errors."""
+    """Raise an error of LevelDB or the system as an error of Deixis; return for other errors.
+
+    Parameters
+    ----------
+    folder
+        Folder of the memory, which the error names.
+    error
+        Error to translate.
+
+    Raises
+    ------
+    DamagedMemoryError
+        If LevelDB reports corruption.
+    MemoryWriteError
+        For any other error of LevelDB or the system.
+    """
     if isinstance(error, DeixisError) or not isinstance(error, plyvel.Error | OSError):
         return
     text = one_line(error).removeprefix("b'").removesuffix("'")
@@ -398,7 +580,29 @@ def raise_level_error(folder: Path, error: BaseException) -> None:
 
 
 def acquire(folder: Path, create: bool) -> Handle:
-    """Return the handle on a folder, and open it on first use in this process; raise as ``LevelMemory.open``."""
+    """Return the handle on a folder, and open it on first use in this process.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory.
+    create
+        If True, make a memory if there is none.
+
+    Returns
+    -------
+    Handle
+        Handle with one more user, who must :func:`release` it.
+
+    Raises
+    ------
+    MemoryBusyError
+        If another process has the memory open.
+    MemoryFormatError
+        If there is no memory, or its files are invalid.
+    MemoryWriteError
+        If the folder cannot be made or written.
+    """
     real = Path(os.path.realpath(folder))
     with _opening:
         if real in _handles:
@@ -410,7 +614,13 @@ def acquire(folder: Path, create: bool) -> Handle:
 
 
 def release(handle: Handle) -> None:
-    """Release a handle; the last release closes it."""
+    """Release a handle; the last release closes it.
+
+    Parameters
+    ----------
+    handle
+        Handle that :func:`acquire` returned.
+    """
     with _opening:
         handle.users -= 1
         if handle.users == 0 and not handle.inherited:

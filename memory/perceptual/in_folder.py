@@ -31,17 +31,71 @@ __all__ = [
 
 
 def open_in(memory: Path, create: bool = False) -> LevelMemory:
-    """Open the perceptual memory in the folder of a memory; raise as ``LevelMemory.open``, and for another folder."""
+    """Open the perceptual memory in the folder of a memory.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+    create
+        If True, make the perceptual memory if there is none.
+
+    Returns
+    -------
+    LevelMemory
+        The open memory.
+
+    Raises
+    ------
+    MemoryBusyError
+        If another process has the memory open.
+    MemoryFormatError
+        If the folder is not that of a memory, or has no perceptual memory.
+    MemoryWriteError
+        If the folder cannot be written.
+    """
     return LevelMemory.open(_place_in(memory), create)
 
 
 def open_undamaged(memory: Path) -> UndamagedMemory:
-    """Open the perceptual memory without its damaged views."""
+    """Open the perceptual memory without its damaged views.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+
+    Returns
+    -------
+    UndamagedMemory
+        The open memory, whose ``left_out`` lists the damage.
+
+    Raises
+    ------
+    MemoryFormatError
+        If the folder is not that of a memory, or has no perceptual memory.
+    """
     return UndamagedMemory.open(_place_in(memory))
 
 
 def has_views(memory: Path) -> bool:
-    """Return whether a memory has views, without opening it; raise MemoryFormatError for another folder."""
+    """Return whether a memory has a perceptual memory, without opening it.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+
+    Returns
+    -------
+    bool
+        True also if all views were forgotten.
+
+    Raises
+    ------
+    MemoryFormatError
+        If the folder is not that of a memory.
+    """
     return version_in(_place_in(memory)) is not None
 
 
@@ -51,7 +105,18 @@ def _place_in(memory: Path) -> Path:
 
 
 def stats_of(memory: Path) -> PerceptualStats | None:
-    """Return the size of the perceptual memory, or None where a memory has no views."""
+    """Return the size of the perceptual memory, or None where a memory has no views.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+
+    Returns
+    -------
+    PerceptualStats or None
+        Numbers of views and categories, and the bytes on the disk.
+    """
     if not has_views(memory):
         return None
     with open_in(memory) as views:
@@ -59,7 +124,26 @@ def stats_of(memory: Path) -> PerceptualStats | None:
 
 
 def export_all(memory: Path, file: Path, progress: Progress | None = None) -> None:
-    """Write all views and categories into one file; raise MemoryFormatError where there are no views."""
+    """Write all views and categories into one file.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+    file
+        File to write.
+    progress
+        Called with the number of views done, and the number of all views.
+
+    Raises
+    ------
+    MemoryFormatError
+        If there are no views.
+    DamagedMemoryError
+        If a view or a record is damaged; nothing is exported then.
+    MemoryWriteError
+        If the file cannot be written.
+    """
     with open_in(memory) as views:
         try:
             export_views(views, file, progress)
@@ -71,7 +155,29 @@ def export_all(memory: Path, file: Path, progress: Progress | None = None) -> No
 
 
 def import_all(file: Path, memory: Path, progress: Progress | None = None) -> Imported:
-    """Import a file that :func:`export_all` wrote, one for which :func:`is_archive` is True."""
+    """Import a file that :func:`export_all` wrote, one for which :func:`is_archive` is True.
+
+    Parameters
+    ----------
+    file
+        Archive of views.
+    memory
+        Folder of the whole memory, in which a perceptual memory is made if needed.
+    progress
+        Called with the number of views done, and twice the number of views.
+
+    Returns
+    -------
+    Imported
+        Numbers of new views and records, and the categories whose state is left out.
+
+    Raises
+    ------
+    ImportFormatError
+        If the file is invalid.
+    RejectedWriteError
+        If the file has a view with a known id and other content.
+    """
     with Archive(file):
         pass  # raises for an invalid archive before a memory is made
     with open_in(memory, create=True) as views:

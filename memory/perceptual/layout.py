@@ -49,15 +49,42 @@ _TABLE = ".ldb"
 
 
 def store(folder: Path, version: int | None = None) -> Path:
-    """Return the path of the database of a version; by default this program's version."""
+    """Return the path of the database of a version; by default this program's version.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory.
+    version
+        Version of the format.
+
+    Returns
+    -------
+    Path
+        Path, which may not exist.
+    """
     return folder / f"store-{VERSION if version is None else version}"
 
 
 def version_in(folder: Path) -> int | None:
     """Return the version of the memory in a folder, without opening it; None for a folder without one.
 
-    Raises MemoryFormatError for a folder with other files, and for an unknown version; DamagedMemoryError where a
-    closed store is missing.
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory, which may be missing.
+
+    Returns
+    -------
+    int or None
+        Version of the newest store.
+
+    Raises
+    ------
+    MemoryFormatError
+        If the folder has other files, or the version is unknown.
+    DamagedMemoryError
+        If a closed store is missing.
     """
     if folder.is_symlink() and not folder.exists():
         raise MemoryFormatError(f"{folder} is a broken link; remove or repair it")
@@ -92,7 +119,20 @@ def version_in(folder: Path) -> int | None:
 
 
 def prepare(folder: Path) -> None:
-    """Make a store if there is no store yet; otherwise check its seal and migrate it to this version."""
+    """Make a store if there is no store yet; otherwise check its seal and migrate it to this version.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory. Stores of other versions are removed from it.
+
+    Raises
+    ------
+    MemoryFormatError
+        If the version is unknown.
+    DamagedMemoryError
+        If the store has changed since it was closed.
+    """
     version = version_in(folder)
     if version is None:
         _make(folder, VERSION, lambda new: None)
@@ -113,6 +153,13 @@ def mirror(folder: Path, scratch: Path) -> None:
     """Fill an empty folder with a writable copy of a perceptual memory.
 
     Tables are linked, not copied, as LevelDB never changes a table.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory.
+    scratch
+        Empty folder.
     """
     for file in folder.iterdir():
         if file.is_dir():
@@ -141,7 +188,13 @@ def _make(folder: Path, version: int, fill: Callable[[plyvel.DB], None]) -> None
 
 
 def write_seal(folder: Path) -> None:
-    """Seal a closed database."""
+    """Seal a closed database.
+
+    Parameters
+    ----------
+    folder
+        Folder of the perceptual memory. The seal has the names and checks of the store's files.
+    """
     new = folder / (SEAL + ".new")
     with new.open("w", encoding="ascii") as out:
         out.write(json.dumps({"store": store(folder).name, "files": _files(store(folder))}, indent=1) + "\n")
@@ -199,7 +252,13 @@ class AcknowledgedCounts:
             self.found = read_counts(os.pread(self._descriptor, 64, 0))
 
     def write(self, counts: bytes) -> None:
-        """Write the counts, as ``write_counts`` returns them."""
+        """Write the counts.
+
+        Parameters
+        ----------
+        counts
+            Counts, as ``write_counts`` returns them.
+        """
         os.pwrite(self._descriptor, counts, 0)
 
     def close(self) -> None:

@@ -47,10 +47,28 @@ class LevelMemory(Closing):
 
     @classmethod
     def open(cls, path: str | Path, create: bool = False) -> Self:
-        """Open a memory, or make one with ``create``; a folder that this process has open is shared.
+        """Open a memory, or make one; a folder that this process has open is shared.
 
-        Raises MemoryBusyError where another process has the memory open, MemoryFormatError where there is no memory or
-        its files are invalid, MemoryWriteError where the folder cannot be written.
+        Parameters
+        ----------
+        path
+            Folder of the perceptual memory.
+        create
+            If True, make a memory if there is none.
+
+        Returns
+        -------
+        Self
+            The open memory; close it after use.
+
+        Raises
+        ------
+        MemoryBusyError
+            If another process has the memory open.
+        MemoryFormatError
+            If there is no memory, or its files are invalid.
+        MemoryWriteError
+            If the folder cannot be written.
         """
         return cls(acquire(Path(path), create))
 
@@ -73,7 +91,25 @@ class LevelMemory(Closing):
         return self.handle.folder
 
     def view(self, id: str) -> View:
-        """Return one view."""
+        """Return one view.
+
+        Parameters
+        ----------
+        id
+            Id of the view.
+
+        Returns
+        -------
+        View
+            View with its arrays.
+
+        Raises
+        ------
+        UnknownViewError
+            If there is no such view.
+        DamagedMemoryError
+            If the view is damaged.
+        """
         place = self.handle.place_of(check_name("a view's id", id))
         if place is not None:
             with self.handle as db:
@@ -86,88 +122,294 @@ class LevelMemory(Closing):
             return now.view(id)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over views, as they are at the time of the call."""
+        """Iterate over views, as they are at the time of the call.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        View
+            Views in the order of category and id, as they are at the time of the call.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        DamagedMemoryError
+            At a damaged view.
+        """
         return self.snapshot().views(category)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays."""
+        """Iterate over category, id and time of views, without reading arrays.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        ViewKey
+            Category, id and time of each view, in the order of :meth:`views`.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         return self.snapshot().listing(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of all categories."""
+        """Return the names of all categories.
+
+        Returns
+        -------
+        tuple of str
+            Names in order, of categories with a view or a record.
+        """
         with self.snapshot() as now:
             return now.categories()
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category."""
+        """Return the record of a category.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Returns
+        -------
+        CategoryRecord
+            Record; its state is empty if nothing was learned.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         with self.snapshot() as now:
             return now.category(name)
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id."""
+        """Return the lesson of each view that belongs to one, by the view's id.
+
+        Returns
+        -------
+        dict
+            Ids of lessons by the ids of views.
+        """
         with self.snapshot() as now:
             return now.lessons_of_views()
 
     def lesson_of(self, view_id: str) -> str | None:
-        """Return the lesson that a view belongs to, or None."""
+        """Return the lesson that a view belongs to, or None.
+
+        Parameters
+        ----------
+        view_id
+            Id of the view.
+
+        Returns
+        -------
+        str or None
+            Id of the lesson.
+
+        Raises
+        ------
+        RecordError
+            If the id of the view is not valid.
+        """
         key = keys.name_key(keys.LESSON, check_name("a view's id", view_id))
         with self.snapshot() as now:
             sealed = now.get(key)
         return None if sealed is None else read_name(key, sealed)
 
     def taught_by_lessons(self, category: str) -> tuple[str, ...]:
-        """Return the ids of the views of a category that belong to lessons."""
+        """Return the ids of the views of a category that belong to lessons.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Returns
+        -------
+        tuple of str
+            Ids in order; empty for an unknown category.
+        """
         with self.snapshot() as now:
             views = [keys.split_view_key(key)[1] for key in now.bare_keys(keys.category_prefix(category))]
             return tuple(view for view in views if now.get(keys.name_key(keys.LESSON, view)) is not None)
 
     def stats(self) -> PerceptualStats:
-        """Return the size of the memory."""
+        """Return the size of the memory.
+
+        Returns
+        -------
+        PerceptualStats
+            Numbers of views, categories and batches, and the size in bytes.
+        """
         with self.snapshot() as now:
             return now.stats()
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return what differs from what was written."""
+        """Return what differs from what was written.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done, and the number of all views.
+
+        Returns
+        -------
+        tuple of Finding
+            One finding for each damaged place; empty for a sound memory.
+        """
         with self.snapshot() as now:
             return now.verify(progress)
 
     def snapshot(self) -> Snapshot:
-        """Return a snapshot of the memory, unchanged by later writes."""
+        """Return a snapshot of the memory, unchanged by later writes.
+
+        Returns
+        -------
+        Snapshot
+            Read access to the content at the time of the call; close it after use.
+        """
         return Snapshot(self.handle)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Return a lock that keeps other threads from writing."""
+        """Return a lock that keeps other threads from writing.
+
+        Returns
+        -------
+        AbstractContextManager[object]
+            Context manager that holds the lock; a thread may enter it repeatedly.
+        """
         return self.handle.writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch in one step."""
+        """Write a batch in one step.
+
+        Parameters
+        ----------
+        batch
+            Views and records to write, and those to remove.
+        sync
+            If True, the batch also survives a crash of the machine.
+
+        Raises
+        ------
+        UnknownViewError
+            If a view to forget does not exist.
+        MemoryWriteError
+            If the change cannot be written; nothing is changed then.
+        """
         with self.exclusive():
             self.handle.write(self.writing(batch), sync)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches of new views, all or none."""
+        """Write batches of new views, all or none.
+
+        Parameters
+        ----------
+        batches
+            Batches of new views, which are read one at a time. Errors that it raises are passed on.
+        new
+            Ids of all these views.
+
+        Raises
+        ------
+        MemoryWriteError
+            If the change cannot be written; nothing is changed then.
+        """
         with self.exclusive():
             self.handle.write_all(map(self.writing, batches), new)
 
     def rename(self, old: str, new: str) -> None:
-        """Rename a category."""
+        """Rename a category.
+
+        Parameters
+        ----------
+        old
+            Name of the category.
+        new
+            New name of it.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        RejectedWriteError
+            If the new name is in use.
+        """
         with self.exclusive():
             self.handle.write(self.renaming(old, new), sync=True)
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another."""
+        """Move the views of one category to another.
+
+        Parameters
+        ----------
+        source
+            Category whose views are moved; it ceases to exist.
+        into
+            Category that receives them.
+        record
+            New record of ``into``. Without it the category has no learned state, as neither old one describes these
+            views.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If one of the categories is unknown.
+        RecordError
+            If the categories are equal, or the record is of another one.
+        """
         with self.exclusive():
             self.handle.write(self.merging(source, into, record), sync=True)
 
     def forget(self, category: str) -> None:
-        """Forget a category with its views."""
+        """Forget a category with its views.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        """
         with self.exclusive():
             self.handle.write(self.forgetting(category), sync=True)
 
     # ---- the changes of these methods, to be computed and written under :meth:`exclusive`
 
     def writing(self, batch: Batch) -> WriteBatch:
-        """Return the change that writes a batch; raise as :meth:`write`."""
+        """Return the change that writes a batch.
+
+        Parameters
+        ----------
+        batch
+            Views and records to write, and those to remove.
+
+        Returns
+        -------
+        WriteBatch
+            Change for ``Handle.write``; hold :meth:`exclusive` until it is written.
+
+        Raises
+        ------
+        UnknownViewError
+            If a view to forget does not exist.
+        """
         handle, change = self.handle, WriteBatch()
         there = handle.places()
         for view_id in batch.forgotten:
@@ -186,7 +428,27 @@ class LevelMemory(Closing):
         return change
 
     def renaming(self, old: str, new: str) -> WriteBatch:
-        """Return the change that renames a category; raise as :meth:`rename`."""
+        """Return the change that renames a category.
+
+        Parameters
+        ----------
+        old
+            Name of the category.
+        new
+            New name of it.
+
+        Returns
+        -------
+        WriteBatch
+            Change for ``Handle.write``; hold :meth:`exclusive` until it is written.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        RejectedWriteError
+            If the new name is in use.
+        """
         check_name("a category's name", new)
         with self.snapshot() as now:
             record = now.category(old)
@@ -195,7 +457,29 @@ class LevelMemory(Closing):
             return _of_moving(now, old, CategoryRecord(new, record.state, record.metadata))
 
     def merging(self, source: str, into: str, record: CategoryRecord | None = None) -> WriteBatch:
-        """Return the change that moves the views of a category to another; raise as :meth:`merge`."""
+        """Return the change that moves the views of a category to another.
+
+        Parameters
+        ----------
+        source
+            Category whose views are moved; it ceases to exist.
+        into
+            Category that receives them.
+        record
+            New record of ``into``; it has no learned state by default.
+
+        Returns
+        -------
+        WriteBatch
+            Change for ``Handle.write``; hold :meth:`exclusive` until it is written.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If one of the categories is unknown.
+        RecordError
+            If the categories are equal, or the record is of another one.
+        """
         check_merging(source, into, record)
         with self.snapshot() as now:
             now.require(into)
@@ -203,7 +487,23 @@ class LevelMemory(Closing):
             return _of_moving(now, source, record or CategoryRecord(into))
 
     def forgetting(self, category: str) -> WriteBatch:
-        """Return the change that forgets a category with its views; raise as :meth:`forget`."""
+        """Return the change that forgets a category with its views.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Returns
+        -------
+        WriteBatch
+            Change for ``Handle.write``; hold :meth:`exclusive` until it is written.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        """
         with self.snapshot() as now:
             now.require(category)
             change = WriteBatch()

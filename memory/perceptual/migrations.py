@@ -26,6 +26,13 @@ def reseal(old: plyvel.DB, new: plyvel.DB) -> None:
 
     A value that does not match its checksum is copied unchanged, so that it stays damaged and is reported. LevelDB's
     checksums are not checked: a mismatch would keep the other values from being read.
+
+    Parameters
+    ----------
+    old
+        Database of version 1.
+    new
+        Empty database.
     """
     for key, value in old.iterator():
         kind = key[:1]

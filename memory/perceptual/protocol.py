@@ -50,38 +50,132 @@ class PerceptualReading(Protocol):
     """Read access to a memory. Lists are ordered by category, then view; arrays are read one view at a time."""
 
     def view(self, id: str) -> View:
-        """Return one view. Raises UnknownViewError; DamagedMemoryError where the view is damaged."""
+        """Return one view.
+
+        Parameters
+        ----------
+        id
+            Id of the view.
+
+        Returns
+        -------
+        View
+            View with its arrays.
+
+        Raises
+        ------
+        UnknownViewError
+            If there is no such view.
+        DamagedMemoryError
+            If the view is damaged.
+        """
         ...
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Return all views, or those of a category, as they are at the time of the call.
+        """Return all views, or those of a category.
 
-        Raises UnknownCategoryError; DamagedMemoryError at a damaged view.
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        View
+            Views in the order of category and id, as they are at the time of the call.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        DamagedMemoryError
+            At a damaged view.
         """
         ...
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of the views that :meth:`views` returns, without reading arrays."""
+        """Iterate over category, id and time of the views that :meth:`views` returns, without reading arrays.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        ViewKey
+            Category, id and time of each view, in the order of :meth:`views`.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         ...
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of all categories that have a view or a record, in order."""
+        """Return the names of all categories that have a view or a record, in order.
+
+        Returns
+        -------
+        tuple of str
+            Names in order, of categories with a view or a record.
+        """
         ...
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category, with no arrays where nothing was learned. Raises UnknownCategoryError."""
+        """Return the record of a category.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Returns
+        -------
+        CategoryRecord
+            Record; its state is empty if nothing was learned.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         ...
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id."""
+        """Return the lesson of each view that belongs to one, by the view's id.
+
+        Returns
+        -------
+        dict
+            Ids of lessons by the ids of views.
+        """
         ...
 
     def stats(self) -> PerceptualStats:
-        """Return the size of the memory."""
+        """Return the size of the memory.
+
+        Returns
+        -------
+        PerceptualStats
+            Numbers of views, categories and batches, and the size in bytes.
+        """
         ...
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Read everything, and return what differs from what was written; an empty tuple where nothing does."""
+        """Read everything, and return what differs from what was written; an empty tuple where nothing does.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done, and the number of all views.
+
+        Returns
+        -------
+        tuple of Finding
+            One finding for each damaged place; empty for a sound memory.
+        """
         ...
 
     def close(self) -> None:
@@ -99,40 +193,113 @@ class PerceptualMemory(PerceptualReading, Protocol):
     """Read and write access to a memory. Each call is one step, all or nothing. Threads may share a memory."""
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch, so that it survives the end of this process; with ``sync``, also that of the machine.
+        """Write a batch, so that it survives the end of this process.
 
-        Raises UnknownViewError where a view to forget does not exist, MemoryWriteError where the batch cannot be
-        written; nothing is changed then.
+        Parameters
+        ----------
+        batch
+            Views and records to write, and those to remove.
+        sync
+            If True, the batch also survives a crash of the machine.
+
+        Raises
+        ------
+        UnknownViewError
+            If a view to forget does not exist.
+        MemoryWriteError
+            If the change cannot be written; nothing is changed then.
         """
         ...
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches of new views with the ids ``new``: all of them or none.
+        """Write batches of new views: all of them or none.
 
-        Only one of the batches is held at a time. Raises as :meth:`write`, and whatever ``batches`` raises.
+        Parameters
+        ----------
+        batches
+            Batches of new views, which are read one at a time. Errors that it raises are passed on.
+        new
+            Ids of all these views.
+
+        Raises
+        ------
+        MemoryWriteError
+            If the change cannot be written; nothing is changed then.
         """
         ...
 
     def rename(self, old: str, new: str) -> None:
-        """Rename a category. Raises UnknownCategoryError; RejectedWriteError where the new name is in use."""
+        """Rename a category.
+
+        Parameters
+        ----------
+        old
+            Name of the category.
+        new
+            New name of it.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        RejectedWriteError
+            If the new name is in use.
+        """
         ...
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another, and replace the record of that with ``record``.
+        """Move the views of one category to another.
 
-        Without a record the category has no learned state, as neither old one describes these views. Raises
-        UnknownCategoryError; RecordError where the record is of another category.
+        Parameters
+        ----------
+        source
+            Category whose views are moved; it ceases to exist.
+        into
+            Category that receives them.
+        record
+            New record of ``into``. Without it the category has no learned state, as neither old one describes these
+            views.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If one of the categories is unknown.
+        RecordError
+            If the categories are equal, or the record is of another one.
         """
         ...
 
     def forget(self, category: str) -> None:
-        """Forget a category with all its views. Raises UnknownCategoryError."""
+        """Forget a category with all its views.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        """
         ...
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Return a lock that keeps other threads from writing, for a read followed by a write."""
+        """Return a lock that keeps other threads from writing, for a read followed by a write.
+
+        Returns
+        -------
+        AbstractContextManager[object]
+            Context manager that holds the lock; a thread may enter it repeatedly.
+        """
         ...
 
     def snapshot(self) -> PerceptualReading:
-        """Return a snapshot of the memory, unchanged by later writes, until it is closed."""
+        """Return a snapshot of the memory, unchanged by later writes, until it is closed.
+
+        Returns
+        -------
+        PerceptualReading
+            Read access to the content at the time of the call; close it after use.
+        """
         ...

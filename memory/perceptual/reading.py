@@ -67,17 +67,50 @@ class Snapshot(Closing):
         return self._source
 
     def get(self, key: bytes) -> bytes | None:
-        """Return a value, or None."""
+        """Return a value, or None.
+
+        Parameters
+        ----------
+        key
+            Key of the value.
+
+        Returns
+        -------
+        bytes or None
+            Value with its checksum.
+        """
         with self._handle:
             value: bytes | None = self._open.get(key, verify_checksums=True)
             return value
 
     def pairs(self, begin: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Iterate over the keys with a prefix, with their values, in order."""
+        """Iterate over the keys with a prefix, with their values, in order.
+
+        Parameters
+        ----------
+        begin
+            Prefix of the keys.
+
+        Yields
+        ------
+        tuple
+            Key and value, which has its checksum.
+        """
         return self._walk(_same, prefix=begin)
 
     def bare_keys(self, begin: bytes) -> Iterator[bytes]:
-        """Iterate over the keys with a prefix, in order."""
+        """Iterate over the keys with a prefix, in order.
+
+        Parameters
+        ----------
+        begin
+            Prefix of the keys.
+
+        Yields
+        ------
+        bytes
+            Keys, without reading the values.
+        """
         return self._walk(_same, prefix=begin, include_value=False)
 
     def _walk(self, made: Callable[[Any], Any], **what: Any) -> Iterator[Any]:
@@ -96,7 +129,20 @@ class Snapshot(Closing):
             self._handle.let_go(found)
 
     def first_after(self, key: bytes, kind: bytes) -> tuple[bytes, bytes] | None:
-        """Return the first key of a kind at or after a key, with its value."""
+        """Return the first key of a kind at or after a key, with its value.
+
+        Parameters
+        ----------
+        key
+            Key to start from.
+        kind
+            First byte of the keys.
+
+        Returns
+        -------
+        tuple or None
+            Key and value; None if there is no such key.
+        """
         with (
             self._handle,
             self._open.iterator(start=key, stop=keys.after(kind), verify_checksums=True) as found,
@@ -105,7 +151,25 @@ class Snapshot(Closing):
             return pair
 
     def about(self, view_id: str) -> ViewHeader | None:
-        """Return the header of a view, or None."""
+        """Return the header of a view, or None.
+
+        Parameters
+        ----------
+        view_id
+            Id of the view.
+
+        Returns
+        -------
+        ViewHeader or None
+            Header at the time of the snapshot.
+
+        Raises
+        ------
+        RecordError
+            If the id is not valid.
+        DamagedMemoryError
+            If the header is damaged.
+        """
         place = self._handle.place_of(check_name("a view's id", view_id))
         said = None if place is None else self.about_at(place)
         if said is None:  # at the time of the snapshot it was elsewhere, or did not exist
@@ -114,7 +178,23 @@ class Snapshot(Closing):
         return said
 
     def about_at(self, key: bytes) -> ViewHeader | None:
-        """Return the header of the view with this key, or None."""
+        """Return the header of the view with this key, or None.
+
+        Parameters
+        ----------
+        key
+            Key of the header.
+
+        Returns
+        -------
+        ViewHeader or None
+            Header at the time of the snapshot.
+
+        Raises
+        ------
+        DamagedMemoryError
+            If the header is damaged.
+        """
         sealed = self.get(key)
         return None if sealed is None else read_about(key, sealed)
 
@@ -128,19 +208,71 @@ class Snapshot(Closing):
             return self._then.by_id
 
     def view(self, id: str) -> View:
-        """Return one view; see :class:`deixis.memory.perceptual.protocol.PerceptualReading`, also for what follows."""
+        """Return one view.
+
+        Parameters
+        ----------
+        id
+            Id of the view.
+
+        Returns
+        -------
+        View
+            View with its arrays.
+
+        Raises
+        ------
+        UnknownViewError
+            If there is no such view.
+        DamagedMemoryError
+            If the view is damaged.
+        """
         said = self.about(id)
         if said is None:
             raise unknown_view(id)
         return self.view_of(said)
 
     def view_of(self, said: ViewHeader) -> View:
-        """Return a view from its header."""
+        """Return a view from its header.
+
+        Parameters
+        ----------
+        said
+            Header of the view.
+
+        Returns
+        -------
+        View
+            View with its arrays.
+
+        Raises
+        ------
+        DamagedMemoryError
+            If the arrays are missing or damaged.
+        """
         with self._handle:
             return stored_arrays(self._open, said)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over the views, reading them one by one."""
+        """Iterate over the views, reading them one by one.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        View
+            Views in the order of category and id, as they are at the time of the call.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        DamagedMemoryError
+            At a damaged view.
+        """
         return self._views(self._beginning(category))
 
     def _views(self, begin: bytes) -> Iterator[View]:
@@ -162,7 +294,23 @@ class Snapshot(Closing):
         return read_view(said, arrays if found == key else None)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays."""
+        """Iterate over category, id and time of views, without reading arrays.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        ViewKey
+            Category, id and time of each view, in the order of :meth:`views`.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         found = (read_about(*pair) for pair in self.pairs(self._beginning(category)))
         return (ViewKey(said.category, said.id, keys.moment(said.time)) for said in found)
 
@@ -173,7 +321,13 @@ class Snapshot(Closing):
         return keys.category_prefix(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of the categories, with one look-up each, however many views they have."""
+        """Return the names of the categories, with one look-up each, however many views they have.
+
+        Returns
+        -------
+        tuple of str
+            Names in order, of categories with a view or a record.
+        """
         names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
         pair = self.first_after(keys.VIEW, keys.VIEW)
         while pair is not None:
@@ -183,13 +337,45 @@ class Snapshot(Closing):
         return tuple(sorted(names))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category."""
+        """Return the record of a category.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Returns
+        -------
+        CategoryRecord
+            Record; its state is empty if nothing was learned.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         self.require(name)
         sealed = self.get(keys.name_key(keys.CATEGORY, name))
         return CategoryRecord(name) if sealed is None else read_category(name, sealed)
 
     def has(self, category: str) -> bool:
-        """Return whether a category has a view or a record."""
+        """Return whether a category has a view or a record.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Returns
+        -------
+        bool
+            False for a category that was never taught.
+
+        Raises
+        ------
+        RecordError
+            If the name is not valid.
+        """
         check_name("a category's name", category)
         if self.get(keys.name_key(keys.CATEGORY, category)) is not None:
             return True
@@ -198,20 +384,54 @@ class Snapshot(Closing):
         return pair is not None and pair[0].startswith(begin)
 
     def require(self, category: str) -> None:
-        """Raise UnknownCategoryError, naming the nearest, where the category is unknown."""
+        """Raise UnknownCategoryError, naming the nearest category, if a category is unknown.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category has no view and no record.
+        """
         if not self.has(category):
             raise unknown_category(category, self.categories())
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id."""
+        """Return the lesson of each view that belongs to one, by the view's id.
+
+        Returns
+        -------
+        dict
+            Ids of lessons by the ids of views.
+        """
         return {key[1:].decode(): read_name(key, sealed) for key, sealed in self.pairs(keys.LESSON)}
 
     def counts(self) -> StoreCounts:
-        """Return the counts in the snapshot."""
+        """Return the counts in the snapshot.
+
+        Returns
+        -------
+        StoreCounts
+            Counts of batches and views.
+
+        Raises
+        ------
+        DamagedMemoryError
+            If the counts are damaged.
+        """
         return read_counts(self.get(keys.COUNT))
 
     def stats(self) -> PerceptualStats:
-        """Return the counts, and the bytes on the disk."""
+        """Return the counts, and the bytes on the disk.
+
+        Returns
+        -------
+        PerceptualStats
+            Numbers of views, categories and batches, and the size in bytes.
+        """
         counts = self.counts()
         return PerceptualStats(
             views=counts.views,
@@ -223,15 +443,36 @@ class Snapshot(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return everything that differs from what was written."""
+        """Return everything that differs from what was written.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done, and the number of all views.
+
+        Returns
+        -------
+        tuple of Finding
+            One finding for each damaged place; empty for a sound memory.
+        """
         return tuple(_findings(self, progress))
 
 
 def glance(db: Any, place: bytes) -> View | None:
     """Return a view by the key of its header, without a snapshot.
 
-    Return None where it does not exist, is damaged, or was written by another thread in between, so that the checksum
-    of the arrays differs from the one in the header.
+    Parameters
+    ----------
+    db
+        ``plyvel.DB`` of the memory.
+    place
+        Key of the header.
+
+    Returns
+    -------
+    View or None
+        View; None if it does not exist, is damaged, or was written by another thread in between, so that the checksum
+        of the arrays differs from the one in the header.
     """
     sealed = db.get(place, verify_checksums=True)
     if sealed is None:
@@ -247,6 +488,23 @@ def stored_arrays(source: Any, said: ViewHeader) -> View:
     """Return a view from its header and a database or a snapshot.
 
     Only arrays are read without LevelDB's checksums: the checksum in the header is stronger and covers the key.
+
+    Parameters
+    ----------
+    source
+        ``plyvel.DB``, or a snapshot of one.
+    said
+        Header of the view.
+
+    Returns
+    -------
+    View
+        View with its arrays.
+
+    Raises
+    ------
+    DamagedMemoryError
+        If the arrays are missing or damaged.
     """
     return read_view(said, source.get(said.arrays_key, fill_cache=False))
 
@@ -256,12 +514,36 @@ def _same(item: Any) -> Any:
 
 
 def unknown_view(id: str) -> UnknownViewError:
-    """Return the error for an unknown view."""
+    """Return the error for an unknown view.
+
+    Parameters
+    ----------
+    id
+        Id of the view.
+
+    Returns
+    -------
+    UnknownViewError
+        Error to raise.
+    """
     return UnknownViewError(f"no view '{id}' in this memory")
 
 
 def unknown_category(name: str, known: tuple[str, ...]) -> UnknownCategoryError:
-    """Return the error for an unknown category."""
+    """Return the error for an unknown category.
+
+    Parameters
+    ----------
+    name
+        Name of the category.
+    known
+        Names of the known categories.
+
+    Returns
+    -------
+    UnknownCategoryError
+        Error that names the nearest category, or lists some of them.
+    """
     near = nearest(name, known)
     listed = ", ".join(known[:MAX_LISTED]) + (", among others" if len(known) > MAX_LISTED else "")
     others = f"the memory has: {listed}" if known else "the memory has no categories yet"

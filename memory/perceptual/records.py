@@ -109,7 +109,18 @@ class View:
 
     @classmethod
     def stored(cls, **values: Any) -> View:
-        """Return a view without checks, from values that were checked when they were written."""
+        """Return a view without checks, from values that were checked when they were written.
+
+        Parameters
+        ----------
+        values
+            Value of each attribute, by its name. Arrays must be read-only.
+
+        Returns
+        -------
+        View
+            View that shares its arrays with ``values``.
+        """
         view = object.__new__(cls)
         object.__setattr__(view, "__dict__", values)
         return view
@@ -167,13 +178,42 @@ class Batch:
 def arrays_by_name(
     descriptors: Mapping[str, NDArray[np.float32]], points: NDArray[np.float32] | None
 ) -> dict[str, NDArray[np.float32]]:
-    """Return the arrays of a view by their storage names."""
+    """Return the arrays of a view by their storage names.
+
+    Parameters
+    ----------
+    descriptors
+        Descriptors of shape (k, d), by name.
+    points
+        Points of shape (n, 3), in metres; None if there are none.
+
+    Returns
+    -------
+    dict
+        Descriptors and points in one dictionary.
+    """
     arrays = {_DESCRIPTOR + name: array for name, array in descriptors.items()}
     return arrays if points is None else {**arrays, _POINTS: points}
 
 
 def arrays_by_use(arrays: dict[str, NDArray[Any]]) -> tuple[dict[str, NDArray[Any]], NDArray[Any] | None]:
-    """Return descriptors and points from arrays by their storage names. Raises ValueError for other names."""
+    """Return descriptors and points from arrays by their storage names.
+
+    Parameters
+    ----------
+    arrays
+        Arrays as :func:`arrays_by_name` returned them.
+
+    Returns
+    -------
+    tuple
+        Descriptors by name, and points or None.
+
+    Raises
+    ------
+    ValueError
+        If an array has another name.
+    """
     names = _uses(tuple(arrays))
     descriptors = {name: array for name, array in zip(names, arrays.values(), strict=True) if name}
     return descriptors, None if len(descriptors) == len(names) else arrays[_POINTS]
@@ -188,12 +228,41 @@ def _uses(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def json_text(metadata: Json) -> str:
-    """Return metadata as JSON."""
+    """Return metadata as JSON.
+
+    Parameters
+    ----------
+    metadata
+        Object of JSON values.
+
+    Returns
+    -------
+    str
+        JSON; the stored text if the metadata come from the memory.
+    """
     return metadata.text if isinstance(metadata, JsonObject) else json.dumps(dict(metadata))
 
 
 def check_name(what: str, name: object) -> str:
-    """Return the name; raise RecordError unless it is a text of one or more characters that UTF-8 can encode."""
+    """Return the name if it is a text of one or more characters that UTF-8 can encode.
+
+    Parameters
+    ----------
+    what
+        Noun for errors, such as ``a view's id``.
+    name
+        Name to check.
+
+    Returns
+    -------
+    str
+        The given name.
+
+    Raises
+    ------
+    RecordError
+        If the name is not a text, is empty or too long, or has half a character.
+    """
     if not isinstance(name, str) or not name:
         raise RecordError(f"{what} must be a text of one or more characters, got {name!r}")
     try:
@@ -206,7 +275,22 @@ def check_name(what: str, name: object) -> str:
 
 
 def check_merging(source: str, into: str, record: CategoryRecord | None) -> None:
-    """Raise RecordError where a category is merged into itself, or with a record of another category."""
+    """Raise RecordError if a category is merged into itself, or with a record of another category.
+
+    Parameters
+    ----------
+    source
+        Category whose views are moved.
+    into
+        Category that receives them.
+    record
+        New record of ``into``.
+
+    Raises
+    ------
+    RecordError
+        If the categories are equal, or the record has another name.
+    """
     if source == into:
         raise RecordError(f"'{source}' cannot be merged into itself; name two categories")
     if record is not None and record.name != into:
@@ -214,14 +298,38 @@ def check_merging(source: str, into: str, record: CategoryRecord | None) -> None
 
 
 def name_taken(old: str, new: str) -> RejectedWriteError:
-    """Return the error for a new name that another category has."""
+    """Return the error for a new name that another category has.
+
+    Parameters
+    ----------
+    old
+        Name of the category.
+    new
+        Name that it should get.
+
+    Returns
+    -------
+    RejectedWriteError
+        Error that says to merge the two.
+    """
     if old == new:
         return RejectedWriteError(f"the category already has the name '{old}'")
     return RejectedWriteError(f"there is already a category '{new}': merge '{old}' into it")
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a contiguous, little-endian, read-only copy of an array."""
+    """Return a contiguous, little-endian, read-only copy of an array.
+
+    Parameters
+    ----------
+    array
+        Array of any shape and type.
+
+    Returns
+    -------
+    ndarray
+        Copy of an equal shape.
+    """
     copy = np.array(array, array.dtype.newbyteorder("<"), order="C")
     copy.flags.writeable = False
     return copy

@@ -51,14 +51,46 @@ class TransientReading(Closing):
         return self._kept
 
     def view(self, id: str) -> View:
-        """Return one view."""
+        """Return one view.
+
+        Parameters
+        ----------
+        id
+            Id of the view.
+
+        Returns
+        -------
+        View
+            View with its arrays.
+
+        Raises
+        ------
+        UnknownViewError
+            If there is no such view.
+        """
         check_name("a view's id", id)
         if id not in self._content.views:
             raise unknown_view(id)
         return self._content.views[id]
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over views in order."""
+        """Iterate over views in order.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        View
+            Views in the order of category and id, as they are at the time of the call.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         found = [view for view in self._content.views.values() if category is None or view.category == category]
         if category is not None and not found:
             self._require(category)
@@ -70,15 +102,53 @@ class TransientReading(Closing):
             yield view
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays."""
+        """Iterate over category, id and time of views, without reading arrays.
+
+        Parameters
+        ----------
+        category
+            Name of a category; all categories by default.
+
+        Yields
+        ------
+        ViewKey
+            Category, id and time of each view, in the order of :meth:`views`.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         return (ViewKey(view.category, view.id, view.time) for view in self.views(category))
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of all categories."""
+        """Return the names of all categories.
+
+        Returns
+        -------
+        tuple of str
+            Names in order, of categories with a view or a record.
+        """
         return tuple(sorted({view.category for view in self._content.views.values()} | set(self._content.records)))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category."""
+        """Return the record of a category.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Returns
+        -------
+        CategoryRecord
+            Record; its state is empty if nothing was learned.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If the category is unknown.
+        """
         self._require(name)
         return self._content.records.get(name, CategoryRecord(name))
 
@@ -88,11 +158,23 @@ class TransientReading(Closing):
             raise unknown_category(category, self.categories())
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id."""
+        """Return the lesson of each view that belongs to one, by the view's id.
+
+        Returns
+        -------
+        dict
+            Ids of lessons by the ids of views.
+        """
         return dict(self._content.lessons)
 
     def stats(self) -> PerceptualStats:
-        """Return the size of the memory; its bytes are those of the arrays."""
+        """Return the size of the memory.
+
+        Returns
+        -------
+        PerceptualStats
+            Numbers of views, categories and batches, and the bytes of the descriptors.
+        """
         arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
         return PerceptualStats(
             views=len(self._content.views),
@@ -104,7 +186,18 @@ class TransientReading(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return an empty tuple: dictionaries are never damaged."""
+        """Return no findings, because dictionaries are never damaged.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done, and the number of all views.
+
+        Returns
+        -------
+        tuple of Finding
+            Empty.
+        """
         _ = self._content
         return ()
 
@@ -117,15 +210,40 @@ class TransientMemory(TransientReading):
         self._writing = threading.RLock()
 
     def snapshot(self) -> TransientReading:
-        """Return a snapshot of the memory, unchanged by later writes."""
+        """Return a snapshot of the memory, unchanged by later writes.
+
+        Returns
+        -------
+        TransientReading
+            Read access to the content at the time of the call.
+        """
         return TransientReading(self._content)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Return a lock that keeps other threads from writing."""
+        """Return a lock that keeps other threads from writing.
+
+        Returns
+        -------
+        AbstractContextManager[object]
+            Context manager that holds the lock; a thread may enter it repeatedly.
+        """
         return self._writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch in one step."""
+        """Write a batch in one step.
+
+        Parameters
+        ----------
+        batch
+            Views and records to write, and those to remove.
+        sync
+            Ignored: the memory ends with the process.
+
+        Raises
+        ------
+        UnknownViewError
+            If a view to forget does not exist.
+        """
         with self._writing:
             views, records = dict(self._content.views), dict(self._content.records)
             for view_id in batch.forgotten:
@@ -144,7 +262,15 @@ class TransientMemory(TransientReading):
             self._keep(views, records, lessons)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches of new views, all or none."""
+        """Write batches of new views, all or none.
+
+        Parameters
+        ----------
+        batches
+            Batches of new views, which are read one at a time. Errors that it raises are passed on.
+        new
+            Ids of all these views.
+        """
         with self._writing:
             before = self._content
             try:
@@ -155,7 +281,22 @@ class TransientMemory(TransientReading):
                 raise
 
     def rename(self, old: str, new: str) -> None:
-        """Rename a category."""
+        """Rename a category.
+
+        Parameters
+        ----------
+        old
+            Name of the category.
+        new
+            New name of it.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        RejectedWriteError
+            If the new name is in use.
+        """
         check_name("a category's name", new)
         with self._writing:
             record = self.category(old)
@@ -164,7 +305,25 @@ class TransientMemory(TransientReading):
             self._move(old, CategoryRecord(new, record.state, record.metadata))
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another."""
+        """Move the views of one category to another.
+
+        Parameters
+        ----------
+        source
+            Category whose views are moved; it ceases to exist.
+        into
+            Category that receives them.
+        record
+            New record of ``into``. Without it the category has no learned state, as neither old one describes these
+            views.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If one of the categories is unknown.
+        RecordError
+            If the categories are equal, or the record is of another one.
+        """
         check_merging(source, into, record)
         with self._writing:
             self._require(into)
@@ -172,7 +331,18 @@ class TransientMemory(TransientReading):
             self._move(source, record or CategoryRecord(into))
 
     def forget(self, category: str) -> None:
-        """Forget a category with its views."""
+        """Forget a category with its views.
+
+        Parameters
+        ----------
+        category
+            Name of the category.
+
+        Raises
+        ------
+        UnknownCategoryError
+            If there is no such category.
+        """
         with self._writing:
             self._require(category)
             views = {view_id: view for view_id, view in self._content.views.items() if view.category != category}

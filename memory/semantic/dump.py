@@ -120,7 +120,7 @@ def read_dump(file: Path) -> Dump:
     Parameters
     ----------
     file
-        The file.
+        File in TriG, N-Quads, Turtle, N-Triples or RDF/XML; its ending names the format.
 
     Returns
     -------

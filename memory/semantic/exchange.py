@@ -40,7 +40,7 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
     Parameters
     ----------
     memory
-        The memory.
+        Open memory.
     format
         ``trig`` is exact: it has every graph, and which lesson contributed what. ``turtle`` merges the ontology with
         the asserted, inferred and learned graphs and the episodes into one graph, for tools such as Protégé and
@@ -49,7 +49,7 @@ def export_memory(memory: SemanticMemory, format: str = "trig") -> str:
     Returns
     -------
     str
-        The text.
+        Document in TriG or Turtle.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def with_named_individuals(triples: Sequence[ox.Triple]) -> Iterator[ox.Triple]:
     Parameters
     ----------
     triples
-        The triples.
+        Triples of the document.
 
     Yields
     ------
     ox.Triple
-        A triple.
+        The given triples, with the declarations.
     """
     yield from triples
     typed = [(t.subject, t.object) for t in triples if t.predicate == TYPE and isinstance(t.object, ox.NamedNode)]
@@ -101,7 +101,7 @@ def import_dump(file: str | Path, target: str | Path) -> None:
     Parameters
     ----------
     file
-        The file.
+        File in TriG, N-Quads, Turtle, N-Triples or RDF/XML; its ending names the format.
     target
         Path of the memory.
 
@@ -133,7 +133,7 @@ def merging_dump(memory: SemanticMemory, file: Path) -> Change:
     memory
         The open memory.
     file
-        The file.
+        File in TriG, N-Quads, Turtle, N-Triples or RDF/XML; its ending names the format.
 
     Returns
     -------

@@ -51,7 +51,13 @@ class Opened:
         self.store = open_store(self.folder)
 
     def require_writable(self) -> None:
-        """Raise ReadOnlyMemoryError if this is open for reading only."""
+        """Raise ReadOnlyMemoryError if this is open for reading only.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        """
         if self.read_only is not None:
             raise ReadOnlyMemoryError(self.read_only)
 
@@ -117,6 +123,13 @@ def open_store(folder: Path) -> ox.Store:
     -------
     ox.Store
         The store.
+
+    Raises
+    ------
+    MemoryBusyError
+        If an iterator of this process still reads the store.
+    MemoryWriteError
+        If the store cannot be opened for another reason.
     """
     try:
         return ox.Store(folder / files.STORE)
@@ -134,7 +147,7 @@ def _fill(store: ox.Store) -> None:
 
 
 def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _fill) -> Opened:
-    """Open a memory, or make one; raise as ``SemanticMemory.open``.
+    """Open a memory, or make one.
 
     Parameters
     ----------
@@ -149,6 +162,15 @@ def open_memory(folder: Path, create: bool, fill: Callable[[ox.Store], None] = _
     -------
     Opened
         The store with its lock.
+
+    Raises
+    ------
+    MemoryBusyError
+        If another process has the memory open.
+    MemoryFormatError
+        If there is no memory, or its files are invalid.
+    MemoryWriteError
+        If the folder cannot be made or written.
     """
     begin_opening(folder)
     remove_stale()

@@ -33,7 +33,7 @@ def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
     Parameters
     ----------
     store
-        The store.
+        Store of the memory.
     folder
         The folder of the memory.
     lessons
@@ -42,7 +42,7 @@ def count(store: ox.Store, folder: Path, lessons: int) -> MemoryStats:
     Returns
     -------
     MemoryStats
-        The counts.
+        Numbers of lessons, triples and things, and the size on the disk.
     """
     learned, asserted = graph_iri(GraphName.LEARNED), graph_iri(GraphName.ASSERTED)
     return MemoryStats(

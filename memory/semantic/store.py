@@ -74,6 +74,11 @@ def load_aside(opened: Opened, contributions: Mapping[GraphName, Iterable[ox.Tri
         The open memory, whose store is replaced.
     contributions
         Triples by graph.
+
+    Raises
+    ------
+    RejectedWriteError
+        If a triple is in the inferred graph, or the store would break the shapes.
     """
     from deixis.memory.semantic.validation.validate import check_store
 
@@ -578,7 +583,7 @@ class SemanticMemory(Closing):
         Parameters
         ----------
         change
-            The change.
+            Triples to add and to remove, with the operations that do so.
         kept_up
             Rules by which the inferred graph and the statistics are up to date after the change; see :meth:`kept_up`.
             Without them they must be recomputed.

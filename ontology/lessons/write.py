@@ -235,7 +235,20 @@ def fact_iri(lesson: str, position: int) -> str:
 
 
 def claim_iri(lesson: str, position: int) -> str:
-    """Return the IRI of the statement of a layout's claim; ``position`` counts from 1."""
+    """Return the IRI of the statement of a layout's claim.
+
+    Parameters
+    ----------
+    lesson
+        Identifier of the lesson.
+    position
+        Position of the claim among the layout's claims, from 1.
+
+    Returns
+    -------
+    str
+        IRI below the namespace of learned things.
+    """
     return learned_iri("layout", lesson, "claim", position)
 
 

@@ -108,6 +108,18 @@ def listed_words(known: Mapping[str, Kind], text: str | None = None) -> frozense
 
     It takes a tenth of the time of :func:`read_nouns`, and shows for which words that is needed: not for those that
     only repeat a word of the TBox (``known``) as the noun above others.
+
+    Parameters
+    ----------
+    known
+        Kinds of the TBox by word.
+    text
+        Text in the format of ``nouns.txt``; the shipped file by default.
+
+    Returns
+    -------
+    frozenset of str
+        The words as they are written, and again without spaces and apostrophes.
     """
     words: set[str] = set()
     for raw in (NOUNS_FILE.read_text(encoding="utf-8") if text is None else text).splitlines():

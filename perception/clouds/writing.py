@@ -24,7 +24,7 @@ def pcd_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
     Parameters
     ----------
     cloud
-        The cloud.
+        Cloud in metres.
     encoding
         ``ascii``, ``binary`` or ``binary_compressed``.
 
@@ -63,7 +63,7 @@ def ply_bytes(cloud: PointCloud, encoding: str) -> Iterator[bytes]:
     Parameters
     ----------
     cloud
-        The cloud.
+        Cloud in metres.
     encoding
         ``ascii`` or ``binary``.
 

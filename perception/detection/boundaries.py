@@ -36,7 +36,23 @@ class Boundaries:
 
 
 def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettings) -> Boundaries:
-    """Return the boundaries between the patches of a surface, with their evidence for two objects."""
+    """Return the boundaries between the patches of a surface, with their evidence for two objects.
+
+    Parameters
+    ----------
+    surface
+        Surface of n points.
+    patches
+        Its s patches.
+    settings
+        Concave angle in radians and step in metres that are evidence 1, and the evidence of a jump.
+
+    Returns
+    -------
+    Boundaries
+        The m pairs of patches that meet, with their lengths, their evidence, and the fraction of each boundary at which
+        the depth jumps.
+    """
     from deixis.perception.detection.kernels import meetings
 
     limits = settings.boundaries
@@ -54,7 +70,20 @@ def boundaries(surface: Surface, patches: Supervoxels, settings: DetectionSettin
 
 
 def creases(patches: Supervoxels, pairs: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the concave angle between the patches of each pair in radians, shape (m,); 0 where they meet convexly."""
+    """Return the concave angle between the patches of each pair in radians, shape (m,); 0 where they meet convexly.
+
+    Parameters
+    ----------
+    patches
+        Patches of the surface.
+    pairs
+        Indices of two patches each, shape (m, 2).
+
+    Returns
+    -------
+    ndarray
+        Angles in [0, pi].
+    """
     i, j = pairs.T
     cosine = (patches.normals[i] * patches.normals[j]).sum(axis=1)
     opening = ((patches.normals[i] - patches.normals[j]) * (patches.middles[i] - patches.middles[j])).sum(axis=1)
@@ -65,7 +94,21 @@ def steps(patches: Supervoxels, pairs: NDArray[np.int64], off_edge_share: float)
     """Return the distance of the two patches of each pair along their mean normal in metres, shape (m,).
 
     It is 0 on a sphere. For two planes that meet at an angle, it is 0 only if both middles are equally far from the
-    edge; ``off_edge_share`` is the tolerated difference of these distances, relative to their sum.
+    edge.
+
+    Parameters
+    ----------
+    patches
+        Patches of the surface.
+    pairs
+        Indices of two patches each, shape (m, 2).
+    off_edge_share
+        Tolerated difference of the distances of the middles from the edge, relative to their sum.
+
+    Returns
+    -------
+    ndarray
+        Distances that are at least 0.
     """
     i, j = pairs.T
     normal = patches.normals[i] + patches.normals[j]
@@ -83,11 +126,32 @@ def agglomerated(
     """Return the region of each of s patches, shape (s,), numbered from 0 in the order of their first patches.
 
     The evidence between two regions is the mean over their common boundary (average linkage). The pair with the least
-    evidence is merged as long as it is below ``merge_limit``; ties go to the pair with the lower numbers. ``colours``
-    (s, 3), with their ``weights`` (s,) in a mean, only change the order of the merges. Where a knife ends on the rim of
-    a plate, only the colour separates the two; once the rim is whole, other evidence along the knife separates them.
-    Regions of several colours are still merged, such as the prints on a box.
+    evidence is merged as long as it is below ``merge_limit``; ties go to the pair with the lower numbers.
 
+    Parameters
+    ----------
+    meeting
+        Boundaries between the patches.
+    colours
+        Colour of each patch, shape (s, 3).
+    weights
+        Weight of each colour in a mean, shape (s,).
+    settings
+        Limit of the evidence of merges, and the evidence by which colours delay them.
+
+    Returns
+    -------
+    ndarray
+        Regions from 0 without gaps, shape (s,).
+
+    Notes
+    -----
+    Colours only change the order of the merges. Where a knife ends on the rim of a plate, only the colour separates the
+    two; once the rim is whole, other evidence along the knife separates them. Regions of several colours are still
+    merged, such as the prints on a box.
+
+    Examples
+    --------
     >>> chain = Boundaries(np.array([[0, 1], [1, 2]]), np.ones(2), np.array([0.1, 0.9]), np.zeros(2))
     >>> agglomerated(chain, np.zeros((3, 3)), np.ones(3), BoundarySettings(merge_limit=0.5)).tolist()
     [0, 0, 1]

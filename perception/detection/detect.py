@@ -79,7 +79,20 @@ class Detection:
     upright: bool = True
 
     def scene(self, viewpoint: str = "chair", file: str = "<cloud>") -> Scene:
-        """Return the objects as a scene, with their points in the frame of the table; errors name ``file``."""
+        """Return the objects as a scene, with their points in the frame of the table.
+
+        Parameters
+        ----------
+        viewpoint
+            Name of the side from which the camera looks.
+        file
+            Name of the source, which errors mention.
+
+        Returns
+        -------
+        Scene
+            Objects ``o1``, ``o2`` and so on in the order of the labels, with boxes in metres.
+        """
         boxes = zip(self.boxes.round(6).tolist(), self.oriented, strict=True)
         things = [
             PerceivedObject(
@@ -114,6 +127,11 @@ def detect(
         Options and thresholds; the default ones if None.
     stage
         Called with the name of each of ``DETECTION_STAGES`` that begins.
+
+    Returns
+    -------
+    Detection
+        Frame of the table, a label for each point, and a box for each object, in metres.
 
     Raises
     ------
@@ -396,7 +414,20 @@ def _pieces(
 
 
 def segments(surface: Surface, settings: DetectionSettings) -> NDArray[np.int32]:
-    """Return the object of each point of a surface, shape (n,), from 0: supervoxels are merged, then joined."""
+    """Return the object of each point of a surface, shape (n,), from 0: supervoxels are merged, then joined.
+
+    Parameters
+    ----------
+    surface
+        Surface of n points above the table.
+    settings
+        Thresholds of supervoxels, boundaries and joining.
+
+    Returns
+    -------
+    ndarray
+        Object numbers of shape (n,).
+    """
     patches = supervoxels(surface, settings.supervoxels)
     meeting = boundaries(surface, patches, settings)
     regions = agglomerated(meeting, patches.tints, patches.weights, settings.boundaries)

@@ -29,7 +29,18 @@ class Raised:
     settings: HeightSettings
 
     def upper(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the height in metres that exceeds the noise, shape (n,), at distances (n,) from the sensor."""
+        """Return the height in metres that exceeds the noise, shape (n,), at distances (n,) from the sensor.
+
+        Parameters
+        ----------
+        distance
+            Distances of n points from the sensor, shape (n,), in metres.
+
+        Returns
+        -------
+        ndarray
+            Heights of shape (n,), in metres.
+        """
         nearest = self.settings.min_noise_distance
         return self.settings.upper_threshold * self.averaged * np.maximum(distance, nearest) ** 2
 
@@ -40,10 +51,29 @@ def raised(
     neighbours: NDArray[np.int32],
     settings: DetectionSettings,
 ) -> Raised:
-    """Return the points above the table, from their heights (n,) and distances from the sensor (n,), in metres.
+    """Return the points above the table, from their heights.
 
-    The noise of a depth sensor grows with the square of the distance (Khoshelham and Elberink 2012); its size is
-    measured on the table.
+    The noise of a depth sensor grows with the square of the distance; its size is measured on the table.
+
+    Parameters
+    ----------
+    heights
+        Heights of n points above the plane of the table, shape (n,), in metres.
+    distance
+        Distances of the points from the sensor, shape (n,), in metres.
+    neighbours
+        Indices of the neighbours of each point, shape (n, 8); -1 for missing ones.
+    settings
+        Thresholds, in metres and in units of the noise.
+
+    Returns
+    -------
+    Raised
+        Mask of the points above the table, shape (n,), and the noise of heights before and after smoothing.
+
+    Notes
+    -----
+    The growth of the noise is that of Khoshelham and Elberink (2012).
     """
     from deixis.perception.detection.kernels import averaged, grown
 

@@ -32,7 +32,18 @@ The decision on a pair depends on its two parts only.
 
 
 def whole_things(parts: Parts) -> Parts:
-    """Join parts into objects, rule by rule, and return them."""
+    """Join parts into objects, rule by rule, and return them.
+
+    Parameters
+    ----------
+    parts
+        Regions of patches. It is changed in place.
+
+    Returns
+    -------
+    Parts
+        The given partition, with a part for each object.
+    """
     while len(pairs := fragments(parts)):
         parts.join_all(pairs.first, pairs.second)
     parts.keep_largest(parts.settings.max_parts)
@@ -64,7 +75,18 @@ def _apply(rule: Rule, parts: Parts) -> None:
 
 
 def fragments(parts: Parts) -> Pairs:
-    """Return the parts that are too small, each with the part of its longest and smoothest boundary."""
+    """Return the parts that are too small, each with the part of its longest and smoothest boundary.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+
+    Returns
+    -------
+    Pairs
+        At most one pair for each small part, which comes first in it.
+    """
     pairs = parts.meetings()
     pull = pairs.met[:, 1] * (2.0 - pairs.evidence)
     small = (parts.measures.areas[pairs.first] < parts.settings.fragment_area) & (pull > 0)
@@ -76,14 +98,40 @@ def fragments(parts: Parts) -> Pairs:
 
 
 def of_one_colour(parts: Parts, part: int | None = None) -> Pairs:
-    """Return pairs of one colour without a strong crease: the head and handle of a fork, a draped napkin."""
+    """Return pairs of one colour without a strong crease: the head and handle of a fork, a draped napkin.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs that meet, in both orders.
+    """
     pairs = parts.meetings(part)
     smooth = pairs.evidence < parts.settings.same_colour_evidence
     return pairs.where(smooth & (np.abs(pairs.rise) < parts.settings.resting_rise) & _alike(parts, pairs))
 
 
 def enclosed(parts: Parts, part: int | None = None) -> Pairs:
-    """Return parts within the outline of a higher part of the same colour: the well of a plate in its rim."""
+    """Return parts within the outline of a higher part of the same colour: the well of a plate in its rim.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the enclosed part and the part around it.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     low = (pairs.rise < limits.well_rise) & ~_differ(parts, pairs)
     low &= seen.tops[pairs.first] <= seen.tops[pairs.second] + limits.well_top_tolerance
@@ -92,7 +140,20 @@ def enclosed(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def insides(parts: Parts, part: int | None = None) -> Pairs:
-    """Return the inside and outside of cups: the inside is concave, and both rims are equally high."""
+    """Return the inside and outside of cups: the inside is concave, and both rims are equally high.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the inside and the outside.
+    """
     seen, pairs = parts.measures, parts.meetings(part)
     bent = seen.bulge < -parts.settings.min_cavity_bend
     deep = seen.tops - seen.bottoms > parts.settings.min_cavity_depth
@@ -101,7 +162,18 @@ def insides(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def bridged(parts: Parts) -> Pairs:
-    """Return pairs of parts of one surface that a narrow object on both divides."""
+    """Return pairs of parts of one surface that a narrow object on both divides.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+
+    Returns
+    -------
+    Pairs
+        Pairs of parts of one colour that do not meet, with a part that lies on both.
+    """
     pairs, over = _below_one(parts)
     low, high = parts.measures.low, parts.measures.high
     gaps = np.maximum(low[pairs.first] - high[pairs.second], low[pairs.second] - high[pairs.first]).clip(0.0)
@@ -110,7 +182,18 @@ def bridged(parts: Parts) -> Pairs:
 
 
 def round_rims(parts: Parts) -> Pairs:
-    """Return pairs of parts of one round rim that an object on both divides, such as a napkin across a plate."""
+    """Return pairs of parts of one round rim that an object on both divides, such as a napkin across a plate.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+
+    Returns
+    -------
+    Pairs
+        Pairs of parts of one colour and height that fit one circle.
+    """
     pairs, _ = _below_one(parts)
     pairs = pairs.where(_alike(parts, pairs) & _level(parts, pairs))
     return _chosen(pairs, lambda a, b: parts.once(roundness, a, b) > parts.settings.min_rim_share)
@@ -132,7 +215,20 @@ def _below_one(parts: Parts) -> tuple[Pairs, dict[tuple[int, int], list[int]]]:
 
 
 def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
-    """Return high parts above a flat foot of the same colour that is not wider: glasses, with a visible stem or not."""
+    """Return high parts above a flat foot of the same colour that is not wider: glasses, with a visible stem or not.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the high part and its foot.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     high = seen.middles > 2 * limits.foot_height
     foot = (seen.middles < limits.foot_height) & (seen.bottoms < limits.foot_height / 2)
@@ -143,7 +239,20 @@ def on_a_foot(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def necks(parts: Parts, part: int | None = None) -> Pairs:
-    """Return narrow parts on the middle of tall, slender ones: the neck or the cap of a bottle."""
+    """Return narrow parts on the middle of tall, slender ones: the neck or the cap of a bottle.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the narrow part and the body of the bottle.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.meetings(part)
     neck, bottle, widths = pairs.first, pairs.second, seen.widths
     narrow = widths[neck] < limits.attachment_ratio * widths[bottle]
@@ -155,7 +264,20 @@ def necks(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def handles(parts: Parts, part: int | None = None) -> Pairs:
-    """Return small parts that do not stand on anything, with the larger part of their colour and height beside them."""
+    """Return small parts that do not stand on anything, with the larger part of their colour and height beside them.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the handle and the body.
+    """
     limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
     handle, body, widths = pairs.first, pairs.second, seen.widths
     small = widths[handle] < limits.attachment_ratio * widths[body]
@@ -173,7 +295,20 @@ def handles(parts: Parts, part: int | None = None) -> Pairs:
 
 
 def end_to_end(parts: Parts, part: int | None = None) -> Pairs:
-    """Return two low parts of one colour in a line that are long and narrow together: head and handle of a spoon."""
+    """Return two low parts of one colour in a line that are long and narrow together: head and handle of a spoon.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs in the order of their numbers.
+    """
     limits, pairs = parts.settings, parts.near(parts.settings.max_cutlery_gap, part)
     low = parts.measures.tops < limits.max_cutlery_height
     ordered = pairs.first < pairs.second
@@ -200,6 +335,18 @@ def sides(parts: Parts, part: int | None = None) -> Pairs:
     """Return thin upright parts with the part of their colour whose side they are.
 
     A side is seen at such a flat angle that the depth jumps at its edge.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    part
+        If given, return only the pairs with this part.
+
+    Returns
+    -------
+    Pairs
+        Pairs of the side and the object that it belongs to, which has the larger area.
     """
     limits, seen, pairs = parts.settings, parts.measures, parts.near(parts.settings.attachment_gap, part)
     low = seen.tops[pairs.first] < seen.tops[pairs.second] + limits.resting_rise

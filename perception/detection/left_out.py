@@ -48,7 +48,24 @@ class Pieces:
 def left_out(
     top: TableTop, heights: NDArray[np.float64], pieces: Pieces, settings: DetectionSettings
 ) -> tuple[str, ...]:
-    """Return notes on the points above the table, at ``heights`` (n,) in metres, that are not reported as objects."""
+    """Return notes on the points above the table that are not reported as objects.
+
+    Parameters
+    ----------
+    top
+        Top of the table.
+    heights
+        Heights of the n points of the view above the plane, shape (n,), in metres.
+    pieces
+        Connected pieces of points above the table.
+    settings
+        Sizes of objects, and the shares of points that are worth a note.
+
+    Returns
+    -------
+    tuple of str
+        One sentence for each kind of omission.
+    """
     limits = settings.notes
     beyond = top.outside
     high = (heights > settings.reach) & (beyond < 0)
@@ -89,7 +106,18 @@ def _reaches_over(beyond: NDArray[np.float64], pieces: Pieces, settings: NoteSet
 
 
 def missing_lines(view: View) -> tuple[str, ...]:
-    """Return a note if many rows or columns of an image have no depth between others that have it."""
+    """Return a note if many rows or columns of an image have no depth between others that have it.
+
+    Parameters
+    ----------
+    view
+        Points with a depth, and their pixels.
+
+    Returns
+    -------
+    tuple of str
+        One sentence each for rows and columns; empty for a cloud that is not an image.
+    """
     if view.organised is None or not len(view.places):
         return ()
     notes = []
@@ -102,7 +130,22 @@ def missing_lines(view: View) -> tuple[str, ...]:
 
 
 def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[str, ...]:
-    """Return a note if much of the table has no depth; ``on`` (n,) marks the points on the table or its objects."""
+    """Return a note if much of the table has no depth.
+
+    Parameters
+    ----------
+    view
+        Points with a depth, and their pixels.
+    on
+        Mask of the n points on the table or its objects, shape (n,).
+    settings
+        Side of a cell in pixels, and the share of empty cells that is worth a note.
+
+    Returns
+    -------
+    tuple of str
+        At most one sentence; empty for a cloud that is not an image.
+    """
     if view.organised is None or not on.any():
         return ()
     from scipy.ndimage import binary_closing, binary_fill_holes
@@ -123,7 +166,20 @@ def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[st
 
 
 def odd_sizes(lengths: NDArray[np.float64], settings: NoteSettings) -> tuple[str, ...]:
-    """Return a note if the longest sides of the objects (k,), in metres, are unusual for tableware."""
+    """Return a note if the objects have unusual lengths for tableware.
+
+    Parameters
+    ----------
+    lengths
+        Longest side of each of k objects, shape (k,), in metres.
+    settings
+        Range of usual lengths.
+
+    Returns
+    -------
+    tuple of str
+        At most one sentence; empty for fewer than two objects.
+    """
     if len(lengths) < 2:
         return ()
     usual = float(np.median(lengths))

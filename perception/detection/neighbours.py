@@ -24,11 +24,28 @@ def neighbour_table(
     settings: SurfaceSettings,
     eye: NDArray[np.float64] | None = None,
 ) -> NDArray[np.int32]:
-    """Return the indices of the neighbours of finite points (n, 3), shape (n, 8); -1 for missing ones.
+    """Return the indices of the neighbours of finite points, shape (n, 8); -1 for missing ones.
 
-    ``kept`` (n,) are the indices of the points in the image of ``organised`` rows and columns. For an unorganised
-    cloud, ``eye`` (3,) is the viewpoint, or None if it is unknown.
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    kept
+        Indices of the points in the image, shape (n,).
+    organised
+        Rows and columns of the image; None for an unorganised cloud.
+    settings
+        Limits of the distance of neighbours, in pixels and relative to the usual distance.
+    eye
+        Viewpoint of an unorganised cloud, shape (3,); None if it is unknown.
 
+    Returns
+    -------
+    ndarray
+        Indices of shape (n, 8).
+
+    Examples
+    --------
     >>> neighbour_table(np.zeros((3, 3)), np.array([0, 1, 3]), (2, 2), SurfaceSettings())[0].tolist()
     [-1, -1, -1, -1, 1, -1, -1, 2]
     """
@@ -57,6 +74,18 @@ def has_enough(table: NDArray[np.int32], settings: SurfaceSettings) -> bool:
     """Return True if most points have enough neighbours, judged by a sample of a table (n, 8).
 
     From a wrong viewpoint, points that are adjacent in direction are far apart and have few neighbours.
+
+    Parameters
+    ----------
+    table
+        Indices of neighbours, shape (n, 8); -1 for missing ones.
+    settings
+        Least number of neighbours, the share of points that must have it, and the size of the sample.
+
+    Returns
+    -------
+    bool
+        True for a table without points.
     """
     few = table[:: max(1, len(table) // settings.neighbour_sample_size)]
     enough = (few >= 0).sum(axis=1) >= settings.min_neighbours

@@ -17,9 +17,20 @@ SECTORS = 36
 
 
 def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.bool_]:
-    """Return a mask of the points (n, 2) in the largest connected piece, shape (n,).
+    """Return a mask of the points in the largest connected piece.
 
-    Points are connected on a grid with cells of ``cell_size`` metres, or of a thousandth of the extent if that is more.
+    Parameters
+    ----------
+    plan
+        Places of n points in plan, shape (n, 2), in metres.
+    cell_size
+        Side of the cells of a grid on which points are connected, in metres; a thousandth of the extent if that is
+        more.
+
+    Returns
+    -------
+    ndarray
+        Mask of shape (n,).
     """
     from scipy.ndimage import label
 
@@ -37,7 +48,20 @@ def in_largest_piece(plan: NDArray[np.float64], cell_size: float) -> NDArray[np.
 
 
 def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
-    """Return the centres (k, 2) of the grid cells that contain places (n, 2); ``cell`` is their side in metres."""
+    """Return the centres of the grid cells that contain places.
+
+    Parameters
+    ----------
+    plan
+        Places in plan, shape (n, 2), in metres.
+    cell
+        Side of a cell in metres.
+
+    Returns
+    -------
+    ndarray
+        Centres of shape (k, 2), in metres.
+    """
     if not len(plan):
         return np.zeros((0, 2))
     from deixis.perception.detection.kernels import corners_of_box, occupied
@@ -52,13 +76,35 @@ def occupied_cells(plan: NDArray[np.float64], cell: float) -> NDArray[np.float64
 
 
 def corners_of(plan: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Return the corners (k, 2) of the convex hull of places (n, 2), in order; None for too few or collinear places."""
+    """Return the corners (k, 2) of the convex hull of places (n, 2), in order; None for too few or collinear places.
+
+    Parameters
+    ----------
+    plan
+        Places in plan, shape (n, 2), in metres.
+
+    Returns
+    -------
+    ndarray or None
+        Counter-clockwise corners of shape (k, 2).
+    """
     hull = hull_of(plan)
     return None if hull is None else np.asarray(hull.points[hull.vertices])
 
 
 def hull_of(plan: NDArray[np.float64]) -> Any:
-    """Return the ``scipy.spatial.ConvexHull`` of places (n, 2), or None for too few or collinear places."""
+    """Return the ``scipy.spatial.ConvexHull`` of places (n, 2), or None for too few or collinear places.
+
+    Parameters
+    ----------
+    plan
+        Places in plan, shape (n, 2), in metres.
+
+    Returns
+    -------
+    scipy.spatial.ConvexHull or None
+        Hull of the outermost places; its indices refer to these.
+    """
     from scipy.spatial import ConvexHull, QhullError
 
     from deixis.perception.detection.kernels import outermost
@@ -77,26 +123,74 @@ class Circle:
     radius: float
 
     def off(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the distances (n,) of places (n, 2) from the circle, relative to its radius; negative inside."""
+        """Return the distances (n,) of places (n, 2) from the circle, relative to its radius; negative inside.
+
+        Parameters
+        ----------
+        plan
+            Places in plan, shape (n, 2), in metres.
+
+        Returns
+        -------
+        ndarray
+            Ratios of shape (n,), at least -1; 0 on the circle.
+        """
         out: NDArray[np.float64] = np.linalg.norm(plan - self.centre, axis=1) / self.radius - 1.0
         return out
 
     def sectors(self, plan: NDArray[np.float64], edge: float) -> NDArray[np.int64]:
-        """Return the sorted sectors that have places (n, 2) at the edge of the circle or outside it."""
+        """Return the sorted sectors that have places (n, 2) at the edge of the circle or outside it.
+
+        Parameters
+        ----------
+        plan
+            Places in plan, shape (n, 2), in metres.
+        edge
+            Width of the edge within the circle, relative to the radius.
+
+        Returns
+        -------
+        ndarray
+            Sectors in [0, ``SECTORS``), counter-clockwise from the x axis.
+        """
         x, y = (plan[self.off(plan) > -edge] - self.centre).T
         turn = np.arctan2(y, x) / (2 * np.pi) % 1.0
         return np.unique(np.minimum(turn * SECTORS, SECTORS - 1).astype(np.int64))
 
     def turned(self, axes: NDArray[np.float64]) -> Circle:
-        """Return the circle in coordinates along other axes, given as rows (2, 2)."""
+        """Return the circle in coordinates along other axes.
+
+        Parameters
+        ----------
+        axes
+            Unit vectors of the axes as rows, shape (2, 2).
+
+        Returns
+        -------
+        Circle
+            Circle with an equal radius.
+        """
         return Circle(axes @ self.centre, self.radius)
 
 
 def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
-    """Return the circle through the corners of the convex hull of places (n, 2), or None.
+    """Return the circle through the corners of the convex hull of places, or None.
 
-    ``edge`` is the largest distance of a corner from the circle, relative to its radius. The circle is fitted by
-    algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976) to at least five corners.
+    Parameters
+    ----------
+    plan
+        Places in plan, shape (n, 2), in metres.
+    edge
+        Largest distance of a corner from the circle, relative to its radius.
+
+    Returns
+    -------
+    Circle or None
+        None if the hull has fewer than five corners, or one of them is too far from the circle.
+
+    Notes
+    -----
+    The circle is fitted by algebraic least squares (Kasa, A circle fitting procedure and its error analysis, 1976).
     """
     corners = corners_of(plan)
     if corners is None or len(corners) < 5:
@@ -108,10 +202,22 @@ def circle_around(plan: NDArray[np.float64], edge: float) -> Circle | None:
 
 
 def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: OutlineSettings) -> Circle | None:
-    """Return the whole rim of a partly hidden round object with visible places (n, 2).
+    """Return the whole rim of a partly hidden round object, or None.
 
-    The result is None if the visible part is not round, too little of the edge is visible, or the table is visible at
-    places (m, 2) inside the supposed rim.
+    Parameters
+    ----------
+    plan
+        Visible places of the object in plan, shape (n, 2), in metres.
+    table
+        Places at which the table is visible, shape (m, 2), in metres.
+    settings
+        Tolerance, range of radii, and the number of sectors that must be visible.
+
+    Returns
+    -------
+    Circle or None
+        None if the visible part is not round, too little of the edge is visible, or the table is visible inside the
+        supposed rim.
     """
     circle = circle_around(plan, settings.rim_tolerance)
     if circle is None or not settings.min_rim_radius <= circle.radius <= settings.max_rim_radius:
@@ -129,10 +235,26 @@ def rim_of(plan: NDArray[np.float64], table: NDArray[np.float64], settings: Outl
 def upright_box(
     points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None
 ) -> NDArray[np.float64]:
-    """Return the lower and upper corner, shape (2, 3), of points (n, 3) in the frame of the table.
+    """Return the lower and upper corner of points in the frame of the table.
 
-    The box has no part below the table. It also includes ``rim``, a circle seen from above.
+    The box has no part below the table.
 
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Share of outermost points that are noise.
+    rim
+        Circle in plan that the box includes.
+
+    Returns
+    -------
+    ndarray
+        Corners of shape (2, 3), in metres.
+
+    Examples
+    --------
     >>> upright_box(np.array([[0.0, 0, -0.001], [1, 2, 3]]), OutlineSettings()).tolist()
     [[0.0, 0.0, 0.0], [1.0, 2.0, 3.0]]
     """
@@ -147,9 +269,24 @@ def upright_box(
 
 
 def oriented_box(points: NDArray[np.float64], settings: OutlineSettings, rim: Circle | None = None) -> OrientedBox:
-    """Return the upright box of points (n, 3) with the smallest base.
+    """Return the upright box of points with the smallest base.
 
-    Its first side is the longer one, with a yaw in (-pi/2, pi/2]. It also includes ``rim``, a circle seen from above.
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3) in the frame of the table, in metres.
+    settings
+        Share of outermost points that are noise.
+    rim
+        Circle in plan that the box includes.
+
+    Returns
+    -------
+    OrientedBox
+        Box whose first side is the longer one, with a yaw in (-pi/2, pi/2].
+
+    Notes
+    -----
     The smallest rectangle has a side along the convex hull by the theorem of Freeman and Shapira (1975).
     """
     box = _box_along(_best_angle(points[:, :2]), points, settings, rim)

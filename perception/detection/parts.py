@@ -43,7 +43,22 @@ class Measures:
 
     @classmethod
     def of(cls, part: NDArray[np.integer], patches: Supervoxels, chosen: NDArray[np.intp] | slice) -> Measures:
-        """Return the measures of the parts of the chosen patches; ``part`` holds the part of each, from 0."""
+        """Return the measures of the parts of the chosen patches.
+
+        Parameters
+        ----------
+        part
+            Part of each chosen patch, from 0, shape (k,).
+        patches
+            All patches of the surface.
+        chosen
+            Indices of k patches, or a slice of them.
+
+        Returns
+        -------
+        Measures
+            One row for each part.
+        """
         places, weights = patches.middles[chosen], patches.weights[chosen]
         tints, sizes, normals = patches.tints[chosen], patches.sizes[chosen], patches.normals[chosen]
         count = int(part.max()) + 1 if len(part) else 0
@@ -68,7 +83,15 @@ class Measures:
         )
 
     def put(self, part: int, other: Measures) -> None:
-        """Replace the measures of a part by those of the only part of ``other``."""
+        """Replace the measures of a part by those of the only part of ``other``.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+        other
+            Measures of one part.
+        """
         for each in fields(self):
             getattr(self, each.name)[part] = getattr(other, each.name)[0]
 
@@ -101,7 +124,18 @@ class Pairs:
         return len(self.first)
 
     def where(self, chosen: NDArray[np.bool_]) -> Pairs:
-        """Return the pairs that the mask ``chosen`` (k,) selects."""
+        """Return the pairs that a mask selects.
+
+        Parameters
+        ----------
+        chosen
+            Mask of shape (k,).
+
+        Returns
+        -------
+        Pairs
+            Selected pairs in the given order.
+        """
         return Pairs(self.first[chosen], self.second[chosen], self.met[chosen])
 
     @property
@@ -168,9 +202,14 @@ class Parts:
         return result
 
     def keep_largest(self, count: int) -> None:
-        """Set all but the ``count`` largest parts aside, so that they are not joined any more.
+        """Set all but the largest parts aside, so that they are not joined any more.
 
         A part with thousands of neighbours would be examined with each of them again whenever one is joined to it.
+
+        Parameters
+        ----------
+        count
+            Number of parts that can still be joined.
         """
         least = np.argsort(-self.measures.sizes, kind="stable")[count:]
         self._set_aside[least] = True
@@ -180,7 +219,13 @@ class Parts:
             self._around[part] = {}
 
     def join_all(self, first: NDArray[np.intp], second: NDArray[np.intp]) -> None:
-        """Join the parts of each pair, and renumber all parts."""
+        """Join the parts of each pair, and renumber all parts.
+
+        Parameters
+        ----------
+        first, second
+            Parts of each of k pairs, shape (k,). Chains of pairs become one part.
+        """
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -192,7 +237,18 @@ class Parts:
         self._start(np.unique(connected_components(links, directed=False)[1][of], return_inverse=True)[1])
 
     def join(self, a: int, b: int) -> int:
-        """Join two parts, and return the number of the joined part."""
+        """Join two parts, and return the number of the joined part.
+
+        Parameters
+        ----------
+        a, b
+            Numbers of the two parts.
+
+        Returns
+        -------
+        int
+            The lower of the two numbers.
+        """
         a, b = min(a, b), max(a, b)
         self.members[a] = np.sort(np.concatenate([self.members[a], self.members[b]]))
         self.members[b] = _NONE
@@ -212,7 +268,18 @@ class Parts:
         return a
 
     def meetings(self, part: int | None = None) -> Pairs:
-        """Return all pairs that meet, in both orders, or those with a given ``part``."""
+        """Return all pairs that meet, in both orders, or those with a given ``part``.
+
+        Parameters
+        ----------
+        part
+            If given, return only the pairs with this part.
+
+        Returns
+        -------
+        Pairs
+            Pairs in ascending order.
+        """
         parts: Iterable[int] = range(len(self._around)) if part is None else (part,)
         ends = [(a, b) for a in parts for b in self._around[a]]
         if part is not None:
@@ -220,10 +287,21 @@ class Parts:
         return self.pairs(np.array(sorted(ends), np.intp).reshape(-1, 2))
 
     def near(self, gap: float, part: int | None = None) -> Pairs:
-        """Return all pairs whose boxes seen from above are less than ``gap`` metres apart, in both orders.
+        """Return all pairs whose boxes seen from above are close to each other, in both orders.
 
-        With ``part``, only the pairs with this part are returned. Patches of other pairs are at least ``gap`` apart.
-        Parts of few points are left out.
+        Patches of other pairs are at least ``gap`` apart. Parts of few points are left out.
+
+        Parameters
+        ----------
+        gap
+            Distance in metres that the boxes must be closer than.
+        part
+            If given, return only the pairs with this part.
+
+        Returns
+        -------
+        Pairs
+            Pairs, some of which do not meet.
         """
         large = self.measures.sizes >= self.settings.min_near_points
         there = np.flatnonzero(self.there & large & ~self._set_aside)
@@ -243,19 +321,52 @@ class Parts:
         return self.pairs(np.concatenate([ends, ends[:, ::-1]]))
 
     def pairs(self, ends: NDArray[np.intp]) -> Pairs:
-        """Return the pairs of parts ``ends`` (k, 2) with their boundaries."""
+        """Return pairs of parts with their boundaries.
+
+        Parameters
+        ----------
+        ends
+            Numbers of two parts each, shape (k, 2).
+
+        Returns
+        -------
+        Pairs
+            Pairs in the given order; the boundary of parts that do not meet is 0.
+        """
         nothing = np.zeros(4)
         met = [self._around[a].get(b, nothing) for a, b in ends.tolist()]
         return Pairs(ends[:, 0], ends[:, 1], np.array(met).reshape(-1, 4))
 
     def unlike(self, pairs: Pairs) -> NDArray[np.float64]:
-        """Return the difference between the colours of the two parts of each pair, (k,)."""
+        """Return the difference between the colours of the two parts of each pair, (k,).
+
+        Parameters
+        ----------
+        pairs
+            Pairs of parts.
+
+        Returns
+        -------
+        ndarray
+            Euclidean distances of shape (k,), with the lightness scaled down.
+        """
         colours = self.measures.colours
         result: NDArray[np.float64] = np.linalg.norm(colours[pairs.first] - colours[pairs.second], axis=1)
         return result
 
     def hull(self, part: int) -> NDArray[np.float64] | None:
-        """Return the half planes (k, 3) of the convex hull of a part seen from above; None for collinear patches."""
+        """Return the half planes (k, 3) of the convex hull of a part seen from above; None for collinear patches.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+
+        Returns
+        -------
+        ndarray or None
+            Unit normal and offset of each side, shape (k, 3), negative for places inside.
+        """
         from scipy.spatial import ConvexHull, QhullError
 
         if (found := self._hulls.get(part)) is None or found[0] != self.changes[part]:
@@ -267,7 +378,18 @@ class Parts:
         return found[1]
 
     def plan_tree(self, part: int) -> Any:
-        """Return a k-d tree of the patches of a part seen from above."""
+        """Return a k-d tree of the patches of a part seen from above.
+
+        Parameters
+        ----------
+        part
+            Number of the part.
+
+        Returns
+        -------
+        scipy.spatial.cKDTree
+            Tree of the middles of the patches in plan, in metres.
+        """
         from scipy.spatial import cKDTree
 
         if (found := self._trees.get(part)) is None or found[0] != self.changes[part]:
@@ -275,7 +397,20 @@ class Parts:
         return found[1]
 
     def once(self, measure: Measure, a: int, b: int) -> float:
-        """Return a measure of the patches of two parts; it is computed once, until one of the parts changes."""
+        """Return a measure of the patches of two parts; it is computed once, until one of the parts changes.
+
+        Parameters
+        ----------
+        measure
+            Function of this partition and of the patches of both parts.
+        a, b
+            Numbers of the two parts.
+
+        Returns
+        -------
+        float
+            Value of the measure.
+        """
         key = (measure, a, self.changes[a], b, self.changes[b])
         if key not in self._known:
             self._known[key] = measure(self, self.members[a], self.members[b])
@@ -301,7 +436,20 @@ def _between(
 
 
 def inside(parts: Parts, inner: int, outer: int) -> float:
-    """Return the fraction of the patches of a part inside the convex hull of another, as seen from above."""
+    """Return the fraction of the patches of a part inside the convex hull of another, as seen from above.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    inner, outer
+        Numbers of the two parts.
+
+    Returns
+    -------
+    float
+        Fraction in [0, 1]; 0 if the patches of ``outer`` are collinear.
+    """
     hull = parts.hull(outer)
     if hull is None:
         return 0.0
@@ -322,7 +470,20 @@ def _covered(parts: Parts, cover: int, places: NDArray[np.float64]) -> bool:
 
 
 def apart(parts: Parts, a: int, b: int) -> float:
-    """Return the smallest distance between the patches of two parts as seen from above, in metres."""
+    """Return the smallest distance between the patches of two parts as seen from above, in metres.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    a, b
+        Numbers of the two parts.
+
+    Returns
+    -------
+    float
+        Distance between the middles of patches.
+    """
     return float(parts.plan_tree(b).query(parts.patches.middles[parts.members[a], :2])[0].min())
 
 
@@ -330,6 +491,20 @@ def continues(parts: Parts, a: int, b: int, over: Iterable[int]) -> bool:
     """Return True if two parts are one surface that continues under a part on both.
 
     Where the two are nearest, their planes agree and the other part lies between them.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    a, b
+        Numbers of the two parts.
+    over
+        Numbers of the parts that lie on both.
+
+    Returns
+    -------
+    bool
+        False also if the two are not in one plane.
     """
     if parts.once(_share_of_one_plane, a, b) <= parts.settings.min_coplanar_share:
         return False
@@ -366,7 +541,20 @@ def _nearest(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> tupl
 
 
 def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return the fraction of a circle that the edges of two parts cover seen from above; 0 if they do not fit one."""
+    """Return the fraction of a circle that the edges of two parts cover seen from above; 0 if they do not fit one.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    one, two
+        Indices of the patches of each part.
+
+    Returns
+    -------
+    float
+        Fraction in [0, 1].
+    """
     plan = parts.patches.middles[np.concatenate([one, two]), :2]
     tolerance = parts.settings.rim_tolerance
     circle = circle_around(plan, tolerance)
@@ -374,7 +562,20 @@ def roundness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> flo
 
 
 def slenderness(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
-    """Return the ratio of length to width of two parts together, if they lie end to end; else 0."""
+    """Return the ratio of length to width of two parts together, if they lie end to end; else 0.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    one, two
+        Indices of the patches of each part.
+
+    Returns
+    -------
+    float
+        Ratio without a unit; 0 also if the two are too wide for cutlery.
+    """
     plans = [parts.patches.middles[part, :2] for part in (one, two)]
     longer = max(plans, key=lambda plan: extents(plan)[0])
     turned = [plan @ _axes(longer) for plan in plans]
@@ -391,6 +592,18 @@ def offset(parts: Parts, one: NDArray[np.intp], two: NDArray[np.intp]) -> float:
     """Return the difference in height of two parts in a line in metres, each extrapolated to the middle between them.
 
     It is small if both are pieces of one straight object, level or leaning.
+
+    Parameters
+    ----------
+    parts
+        Partition of the patches.
+    one, two
+        Indices of the patches of each part.
+
+    Returns
+    -------
+    float
+        Absolute difference in metres.
     """
     places = [parts.patches.middles[part] for part in (one, two)]
     longer = max(places, key=lambda place: extents(place[:, :2])[0])
@@ -416,6 +629,17 @@ def _axes(plan: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def extents(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the length and width (2,) of places (n, 2) along their principal axes."""
+    """Return the length and width (2,) of places (n, 2) along their principal axes.
+
+    Parameters
+    ----------
+    plan
+        Places in plan, shape (n, 2), in metres.
+
+    Returns
+    -------
+    ndarray
+        Length and width in metres, shape (2,).
+    """
     extents: NDArray[np.float64] = np.ptp(plan @ _axes(plan), axis=0)
     return extents

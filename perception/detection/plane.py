@@ -22,7 +22,18 @@ class Plane:
     offset: float
 
     def heights(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the heights of points (n, 3) above the plane in metres, shape (n,)."""
+        """Return the heights of points (n, 3) above the plane in metres, shape (n,).
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Heights of shape (n,), negative below the plane.
+        """
         result: NDArray[np.float64] = points @ self.normal - self.offset
         return result
 
@@ -33,11 +44,30 @@ class Plane:
         return along
 
     def is_along(self, other: Plane, settings: PlaneSettings) -> bool:
-        """Return True if both planes are nearly parallel and their normals point to the same side."""
+        """Return True if both planes are nearly parallel and their normals point to the same side.
+
+        Parameters
+        ----------
+        other
+            Plane to compare with.
+        settings
+            Least cosine of the angle between the normals.
+
+        Returns
+        -------
+        bool
+            False for planes whose normals are opposite.
+        """
         return bool(self.normal @ other.normal > settings.min_normal_cosine)
 
     def turned(self) -> Plane:
-        """Return the plane with its normal reversed."""
+        """Return the plane with its normal reversed.
+
+        Returns
+        -------
+        Plane
+            The plane seen from its other side.
+        """
         return Plane(-self.normal, -self.offset)
 
 
@@ -56,7 +86,18 @@ class CameraPose:
     known: bool = True
 
     def could_be_table(self, normal: NDArray[np.float64]) -> bool:
-        """Return True if a plane with this normal, towards the eye, could be level for an upright camera."""
+        """Return True if a plane with this normal, towards the eye, could be level for an upright camera.
+
+        Parameters
+        ----------
+        normal
+            Unit normal of the plane, shape (3,).
+
+        Returns
+        -------
+        bool
+            True for every plane if nothing is known of the camera's upright direction.
+        """
         if self.upwards is not None:
             return bool(normal @ self.upwards > 0.7)
         if self.up is None or self.right is None:
@@ -65,7 +106,22 @@ class CameraPose:
 
 
 def table_plane(points: NDArray[np.float64], pose: CameraPose, settings: DetectionSettings) -> Plane | None:
-    """Return the plane of the table in finite points (n, 3), or None if no plane could be a table."""
+    """Return the plane of the table in finite points (n, 3), or None if no plane could be a table.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    pose
+        Viewpoint of the points.
+    settings
+        Tolerances, the size of the sample and the seed.
+
+    Returns
+    -------
+    Plane or None
+        Plane whose normal points to the side of the objects.
+    """
     rng, limits = np.random.default_rng(settings.seed), settings.plane
     size = limits.sample_size
     sample = points if len(points) <= size else points[np.sort(rng.choice(len(points), size, replace=False))]
@@ -107,11 +163,37 @@ class LevelPlane:
         return len(self.points) + 10 * self.standing
 
     def has_objects(self, total: int, settings: PlaneSettings) -> bool:
-        """Return True if enough of ``total`` points stand on the plane to be objects."""
+        """Return True if enough of ``total`` points stand on the plane to be objects.
+
+        Parameters
+        ----------
+        total
+            Number of points of the sample.
+        settings
+            Least fraction of points that must stand on the plane.
+
+        Returns
+        -------
+        bool
+            False for a bare plane.
+        """
         return self.standing >= settings.min_standing_share * total
 
     def is_floor_below(self, other: LevelPlane, settings: PlaneSettings) -> bool:
-        """Return True if the plane is parallel to another one and below it by the height of a table."""
+        """Return True if the plane is parallel to another one and below it by the height of a table.
+
+        Parameters
+        ----------
+        other
+            Plane that may be a table.
+        settings
+            Least height of a table above the floor, and the tolerated angle.
+
+        Returns
+        -------
+        bool
+            True if this plane could be the floor under the table.
+        """
         drop = np.median(self.plane.heights(other.points))
         return self.plane.is_along(other.plane, settings) and bool(drop > settings.floor_drop)
 
@@ -123,15 +205,48 @@ def level_of(
     free: NDArray[np.float64],
     settings: PlaneSettings,
 ) -> LevelPlane:
-    """Return the points of a sample (n, 3) on a plane, within a tolerance (n,), and count the free ones above it."""
+    """Return the points of a sample on a plane, and count the free ones above it.
+
+    Parameters
+    ----------
+    plane
+        Plane to examine.
+    sample
+        Points of shape (n, 3), in metres.
+    tolerance
+        Largest distance of each point from the plane, shape (n,), in metres.
+    free
+        Points of shape (m, 3) that are on none of the planes found.
+    settings
+        Heights at which points stand on a plane.
+
+    Returns
+    -------
+    LevelPlane
+        Plane with its points and the number of points that stand on it.
+    """
     on = sample[np.abs(plane.heights(sample)) <= tolerance]
     return LevelPlane(plane, on, _standing(plane, on, free, settings))
 
 
 def tolerance_at(points: NDArray[np.float64], pose: CameraPose, settings: PlaneSettings) -> NDArray[np.float64]:
-    """Return the distance in metres, shape (n,), within which points (n, 3) count as on a plane.
+    """Return the distance in metres within which points count as on a plane.
 
     It grows with the square of the distance from the sensor.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    pose
+        Viewpoint of the points.
+    settings
+        Tolerance at 1 m, and the largest distance up to which it grows.
+
+    Returns
+    -------
+    ndarray
+        Tolerances of shape (n,), in metres.
     """
     squared = ((points - pose.eye) ** 2).sum(axis=1)
     near: NDArray[np.float64] = settings.tolerance * np.clip(squared, 0.25, settings.max_noise_distance**2)
@@ -199,8 +314,24 @@ def _largest(
 def refined(plane: Plane, points: NDArray[np.float64], tolerance: NDArray[np.float64], rounds: int = 6) -> Plane:
     """Return the least-squares plane of the points near a plane, refitted with ever smaller tolerances.
 
-    Objects on the plane do not affect it. Points are weighted by the inverse variance of their noise; ``tolerance``
-    (n,) is in metres.
+    Objects on the plane do not affect it.
+
+    Parameters
+    ----------
+    plane
+        Plane to start from.
+    points
+        Points of shape (n, 3), in metres.
+    tolerance
+        Largest distance of each point from the plane in the first round, shape (n,), in metres. Points are weighted by
+        the inverse of its square, as by the inverse variance of their noise.
+    rounds
+        Number of fits.
+
+    Returns
+    -------
+    Plane
+        Plane whose normal is on the side of the given one.
     """
     from deixis.perception.detection.kernels import refine
 

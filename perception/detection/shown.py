@@ -26,16 +26,43 @@ class Shows(StrEnum):
 
 
 def is_small(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Return True if the points (n, 3), except a few, have the extents of tableware."""
+    """Return True if the points (n, 3), except a few, have the extents of tableware.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Least length of an object, and the largest extents of tableware.
+
+    Returns
+    -------
+    bool
+        False also for points that are too small to be in metres.
+    """
     limits = settings.scale
     _, middle, longest = _extents(points, settings)
     return bool(settings.least_length <= longest < limits.max_small_length and middle < limits.min_table_length)
 
 
 def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, levels: int = 0) -> bool:
-    """Return True if points (n, 3) without a table with objects are one connected object, and not a sheet.
+    """Return True if points without a table with objects are one connected object, and not a sheet.
 
-    A sheet as wide as a table is an empty table. Two or more ``levels`` are tables if there is room for them.
+    A sheet as wide as a table is an empty table.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Extents of objects and tables.
+    levels
+        Number of level planes. Two or more are tables if there is room for them.
+
+    Returns
+    -------
+    bool
+        True for a single object, such as a scan of a cup.
     """
     limits = settings.scale
     thin, middle, longest = _extents(points, settings)
@@ -49,7 +76,20 @@ def is_one_object(points: NDArray[np.float64], settings: DetectionSettings, leve
 
 
 def is_large(points: NDArray[np.float64], settings: DetectionSettings) -> bool:
-    """Return True if points (n, 3) extend as far as a room."""
+    """Return True if points (n, 3) extend as far as a room.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Least width of a room.
+
+    Returns
+    -------
+    bool
+        Judged by the second longest extent.
+    """
     return _extents(points, settings)[1] > settings.scale.min_room_width
 
 
@@ -64,7 +104,20 @@ def _extents(points: NDArray[np.float64], settings: DetectionSettings) -> list[f
 
 
 def share_connected(points: NDArray[np.float64], gap: float) -> float:
-    """Return the fraction of points (n, 3) in the largest connected piece on a grid with cells of ``gap`` metres."""
+    """Return the fraction of points in the largest connected piece.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres; at most about 20 000 of them are examined.
+    gap
+        Side in metres of the cells of the grid on which points are connected.
+
+    Returns
+    -------
+    float
+        Fraction in [0, 1], without the outermost points.
+    """
     from scipy.ndimage import label
 
     points = points[:: max(1, len(points) // 20_000)]

@@ -47,7 +47,20 @@ class Supervoxels:
 
 
 def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
-    """Return the patches of a surface with at least one point."""
+    """Return the patches of a surface with at least one point.
+
+    Parameters
+    ----------
+    surface
+        Surface of n points.
+    settings
+        Distance of the seeds, and the costs of turns, steps and colours.
+
+    Returns
+    -------
+    Supervoxels
+        The patch of each point, and the middle, normal and colour of each patch.
+    """
     from deixis.perception.detection.kernels import grow
 
     noisy = np.clip(settings.spacing_noise_ratio * np.median(surface.sigma), settings.min_spacing, settings.max_spacing)
@@ -66,14 +79,44 @@ def supervoxels(surface: Surface, settings: SupervoxelSettings) -> Supervoxels:
 def means(
     of: NDArray[np.integer], values: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
-    """Return the means (m, d) of values (n, d), grouped by ``of`` (n,), with optional weights (n,)."""
+    """Return the means of values by group.
+
+    Parameters
+    ----------
+    of
+        Group of each value, shape (n,), from 0; each of the m groups has a value.
+    values
+        Values of shape (n, d).
+    weights
+        Weight of each value, shape (n,); 1 by default.
+
+    Returns
+    -------
+    ndarray
+        Means of shape (m, d).
+    """
     weights = np.ones(len(of)) if weights is None else weights
     total = np.stack([sums(of, values[:, axis] * weights) for axis in range(values.shape[1])], axis=1)
     return total / sums(of, weights)[:, None]
 
 
 def sums(of: NDArray[np.integer], values: NDArray[np.float64] | None = None, count: int = 0) -> NDArray[np.float64]:
-    """Return the sums of values (n,), or the group sizes, grouped by ``of`` (n,), for at least ``count`` groups."""
+    """Return the sums of values by group, or the sizes of the groups.
+
+    Parameters
+    ----------
+    of
+        Group of each value, shape (n,), from 0.
+    values
+        Values of shape (n,); 1 by default.
+    count
+        Least number of groups.
+
+    Returns
+    -------
+    ndarray
+        Sums of shape (m,), with m at least ``count``; 0 for a group without values.
+    """
     return np.bincount(of, values, minlength=count).astype(np.float64)
 
 

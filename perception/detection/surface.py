@@ -41,7 +41,28 @@ def surface_of(
     eye: NDArray[np.float64],
     settings: SurfaceSettings,
 ) -> Surface:
-    """Return the surface through points (n, 3) with colours (n, 3), seen from ``eye`` with noise ``sigma`` (n,)."""
+    """Return the surface through points, with its normals, noise and depth jumps.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    colours
+        Colours of shape (n, 3), from 0 to 255; None if there are none.
+    neighbours
+        Indices of the neighbours of each point, shape (n, 8); -1 for missing ones.
+    sigma
+        Standard deviation of the noise at each point, shape (n,), in metres.
+    eye
+        Viewpoint, shape (3,).
+    settings
+        Radii of neighbourhoods, and the distances that are depth jumps.
+
+    Returns
+    -------
+    Surface
+        Smoothed points with their normals, spacing and areas, in metres and square metres.
+    """
     from deixis.perception.detection.kernels import gaps, mixed, planes
 
     distance = np.linalg.norm(points - eye, axis=1)

@@ -39,9 +39,17 @@ class TableTop:
         return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
 
     def beyond(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the distances of points (n, 3) from the outline seen from above, in metres, (n,); negative inside.
+        """Return the distances of points from the outline seen from above; negative inside.
 
-        Without an outline, all distances are infinite.
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Distances of shape (n,), in metres; infinite without an outline.
         """
         from deixis.perception.detection.kernels import greatest_offset
 
@@ -64,7 +72,22 @@ class TableTop:
 
 
 def table_top(view: View, plane: Plane, settings: DetectionSettings) -> TableTop:
-    """Return the top of the table of a ``plane``: its largest connected part, and all parts that objects separate."""
+    """Return the top of the table of a ``plane``: its largest connected part, and all parts that objects separate.
+
+    Parameters
+    ----------
+    view
+        Points with a depth, and their viewpoint.
+    plane
+        Plane of the table.
+    settings
+        Tolerances of the plane, and sizes of parts.
+
+    Returns
+    -------
+    TableTop
+        Points on the top; empty if no point is close to the plane.
+    """
     limits = settings.top
     flat, shape = _cells(view, plane, limits)
     heights = plane.heights(view.points)
@@ -180,6 +203,21 @@ def _goes_on(
 
 
 def largest_part_length(points: NDArray[np.float64], plane: Plane, settings: TableTopSettings) -> float:
-    """Return the longer side of the largest connected part of points (n, 3) along a plane, in metres."""
+    """Return the longer side of the largest connected part of points along a plane.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    plane
+        Plane along which the sides are measured.
+    settings
+        Side of the cells on which points are connected.
+
+    Returns
+    -------
+    float
+        Length in metres.
+    """
     plan = points @ plane.across.T
     return float(np.ptp(plan[in_largest_piece(plan, settings.plan_cell)], axis=0).max())

@@ -27,6 +27,18 @@ def tables(view: View, settings: DetectionSettings) -> Iterator[FoundTable]:
     """Yield the tables of a view; yield nothing if no large surface is level.
 
     Each table has its own viewpoint, because one cloud may combine several views.
+
+    Parameters
+    ----------
+    view
+        Points with a depth, and their viewpoint.
+    settings
+        Tolerances of planes, and sizes of tables.
+
+    Yields
+    ------
+    FoundTable
+        Table with its plane, its top and its view. Points below a table are not searched for further ones.
     """
     points, pose = view.points, verified_pose(view.pose, view.points, settings)
     base = table_plane(points, pose, settings)

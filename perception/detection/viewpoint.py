@@ -42,12 +42,36 @@ class View:
         return rows, columns
 
     def take(self, chosen: NDArray[np.intp]) -> View:
-        """Return a view of the chosen points."""
+        """Return a view of the chosen points.
+
+        Parameters
+        ----------
+        chosen
+            Indices of the chosen points, shape (k,).
+
+        Returns
+        -------
+        View
+            View of the chosen points from an equal viewpoint.
+        """
         return replace(self, points=self.points[chosen], places=self.places[chosen])
 
 
 def camera_pose_of(cloud: PointCloud, settings: DetectionSettings) -> CameraPose:
-    """Return the viewpoint of a cloud, with the up and right directions of its image as seen from its origin."""
+    """Return the viewpoint of a cloud, with the up and right directions of its image as seen from its origin.
+
+    Parameters
+    ----------
+    cloud
+        Cloud, which is an image if it is organised.
+    settings
+        Upward direction if it is known, and tolerances of the rays.
+
+    Returns
+    -------
+    CameraPose
+        Pose; ``known`` is False if the rays of the image do not meet at the origin of the cloud.
+    """
     eye = np.asarray(cloud.origin, dtype=np.float64)
     upwards = None
     if settings.up is not None:
@@ -140,7 +164,22 @@ def _best_camera(image: NDArray[np.float32], eye: NDArray[np.float64], settings:
 
 
 def verified_pose(pose: CameraPose, points: NDArray[np.float64], settings: DetectionSettings) -> CameraPose:
-    """Return the viewpoint if the points (n, 3) are consistent with it, else an assumed one above them."""
+    """Return the viewpoint if points are consistent with it, else an assumed one above them.
+
+    Parameters
+    ----------
+    pose
+        Viewpoint of the points.
+    points
+        Points of shape (n, 3), in metres.
+    settings
+        Share of inconsistent neighbours that is tolerated.
+
+    Returns
+    -------
+    CameraPose
+        The given pose, or one with ``known`` False.
+    """
     if pose.up is not None:  # the viewpoint of an image has been checked before
         return pose
     limits = settings.viewpoint
@@ -154,9 +193,25 @@ def verified_pose(pose: CameraPose, points: NDArray[np.float64], settings: Detec
 def likeliest_pose(
     pose: CameraPose, points: NDArray[np.float64], plane: Plane, settings: DetectionSettings
 ) -> CameraPose:
-    """Return the viewpoint if it is known and above the table, else the most plausible one for points (n, 3).
+    """Return the viewpoint if it is known and above the table, else the most plausible one.
 
     A doubtful viewpoint is replaced if another one has at most half of its share of inconsistent neighbours.
+
+    Parameters
+    ----------
+    pose
+        Viewpoint of the points.
+    points
+        Points of the table and around it, shape (n, 3), in metres.
+    plane
+        Plane of the table.
+    settings
+        Shares of inconsistent neighbours, and places of assumed viewpoints.
+
+    Returns
+    -------
+    CameraPose
+        The given pose, or an assumed one above the table.
     """
     limits = settings.viewpoint
     few, told = sampled(points, settings), float(np.inf)
@@ -178,7 +233,20 @@ def likeliest_pose(
 
 
 def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kind]:
-    """Return the points or indices (n, …), or a random sample of the size that the settings give."""
+    """Return points or indices, or a random sample of them.
+
+    Parameters
+    ----------
+    points
+        Points or indices, shape (n, …).
+    settings
+        Largest size of the sample, and the seed.
+
+    Returns
+    -------
+    ndarray
+        All of them if there are few, else rows without repetition.
+    """
     size = settings.viewpoint.sample_size
     if len(points) <= size:
         return points
@@ -186,8 +254,24 @@ def sampled(points: NDArray[_Kind], settings: DetectionSettings) -> NDArray[_Kin
 
 
 def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: ViewpointSettings) -> float:
-    """Return the fraction of neighbours in direction from ``eye`` (3,) that are far apart in space, for points (n, 3).
+    """Return the fraction of points' neighbours in direction that are far apart in space.
 
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3), in metres.
+    eye
+        Supposed viewpoint, shape (3,).
+    settings
+        Number of neighbours, and the ratio from which they are far apart.
+
+    Returns
+    -------
+    float
+        Fraction in [0, 1]; 0 for few points. It is large for a wrong viewpoint.
+
+    Examples
+    --------
     >>> x, y = (axis.ravel() for axis in np.mgrid[-0.5:0.5:0.02, -0.5:0.5:0.02])
     >>> bowl = np.stack([x, y, x**2 + y**2], axis=1)
     >>> above, aside = np.array([0.0, 0.0, 2.0]), np.array([0.0, -3.0, 0.01])
@@ -207,7 +291,20 @@ def apart(points: NDArray[np.float64], eye: NDArray[np.float64], settings: Viewp
 
 
 def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return unit vectors (n, 3) from the eye (3,) to points (n, 3)."""
+    """Return the directions of points as seen from an eye.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3).
+    eye
+        Viewpoint, shape (3,).
+
+    Returns
+    -------
+    ndarray
+        Unit vectors of shape (n, 3); 0 for a point at the eye.
+    """
     rays = points - eye
     result: NDArray[np.float64] = rays / np.maximum(np.linalg.norm(rays, axis=1, keepdims=True), 1e-9)
     return result
@@ -216,11 +313,27 @@ def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray
 def table_frame(
     plane: Plane, on: NDArray[np.float64], pose: CameraPose, viewer: tuple[float, float, float] | None
 ) -> NDArray[np.float64]:
-    """Return the transform (4, 4) from the frame of the cloud to that of the table.
+    """Return the transform from the frame of the cloud to that of the table.
 
-    z is the height above the plane. y points away from the viewer: from a given ``viewer`` to the middle of the points
-    ``on`` the table (n, 3); else upwards in the image; else from the sensor to the middle. x points to the right. The
-    origin is on the table, in the middle of the rectangle around its points.
+    z is the height above the plane. y points away from the viewer, and x to the right. The origin is on the table, in
+    the middle of the rectangle around its points.
+
+    Parameters
+    ----------
+    plane
+        Plane of the table.
+    on
+        Points on the table, shape (n, 3), in metres.
+    pose
+        Viewpoint of the points.
+    viewer
+        Place of the viewer; y points from there to the middle of the table. If it is None, y points upwards in the
+        image, or else from the sensor to the middle.
+
+    Returns
+    -------
+    ndarray
+        Transform of shape (4, 4).
     """
     up = plane.normal
     away = _across(up, _away(plane, on.mean(axis=0), pose, viewer))
@@ -258,14 +371,40 @@ def _across(up: NDArray[np.float64], wanted: list[NDArray[np.float64]]) -> NDArr
 
 
 def moved(points: NDArray[np.floating], frame: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (n, 3) moved by a transform (4, 4); coordinates that are not finite stay so."""
+    """Return points moved by a transform.
+
+    Parameters
+    ----------
+    points
+        Points of shape (n, 3).
+    frame
+        Transform of shape (4, 4).
+
+    Returns
+    -------
+    ndarray
+        Points of shape (n, 3); coordinates that are not finite stay so.
+    """
     with np.errstate(invalid="ignore"):  # infinity times 0
         result: NDArray[np.float64] = points @ frame[:3, :3].T + frame[:3, 3]
     return result
 
 
 def in_frame(cloud: PointCloud, frame: NDArray[np.float64]) -> PointCloud:
-    """Return a cloud moved by the transform ``frame`` (4, 4), without labels."""
+    """Return a cloud moved by a transform, without labels.
+
+    Parameters
+    ----------
+    cloud
+        Cloud to move.
+    frame
+        Transform of shape (4, 4), without scaling.
+
+    Returns
+    -------
+    PointCloud
+        Cloud whose points, normals and origin are moved.
+    """
     origin = moved(np.array([cloud.origin]), frame)[0]
     normals = None if cloud.normals is None else (cloud.normals @ frame[:3, :3].T).astype(np.float32)
     points = moved(cloud.points, frame).astype(np.float32)

@@ -71,7 +71,7 @@ def require_points(points: NDArray[np.floating], name: str = "points") -> None:
     Parameters
     ----------
     points
-        The points.
+        Array to check.
     name
         Name of the argument in the message.
 

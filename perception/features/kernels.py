@@ -80,7 +80,7 @@ def in_axes_of(grid: CellGrid, vectors: NDArray[np.floating]) -> NDArray[np.floa
     Parameters
     ----------
     grid
-        The grid.
+        Grid whose axes are permuted, the longest last.
     vectors
         Vectors of shape (m, 3).
 

@@ -270,7 +270,7 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
     Parameters
     ----------
     scene
-        The scene.
+        Scene in metres or pixels.
 
     Returns
     -------
@@ -306,7 +306,7 @@ def scene_text(scene: Scene) -> str:
     Parameters
     ----------
     scene
-        The scene.
+        Scene in metres or pixels.
 
     Returns
     -------

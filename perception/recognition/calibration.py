@@ -123,15 +123,38 @@ class Calibration:
         return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
     def mean(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the weighted geometric mean (..., c) of the ND (..., c) by each descriptor.
+        """Return the weighted geometric mean of the ND by each descriptor.
 
+        Parameters
+        ----------
+        normalised
+            ND by each descriptor, in the order of the weights, each of shape (..., c).
+
+        Returns
+        -------
+        ndarray
+            ND of shape (..., c); inf if one of them is.
+
+        Examples
+        --------
         >>> Calibration(1, 1, 1, 1, weights=(0.5, 0.5)).mean([np.array([1.0, 4.0]), np.array([4.0, np.inf])]).tolist()
         [2.0, inf]
         """
         return np.exp(_mean_logs(self.logs(normalised), np.array(self.weights)))
 
     def logs(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the logarithms (b, ..., c) of ND by each of b descriptors, raised to their floors."""
+        """Return the logarithms of ND by each of b descriptors, raised to their floors.
+
+        Parameters
+        ----------
+        normalised
+            ND by each descriptor, each of shape (..., c).
+
+        Returns
+        -------
+        ndarray
+            Logarithms of shape (b, ..., c).
+        """
         floors = self.floors or (MIN_NORMALISED,) * len(normalised)
         result: NDArray[np.float64] = np.log(
             np.stack([np.maximum(each, floor) for each, floor in zip(normalised, floors, strict=True)])
@@ -139,8 +162,20 @@ class Calibration:
         return result
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return probabilities (..., c + 1) from the ND (..., c) of c categories; the last is that of unknown.
+        """Return probabilities of c categories, and of unknown, from their ND.
 
+        Parameters
+        ----------
+        normalised
+            ND of shape (..., c).
+
+        Returns
+        -------
+        ndarray
+            Probabilities of shape (..., c + 1), with sum 1; the last is that of unknown.
+
+        Examples
+        --------
         >>> even = Calibration(threshold=1.0, even=1.0, doubt=2.0, choice=4.0)
         >>> even.probabilities(np.array([1.0, np.inf, 1.0])).tolist()
         [0.25, 0.0, 0.25, 0.5]
@@ -159,7 +194,18 @@ SHIPPED_JOINT = Calibration(threshold=0.76, even=0.736, doubt=6.9, choice=15.4, 
 
 
 def beside_colour(calibration: Calibration) -> Calibration:
-    """Return a calibration with colour as an additional, last descriptor."""
+    """Return a calibration with colour as an additional, last descriptor.
+
+    Parameters
+    ----------
+    calibration
+        Calibration of the other descriptors.
+
+    Returns
+    -------
+    Calibration
+        Calibration whose weights have the sum 1; that of colour is ``COLOUR_WEIGHT``.
+    """
     count = len(calibration.weights)
     return replace(
         calibration,
@@ -207,8 +253,20 @@ def calibrate_jointly(
 ) -> Calibration:
     """Fit weights, threshold and probabilities to held-out views, given the ND of the same views by each descriptor.
 
-    Logarithms of the weights' ratios have a normal prior about those of ``start``, with its ``weights_widths`` as
-    standard deviations. If there are too few answers, it returns ``start``, as :func:`calibrate` does.
+    Parameters
+    ----------
+    held
+        ND of held-out views by each descriptor. Views and categories are in one order in all of them.
+    prior_unknown
+        Prior probability that a thing is of no known category.
+    start
+        Calibration to start from. Logarithms of the weights' ratios have a normal prior about its weights, with its
+        ``weights_widths`` as standard deviations.
+
+    Returns
+    -------
+    Calibration
+        Fitted calibration; ``start`` if there are too few answers, as for :func:`calibrate`.
     """
     known, truth = held[0].as_known
     if min(len(known), len(held[0].as_unknown)) < MIN_HELD_OUT_ANSWERS:
@@ -222,10 +280,26 @@ def calibrate_jointly(
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
     """Return the threshold of ND with the least expected share of errors.
 
-    Errors are known things above the threshold, and unknown things at or below it. ``known`` (k,) and ``unknown`` (u,)
-    are the least ND of each held-out view. Candidate thresholds are halfway between neighbouring values; of equally
-    good ones the middle one is taken. With an even prior this maximises Youden's J.
+    Errors are known things above the threshold, and unknown things at or below it. Candidate thresholds are halfway
+    between neighbouring values; of equally good ones the middle one is taken. With an even prior this maximises
+    Youden's J.
 
+    Parameters
+    ----------
+    known
+        Least ND of each held-out view of a known category, shape (k,).
+    unknown
+        Least ND of each held-out view of an unknown one, shape (u,).
+    prior_unknown
+        Prior probability that a thing is unknown.
+
+    Returns
+    -------
+    float
+        Threshold of ND; the shipped one without finite values above 0.
+
+    Examples
+    --------
     >>> best_threshold(np.array([0.4, 0.6]), np.array([1.0, 2.0]))
     0.8
     """
@@ -244,11 +318,31 @@ def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], pri
 
 
 def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[np.bool_], bins: int = 10) -> float:
-    """Return the expected calibration error of answers (Naeini et al. 2015).
+    """Return the expected calibration error of answers.
 
     It is the mean over answers of the difference between the mean confidence in their bin and the share of right
-    answers there. ``confidence`` and ``right`` have shape (n,).
+    answers there.
 
+    Parameters
+    ----------
+    confidence
+        Probability of each answer, shape (n,), in [0, 1].
+    right
+        Mask of the right answers, shape (n,).
+    bins
+        Number of bins of equal width.
+
+    Returns
+    -------
+    float
+        Error in [0, 1]; 0 for a perfect calibration.
+
+    Notes
+    -----
+    The measure is that of Naeini et al. (2015).
+
+    Examples
+    --------
     >>> expected_calibration_error(np.array([0.75, 0.75, 0.75, 0.75]), np.array([True, True, True, False]))
     0.0
     """
@@ -260,8 +354,22 @@ def expected_calibration_error(confidence: NDArray[np.float64], right: NDArray[n
 def auroc(known: NDArray[np.floating], unknown: NDArray[np.floating]) -> float:
     """Return the area under the ROC curve: the probability that an unknown thing scores higher than a known one.
 
-    Equal scores count half. ``known`` (k,) and ``unknown`` (u,) are scores; nan if one of them is empty.
+    Equal scores count half.
 
+    Parameters
+    ----------
+    known
+        Scores of known things, shape (k,).
+    unknown
+        Scores of unknown things, shape (u,).
+
+    Returns
+    -------
+    float
+        Area in [0, 1]; nan if there are no known or no unknown things.
+
+    Examples
+    --------
     >>> auroc(np.array([1.0, 2.0]), np.array([2.0, 3.0]))
     0.875
     """

@@ -25,7 +25,23 @@ class Target:
 
     @classmethod
     def of(cls, descriptors: NDArray[np.float32]) -> Target:
-        """Return the target of descriptors (q, d); raise RecognitionError unless they are finite and at least one."""
+        """Return the target of descriptors.
+
+        Parameters
+        ----------
+        descriptors
+            Descriptors of shape (q, d).
+
+        Returns
+        -------
+        Target
+            Target with the descriptors in the order that the kernels need.
+
+        Raises
+        ------
+        RecognitionError
+            If there is no descriptor, or one is not finite.
+        """
         size = descriptors.shape[-1] if isinstance(descriptors, np.ndarray) and descriptors.ndim else 0
         rows = checked("the target view", descriptors, size)
         if not len(rows):
@@ -33,7 +49,18 @@ class Target:
         return cls(rows, np.ascontiguousarray(rows.T), np.sqrt(squared_lengths(rows)))
 
     def require_fit(self, views: PackedViews) -> None:
-        """Raise RecognitionError if the views have descriptors of another length."""
+        """Raise RecognitionError if the views have descriptors of another length.
+
+        Parameters
+        ----------
+        views
+            Views with which the target is compared.
+
+        Raises
+        ------
+        RecognitionError
+            If their descriptors do not have d numbers. No views fit every target.
+        """
         if len(views) and views.size != len(self.columns):
             raise RecognitionError(
                 f"the target's descriptors have {len(self.columns)} numbers, and the remembered views' {views.size};"
@@ -54,6 +81,11 @@ def view_distance(target: NDArray[np.float32], view: NDArray[np.float32]) -> flo
     view
         Descriptors of shape (k, d).
 
+    Returns
+    -------
+    float
+        Mean Euclidean distance.
+
     Raises
     ------
     RecognitionError
@@ -69,7 +101,25 @@ def view_distance(target: NDArray[np.float32], view: NDArray[np.float32]) -> flo
 
 
 def view_distances(target: NDArray[np.float32] | Target, views: PackedViews) -> NDArray[np.float64]:
-    """Return D_V (m,) between a target (q, d) and each of m views; raise RecognitionError if their lengths differ."""
+    """Return D_V (equation 1) between a target and each of m views.
+
+    Parameters
+    ----------
+    target
+        Descriptors of shape (q, d), or the target made of them.
+    views
+        The m views.
+
+    Returns
+    -------
+    ndarray
+        Distances of shape (m,).
+
+    Raises
+    ------
+    RecognitionError
+        If descriptors are not valid, or differ in length.
+    """
     from deixis.perception.recognition.kernels import fill_view_distances
 
     seen = target if isinstance(target, Target) else Target.of(target)
@@ -84,7 +134,22 @@ def view_distances(target: NDArray[np.float32] | Target, views: PackedViews) -> 
 def category_distance(target: NDArray[np.float32] | Target, views: PackedViews) -> tuple[float, int]:
     """Return D_C (equation 2), the least D_V over a category's views, and the index of the first view that has it.
 
-    For a category without views it returns infinity and -1.
+    Parameters
+    ----------
+    target
+        Descriptors of shape (q, d), or the target made of them.
+    views
+        Views of the category.
+
+    Returns
+    -------
+    tuple
+        Distance and index; infinity and -1 for a category without views.
+
+    Raises
+    ------
+    RecognitionError
+        If descriptors are not valid, or differ in length.
     """
     distances = view_distances(target, views)
     if not len(distances):

@@ -93,6 +93,11 @@ def hold_out(
         Maximum number of views that are held out, chosen evenly.
     progress
         Callback with the number of views done, and the number of all views.
+
+    Returns
+    -------
+    HeldOut
+        ND of the held-out views to all categories, in their order.
     """
     share = -(-most // max(1, len(categories)))
     chosen = [(number, place) for number, each in enumerate(categories) for place in _evenly(len(each), share)]
@@ -134,9 +139,21 @@ def shortening(fewer: Sequence[tuple[int, float]]) -> float:
     """Return the exponent a with which D_C falls with the number n of things in a category, D_C ~ n^-a.
 
     A category without the held-out thing has one thing less than in recognition, and is a little farther for that
-    reason alone. ``fewer`` holds, for held-out views, the numbers n of things that remain, and the logarithms of D_C
-    over D_C without one of these. The exponent is from 0 to ``MAX_SHORTENING``, and ``USUAL_SHORTENING`` without views.
+    reason alone.
 
+    Parameters
+    ----------
+    fewer
+        Pairs for held-out views: the number n of things that remain, at least 2, and the logarithm of D_C over D_C
+        without one of these.
+
+    Returns
+    -------
+    float
+        Exponent from 0 to ``MAX_SHORTENING``; ``USUAL_SHORTENING`` without views.
+
+    Examples
+    --------
     >>> round(shortening([(2, -0.1 * np.log(2)), (4, -0.1 * np.log(4 / 3))]), 3)
     0.1
     """

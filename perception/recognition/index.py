@@ -47,7 +47,18 @@ class Reduction:
 
     @classmethod
     def of(cls, packs: list[PackedViews]) -> Reduction:
-        """Return the reduction to the principal axes of an even sample of the packs, of which one must not be empty."""
+        """Return the reduction to the principal axes of an even sample of views.
+
+        Parameters
+        ----------
+        packs
+            Views, of which one pack must not be empty.
+
+        Returns
+        -------
+        Reduction
+            Reduction with the ``AXES`` - 1 axes of the largest variances.
+        """
         from deixis.perception.recognition.kernels import AXES
 
         count = sum(len(pack.descriptors) for pack in packs)
@@ -77,14 +88,36 @@ class Reduction:
 
 
 def longest(reduced: NDArray[np.float32]) -> float:
-    """Return the greatest length of reduced descriptors (n, AXES + 1)."""
+    """Return the greatest length of reduced descriptors.
+
+    Parameters
+    ----------
+    reduced
+        Reduced descriptors of shape (n, AXES + 1), whose last column is the squared length.
+
+    Returns
+    -------
+    float
+        Length; 0 without descriptors.
+    """
     from deixis.perception.recognition.kernels import AXES
 
     return float(np.sqrt(reduced[:, AXES].max(initial=0.0)))
 
 
 def slack(one: float, other: float) -> float:
-    """Return a bound of the rounding error of squared distances between reduced descriptors up to these lengths."""
+    """Return a bound of the rounding error of squared distances between reduced descriptors.
+
+    Parameters
+    ----------
+    one, other
+        Greatest lengths of the descriptors on either side.
+
+    Returns
+    -------
+    float
+        Bound in squared units of the descriptors.
+    """
     from deixis.perception.recognition.kernels import AXES, EPSILON
 
     return 4.0 * (AXES + 8) * EPSILON * (one + other) ** 2
@@ -133,7 +166,20 @@ class InvertedFile:
 
     @classmethod
     def of(cls, reduced: NDArray[np.float32], view_starts: NDArray[np.int64]) -> InvertedFile:
-        """Build the file of the reduced descriptors of m views, which begin at ``view_starts`` (m + 1,)."""
+        """Build the file of the reduced descriptors of m views.
+
+        Parameters
+        ----------
+        reduced
+            Reduced descriptors of shape (n, AXES + 1).
+        view_starts
+            Index of the first descriptor of each view, and n, shape (m + 1,).
+
+        Returns
+        -------
+        InvertedFile
+            File whose lists are the cells of k-means.
+        """
         from scipy.cluster.vq import kmeans2
 
         rows = np.ascontiguousarray(reduced[:: -(-len(reduced) // CENTRE_SAMPLE)][:, :-1])
@@ -151,10 +197,21 @@ class InvertedFile:
         return cls(centres, starts, reduced[order], views[order], count)
 
     def estimates(self, reduced: NDArray[np.float32], count: int) -> NDArray[np.float64]:
-        """Estimate D_V (m,) between a target and every view from the nearest descriptors in ``count`` lists.
+        """Estimate D_V between a target and every view from the nearest descriptors in a number of lists.
 
-        ``reduced`` (q, AXES + 1) are the reduced descriptors of the target. The distance to a view without a descriptor
-        in these lists counts as that of their farthest centre.
+        The distance to a view without a descriptor in these lists counts as that of their farthest centre.
+
+        Parameters
+        ----------
+        reduced
+            Reduced descriptors of the target, shape (q, AXES + 1).
+        count
+            Number of lists that are searched for each descriptor.
+
+        Returns
+        -------
+        ndarray
+            Estimated distances of the m views, shape (m,).
         """
         from deixis.perception.recognition.kernels import estimates
 
@@ -194,7 +251,20 @@ class ViewIndex:
 
     @classmethod
     def of(cls, views: PackedViews, reduction: Reduction | None = None) -> ViewIndex:
-        """Return an index of at least one view."""
+        """Return an index of views.
+
+        Parameters
+        ----------
+        views
+            At least one view.
+        reduction
+            Reduction to use; by default one is computed from the views.
+
+        Returns
+        -------
+        ViewIndex
+            Index with the reduced descriptors.
+        """
         turned = reduction or Reduction.of([views])
         return cls(views, turned, turned(views.descriptors))
 
@@ -209,7 +279,22 @@ class ViewIndex:
         return InvertedFile.of(self.reduced, self.views.starts)
 
     def nearest(self, target: Target, reduced: NDArray[np.float32], effort: Effort | None = None) -> Nearest:
-        """Return the nearest view to a target with reduced descriptors; exact unless ``effort`` is given."""
+        """Return the nearest view to a target.
+
+        Parameters
+        ----------
+        target
+            Target of the same descriptor.
+        reduced
+            Its reduced descriptors, shape (q, AXES + 1).
+        effort
+            Limits of an approximate search; exact without them.
+
+        Returns
+        -------
+        Nearest
+            Nearest view with its D_V.
+        """
         count = len(self.views)
         if effort is not None:
             few = np.argsort(self.filed.estimates(reduced, effort.lists), kind="stable")[: effort.few]
@@ -250,7 +335,20 @@ class ViewIndex:
 
 
 def indexes_of(packs: Sequence[PackedViews], reduction: Reduction | None = None) -> list[ViewIndex | None]:
-    """Return an index for each pack, None for empty ones, all with the same reduction."""
+    """Return an index for each pack of views.
+
+    Parameters
+    ----------
+    packs
+        Views of each category.
+    reduction
+        Reduction that all indexes share; by default one is computed from all packs.
+
+    Returns
+    -------
+    list of ViewIndex or None
+        Indexes in the order of the packs; None for an empty pack.
+    """
     full = [pack for pack in packs if len(pack)]
     if not full:
         return [None] * len(packs)

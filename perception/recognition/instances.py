@@ -45,7 +45,27 @@ class InstanceCategory:
     def of(
         cls, name: str, views: Iterable[tuple[str, NDArray[np.float32]]], things: Mapping[str, str] | None = None
     ) -> InstanceCategory:
-        """Return a category of views, given as pairs of an id and descriptors (k, d), with all distances computed."""
+        """Return a category of views, with all distances computed.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+        views
+            Pairs of an id and descriptors of shape (k, d); k may be 0.
+        things
+            Thing that each view shows, by the view's id.
+
+        Returns
+        -------
+        InstanceCategory
+            Category whose views have the order of ``views``.
+
+        Raises
+        ------
+        RecognitionError
+            If an id is repeated, or descriptors are not valid or differ in length.
+        """
         named = list(views)
         packed = PackedViews.of((key, array) for key, array in named if len(array))
         return cls.among(name, packed, tuple(key for key, array in named if not len(array)), things or {})
@@ -54,7 +74,24 @@ class InstanceCategory:
     def among(
         cls, name: str, views: PackedViews, empty: tuple[str, ...], things: Mapping[str, str]
     ) -> InstanceCategory:
-        """Return a category of packed views, and of the ids of views without a descriptor."""
+        """Return a category of packed views, with all distances computed.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+        views
+            Views with at least one descriptor.
+        empty
+            Ids of views without a descriptor.
+        things
+            Thing that each view shows, by the view's id.
+
+        Returns
+        -------
+        InstanceCategory
+            Category with distances between all pairs of ``views``.
+        """
         return cls(name, views, _distances(views, views), empty, dict(things))
 
     def __len__(self) -> int:
@@ -76,14 +113,44 @@ class InstanceCategory:
         return np.array([numbers[name] for name in names], np.int64)
 
     def width(self, over_things: bool, places: NDArray[np.intp] | None = None) -> Width:
-        """Return the ICD over views of different things, or over all views; only of the views ``places`` if given."""
+        """Return the ICD (equation 3) over views of different things, or over all views.
+
+        Parameters
+        ----------
+        over_things
+            If False, compare also views of one thing.
+        places
+            Indices of the views to compare; all by default.
+
+        Returns
+        -------
+        Width
+            Mean distance, and the number of things or views.
+        """
         at = np.arange(len(self)) if places is None else places
         return Width.of(self.distances[np.ix_(at, at)], self.shown[at] if over_things else None)
 
     def with_view(self, key: str, descriptors: NDArray[np.float32], thing: str | None = None) -> InstanceCategory:
         """Return the category with one more view, at the end.
 
-        Raises RecognitionError if the view is known already, or its descriptors have another length.
+        Parameters
+        ----------
+        key
+            Id of the view.
+        descriptors
+            Its descriptors, shape (k, d); k may be 0.
+        thing
+            Thing that the view shows, if it is known.
+
+        Returns
+        -------
+        InstanceCategory
+            Category with the distances to the view.
+
+        Raises
+        ------
+        RecognitionError
+            If the view is known already, or its descriptors have another length.
         """
         if key in self.views.ids or key in self.empty:
             raise RecognitionError(f"category '{self.name}' has a view '{key}' already")
@@ -99,7 +166,23 @@ class InstanceCategory:
         return replace(self, views=self.views.joined(new), distances=distances, things=things)
 
     def without_view(self, key: str) -> InstanceCategory:
-        """Return the category without a view; raise RecognitionError if it has no such view."""
+        """Return the category without a view.
+
+        Parameters
+        ----------
+        key
+            Id of the view.
+
+        Returns
+        -------
+        InstanceCategory
+            Category without the view's distances.
+
+        Raises
+        ------
+        RecognitionError
+            If the category has no such view.
+        """
         things = {view: thing for view, thing in self.things.items() if view != key}
         if key in self.empty:
             return replace(self, empty=tuple(name for name in self.empty if name != key), things=things)

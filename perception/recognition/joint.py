@@ -46,8 +46,20 @@ class JointRecogniser:
     def recognise(self, described: Sequence[NDArray[np.float32]]) -> Recognition:
         """Name a view, or answer that it is unknown, with reasons.
 
-        ``described`` holds the descriptors (q, d) for each part, in order. A view that lacks one of them is unknown.
-        Raises RecognitionError if descriptors are not finite, or not of the categories' length.
+        Parameters
+        ----------
+        described
+            Descriptors of shape (q, d) for each part, in order. A view that lacks one of them is unknown.
+
+        Returns
+        -------
+        Recognition
+            Answer whose candidates have the weighted mean of the parts' ND.
+
+        Raises
+        ------
+        RecognitionError
+            If descriptors are not finite, or not of the categories' length.
         """
         found = [part.recognise(each) for part, each in zip(self.parts, described, strict=True)]
         nothing = next((each for each in found if not each.candidates), None)
@@ -66,14 +78,47 @@ class JointRecogniser:
         return decided(ranked, unknown, self.calibration, all(each.exact for each in found), by_threshold)
 
     def held_out(self, progress: Progress | None = None) -> list[HeldOut]:
-        """Return the ND of held-out views by each descriptor."""
+        """Return the ND of held-out views by each descriptor.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done and the number of all views, for each part.
+
+        Returns
+        -------
+        list of HeldOut
+            One for each part, about the same views.
+        """
         return [hold_out(part.categories, part.indexes, part.settings, progress=progress) for part in self.parts]
 
     def calibrated(self, progress: Progress | None = None) -> JointRecogniser:
-        """Return the recogniser with weights, threshold and probabilities fitted to its own held-out views."""
+        """Return the recogniser with weights, threshold and probabilities fitted to its own held-out views.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done and the number of all views, for each part.
+
+        Returns
+        -------
+        JointRecogniser
+            Recogniser of the same categories; its calibration stays if there are too few views.
+        """
         return self.calibrated_by(self.held_out(progress))
 
     def calibrated_by(self, held: Sequence[HeldOut]) -> JointRecogniser:
-        """Return the recogniser calibrated by the ND of held-out views by each descriptor."""
+        """Return the recogniser calibrated by the ND of held-out views by each descriptor.
+
+        Parameters
+        ----------
+        held
+            ND of the same held-out views by each part, as :meth:`held_out` returns them.
+
+        Returns
+        -------
+        JointRecogniser
+            Recogniser of the same categories; its calibration stays if there are too few views.
+        """
         prior = self.parts[0].settings.prior_unknown
         return replace(self, calibration=calibrate_jointly(held, prior, self.calibration))

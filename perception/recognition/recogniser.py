@@ -68,14 +68,47 @@ class Recognition:
 
 
 def no_answer(calibration: Calibration, reason: str) -> Recognition:
-    """Return the answer unknown, for a reason that prevents a comparison."""
+    """Return the answer unknown, for a reason that prevents a comparison.
+
+    Parameters
+    ----------
+    calibration
+        Calibration of the recogniser.
+    reason
+        Reason in words.
+
+    Returns
+    -------
+    Recognition
+        Answer without candidates; the probability of unknown is 1.
+    """
     return Recognition(None, (), 1.0, calibration, True, (reason,))
 
 
 def decided(
     ranked: Sequence[Candidate], unknown: float, calibration: Calibration, exact: bool, by_threshold: bool
 ) -> Recognition:
-    """Return the decision between the nearest category and unknown, with its reasons."""
+    """Return the decision between the nearest category and unknown, with its reasons.
+
+    Parameters
+    ----------
+    ranked
+        Candidates in ascending order of ND, at least one.
+    unknown
+        Probability that no category is right.
+    calibration
+        Calibration with the threshold.
+    exact
+        False for an approximate search.
+    by_threshold
+        If True, compare the least ND with the threshold; if False, compare the probability of the nearest category with
+        ``MIN_LABEL_PROBABILITY``.
+
+    Returns
+    -------
+    Recognition
+        Answer with the label, or without one if the view is unknown.
+    """
     first = ranked[0]
     known = first.normalised <= calibration.threshold if by_threshold else first.probability >= MIN_LABEL_PROBABILITY
     label = first.category if known and first.nearest is not None else None
@@ -136,7 +169,27 @@ class Recogniser:
         settings: RecognitionSettings = DEFAULT,
         calibration: Calibration = SHIPPED,
     ) -> Recogniser:
-        """Return a recogniser; raise RecognitionError for equal names, or descriptors of unequal length."""
+        """Return a recogniser of categories, with their indexes.
+
+        Parameters
+        ----------
+        categories
+            Categories with distinct names.
+        settings
+            Settings of recognition.
+        calibration
+            Parameters of decision and probabilities.
+
+        Returns
+        -------
+        Recogniser
+            Recogniser with one reduction for all categories.
+
+        Raises
+        ------
+        RecognitionError
+            If names are equal, or descriptors are of unequal length.
+        """
         names = [category.name for category in categories]
         if len(set(names)) < len(names):
             raise RecognitionError(f"the names of categories must be distinct, got {', '.join(sorted(names))}")
@@ -145,10 +198,22 @@ class Recogniser:
         return cls(tuple(categories), tuple(indexes), settings, calibration)
 
     def recognise(self, descriptors: NDArray[np.float32]) -> Recognition:
-        """Name a view with descriptors (q, d), or answer that it is unknown, with reasons.
+        """Name a view, or answer that it is unknown, with reasons.
 
-        Without a descriptor (q = 0) or a category the answer is unknown. Raises RecognitionError if descriptors are not
-        finite, or not of the categories' length.
+        Parameters
+        ----------
+        descriptors
+            Descriptors of shape (q, d). Without a descriptor (q = 0) or a category the answer is unknown.
+
+        Returns
+        -------
+        Recognition
+            Answer with a candidate for each category.
+
+        Raises
+        ------
+        RecognitionError
+            If descriptors are not finite, or not of the categories' length.
         """
         if not self.categories:
             return no_answer(self.calibration, "no category has been taught")
@@ -171,13 +236,45 @@ class Recogniser:
         return spreads(widths, self.settings.prior_spread, self.settings.shrinkage)
 
     def learned(self, category: InstanceCategory) -> Recogniser:
-        """Return a recogniser with the category added, or replaced if there is one of its name."""
+        """Return a recogniser with the category added, or replaced if there is one of its name.
+
+        Parameters
+        ----------
+        category
+            Category with all its views.
+
+        Returns
+        -------
+        Recogniser
+            Recogniser whose other categories are unchanged.
+
+        Raises
+        ------
+        RecognitionError
+            If the category's descriptors are not of the others' length.
+        """
         if category.name not in [known.name for known in self.categories]:
             return self._with((*self.categories, category), (*self.indexes, None), category)
         return self._with(self.categories, self.indexes, category)
 
     def forgotten(self, name: str) -> Recogniser:
-        """Return a recogniser without a category; raise RecognitionError for an unknown name."""
+        """Return a recogniser without a category.
+
+        Parameters
+        ----------
+        name
+            Name of the category.
+
+        Returns
+        -------
+        Recogniser
+            Recogniser whose other categories are unchanged.
+
+        Raises
+        ------
+        RecognitionError
+            If the name is unknown.
+        """
         places = [i for i, category in enumerate(self.categories) if category.name != name]
         if len(places) == len(self.categories):
             raise RecognitionError(f"unknown category '{name}'")
@@ -188,7 +285,18 @@ class Recogniser:
         )
 
     def calibrated(self, progress: Progress | None = None) -> Recogniser:
-        """Return a recogniser with threshold and probabilities fitted to its own held-out views."""
+        """Return a recogniser with threshold and probabilities fitted to its own held-out views.
+
+        Parameters
+        ----------
+        progress
+            Called with the number of views done and the number of all views.
+
+        Returns
+        -------
+        Recogniser
+            Recogniser of the same categories; its calibration is the shipped one if there are too few views.
+        """
         held = hold_out(self.categories, self.indexes, self.settings, progress=progress)
         return replace(self, calibration=calibrate(held, self.settings.prior_unknown))
 
@@ -230,7 +338,29 @@ def recognise(
     settings: RecognitionSettings = DEFAULT,
     calibration: Calibration = SHIPPED,
 ) -> Recognition:
-    """Name one view; to name many, create a :class:`Recogniser` once."""
+    """Name one view; to name many, create a :class:`Recogniser` once.
+
+    Parameters
+    ----------
+    descriptors
+        Descriptors of the view, shape (q, d).
+    categories
+        Categories with distinct names.
+    settings
+        Settings of recognition.
+    calibration
+        Parameters of decision and probabilities.
+
+    Returns
+    -------
+    Recognition
+        Answer with a candidate for each category.
+
+    Raises
+    ------
+    RecognitionError
+        If names are equal, or descriptors are not valid or of unequal length.
+    """
     return Recogniser.of(categories, settings, calibration).recognise(descriptors)
 
 

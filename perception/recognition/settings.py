@@ -59,7 +59,18 @@ class RecognitionSettings:
             raise RecognitionError(f"`shrinkage` must be at least 0 things, got {self.shrinkage:g}")
 
     def effort_among(self, views: int) -> Effort | None:
-        """Return the effort of the search among a number of views; None for an exact search."""
+        """Return the effort of the search among a number of views; None for an exact search.
+
+        Parameters
+        ----------
+        views
+            Number of views of all categories.
+
+        Returns
+        -------
+        Effort or None
+            Effort if there are more than ``exact_up_to`` views.
+        """
         return None if views <= self.exact_up_to else self.effort
 
 

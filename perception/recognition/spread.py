@@ -50,11 +50,23 @@ class Width:
 
     @classmethod
     def of(cls, distances: NDArray[np.floating], things: NDArray[np.int64] | None = None) -> Width:
-        """Return the width of a category from the distances D_V (n, n) between its views.
+        """Return the width of a category from the distances between its views.
 
-        ``things`` (n,) are the numbers of the things that the views show; without it, the mean is over all pairs of
-        views, as in equation 3.
+        Parameters
+        ----------
+        distances
+            D_V between n views, shape (n, n).
+        things
+            Number of the thing that each view shows, shape (n,). Without it, the mean is over all pairs of views, as in
+            equation 3.
 
+        Returns
+        -------
+        Width
+            Mean distance between views of different things; None if there is only one.
+
+        Examples
+        --------
         >>> distances = np.array([[0.0, 1.0, 4.0], [1.0, 0.0, 6.0], [4.0, 6.0, 0.0]])
         >>> Width.of(distances, np.array([0, 0, 1])).icd, round(Width.of(distances).icd, 2)
         (5.0, 3.67)
@@ -87,9 +99,24 @@ class Spread:
 def spreads(widths: Sequence[Width], prior: float, shrinkage: float = 0.0) -> list[Spread]:
     """Return the spread of each category, (n ICD + s M) / (n + s).
 
-    n is the category's number of things, M the median ICD of all categories, and s the ``shrinkage``; ``prior`` is the
-    spread if no category has an ICD.
+    n is the category's number of things, M the median ICD of all categories, and s the shrinkage.
 
+    Parameters
+    ----------
+    widths
+        Width of each category.
+    prior
+        Spread if no category has an ICD.
+    shrinkage
+        Number s of things that the median is worth.
+
+    Returns
+    -------
+    list of Spread
+        Spreads in the order of the widths, each with its source.
+
+    Examples
+    --------
     >>> widths = [Width(1.0, 5), Width(3.0, 5), Width(8.0, 15), Width(None, 1)]
     >>> [spread.value for spread in spreads(widths, prior=1.0)]
     [1.0, 3.0, 8.0, 3.0]

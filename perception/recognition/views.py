@@ -42,10 +42,22 @@ class PackedViews:
 
     @classmethod
     def of(cls, views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
-        """Return the set of views given as pairs of an id and descriptors (k, d).
+        """Return a set of views.
 
-        Raises RecognitionError for a repeated id, a view without a descriptor, and descriptors that :func:`checked`
-        rejects.
+        Parameters
+        ----------
+        views
+            Pairs of an id and descriptors of shape (k, d).
+
+        Returns
+        -------
+        PackedViews
+            Views in the given order.
+
+        Raises
+        ------
+        RecognitionError
+            If an id is repeated, a view has no descriptor, or :func:`checked` rejects descriptors.
         """
         named = list(views)
         ids = tuple(name for name, _ in named)
@@ -81,7 +93,23 @@ class PackedViews:
         return squared_lengths(self.descriptors).astype(np.float32)
 
     def joined(self, others: PackedViews) -> PackedViews:
-        """Return these views, followed by the others."""
+        """Return these views, followed by the others.
+
+        Parameters
+        ----------
+        others
+            Views with other ids.
+
+        Returns
+        -------
+        PackedViews
+            Views in both orders, one after the other.
+
+        Raises
+        ------
+        RecognitionError
+            If an id is repeated, or descriptors differ in length.
+        """
         if not len(self) or not len(others):
             return self if len(self) else others
         _require_distinct((*self.ids, *others.ids))
@@ -91,15 +119,43 @@ class PackedViews:
         return PackedViews((*self.ids, *others.ids), np.concatenate([self.descriptors, others.descriptors]), starts)
 
     def without(self, place: int) -> PackedViews:
-        """Return all views except the one with an index."""
+        """Return all views except the one with an index.
+
+        Parameters
+        ----------
+        place
+            Index of the view.
+
+        Returns
+        -------
+        PackedViews
+            Views in the given order.
+        """
         rest = [(name, self[i]) for i, name in enumerate(self.ids) if i != place]
         return PackedViews.of(rest)
 
 
 def checked(what: str, descriptors: NDArray[np.float32], size: int) -> NDArray[np.float32]:
-    """Return descriptors (k, size) as a contiguous float32 array; raise RecognitionError if they are not valid.
+    """Return descriptors as a contiguous float32 array if they are valid.
 
-    k may be 0; ``what`` names the descriptors in errors.
+    Parameters
+    ----------
+    what
+        Name of the descriptors in errors.
+    descriptors
+        Descriptors of shape (k, size); k may be 0.
+    size
+        Length of a descriptor.
+
+    Returns
+    -------
+    ndarray
+        Descriptors of shape (k, size).
+
+    Raises
+    ------
+    RecognitionError
+        If the shape is another one, or numbers are not finite or not below ``MAX_COMPONENT``.
     """
     if not isinstance(descriptors, np.ndarray) or descriptors.ndim != 2 or descriptors.shape[1] != size:
         found = getattr(descriptors, "shape", type(descriptors).__name__)
@@ -114,7 +170,18 @@ def checked(what: str, descriptors: NDArray[np.float32], size: int) -> NDArray[n
 
 
 def squared_lengths(descriptors: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the squared lengths (n,) of descriptors (n, d), summed in double precision."""
+    """Return the squared lengths of descriptors, summed in double precision.
+
+    Parameters
+    ----------
+    descriptors
+        Descriptors of shape (n, d).
+
+    Returns
+    -------
+    ndarray
+        Squared lengths of shape (n,).
+    """
     result: NDArray[np.float64] = np.einsum("ij,ij->i", descriptors, descriptors, dtype=np.float64)
     return result
 
@@ -129,9 +196,19 @@ _NAMES = ("descriptors.npy", "lengths.npy", "squares.npy", "ids.json")
 
 
 def write_views(folder: Path, views: Iterable[tuple[str, NDArray[np.float32]]]) -> None:
-    """Write views, pairs of an id and descriptors (k, d), one at a time into a folder, which is created.
+    """Write views one at a time into a folder.
 
-    Raises RecognitionError if a view has no or unfitting descriptors, an id is repeated, or the folder holds views.
+    Parameters
+    ----------
+    folder
+        Folder, which is created if needed.
+    views
+        Pairs of an id and descriptors of shape (k, d).
+
+    Raises
+    ------
+    RecognitionError
+        If a view has no or unfitting descriptors, an id is repeated, or the folder holds views.
     """
     folder.mkdir(parents=True, exist_ok=True)
     places = [folder / name for name in _NAMES]
@@ -159,7 +236,23 @@ def write_views(folder: Path, views: Iterable[tuple[str, NDArray[np.float32]]]) 
 
 
 def open_views(folder: Path) -> PackedViews:
-    """Return the views of a folder, with descriptors mapped from the file; raise RecognitionError if it holds none."""
+    """Return the views of a folder, with descriptors mapped from the file.
+
+    Parameters
+    ----------
+    folder
+        Folder that :func:`write_views` wrote.
+
+    Returns
+    -------
+    PackedViews
+        Views whose descriptors are read when they are used.
+
+    Raises
+    ------
+    RecognitionError
+        If the folder holds no views, or they are damaged.
+    """
     try:
         descriptors = np.load(folder / _NAMES[0], mmap_mode="r", allow_pickle=False)
         lengths, squares = (np.load(folder / name, allow_pickle=False) for name in _NAMES[1:3])
@@ -183,10 +276,24 @@ def open_views(folder: Path) -> PackedViews:
 
 
 def mapped(views: Iterable[tuple[str, NDArray[np.float32]]]) -> PackedViews:
-    """Return views, pairs of an id and descriptors (k, d), that are kept on disk instead of in memory.
+    """Return views that are kept on disk instead of in memory.
 
     The file is an unnamed one in the folder for temporary files (``TMPDIR``), and is freed with the returned object.
-    Raises RecognitionError if it cannot be written, and for the errors of :func:`write_views`.
+
+    Parameters
+    ----------
+    views
+        Pairs of an id and descriptors of shape (k, d), which are written one at a time.
+
+    Returns
+    -------
+    PackedViews
+        Views whose descriptors are read when they are used.
+
+    Raises
+    ------
+    RecognitionError
+        If the file cannot be written, or :func:`write_views` rejects a view.
     """
     rest = iter(views)
     first = next(rest, None)

@@ -13,7 +13,20 @@ CLOTH_CELL = 0.004
 
 
 def napkin(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a folded napkin: flat below, slightly uneven above, thinner at its edges."""
+    """Return a folded napkin: flat below, slightly uneven above, thinner at its edges.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The height is that of the folded cloth.
+    rng
+        Source of the random waves of the upper side.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the cloth, which stands on z = 0 and is centred on the z axis.
+    """
     columns, rows = (max(int(np.ceil(side / CLOTH_CELL)), 4) + 1 for side in (size.width, size.length))
     x, y = np.meshgrid(np.linspace(-1, 1, columns), np.linspace(-1, 1, rows))
     waves = rng.uniform(1.0, 3.0, (3, 2)), rng.uniform(0, 2 * np.pi, 3)
@@ -25,7 +38,20 @@ def napkin(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def block(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a block with round corners and a bevelled top."""
+    """Return a block with round corners and a bevelled top.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres.
+    rng
+        Source of the random corners.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the block, which stands on z = 0 and is centred on the z axis.
+    """
     corner = rng.uniform(0.15, 0.3) * min(size.width, size.length)
     bevel = min(0.15 * size.height, 0.5 * corner)
     insets = [(0.0, 0.0), (0.0, size.height - bevel), (0.3 * bevel, size.height - 0.3 * bevel), (bevel, size.height)]
@@ -40,7 +66,20 @@ def block(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def cylinder(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a cylinder with a bevelled top."""
+    """Return a cylinder with a bevelled top.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter.
+    rng
+        Source of the random bevel.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the cylinder, which stands on z = 0 and is centred on the z axis.
+    """
     radius = size.width / 2
     bevel = min(0.1 * size.height, rng.uniform(0.1, 0.25) * radius)
     outline = [(radius, 0.0), (radius, size.height - bevel), (radius - bevel, size.height)]

@@ -41,38 +41,101 @@ class Camera:
         return position
 
     def directions(self) -> NDArray[np.float64]:
-        """Return the directions of the pixels, row by row, in the camera's frame (rows * columns, 3), with z = 1."""
+        """Return the directions of the pixels in the camera's frame, row by row.
+
+        Returns
+        -------
+        ndarray
+            Directions of shape (rows * columns, 3), with z = 1.
+        """
         lens = self.lens
         v, u = np.mgrid[: lens.height, : lens.width]
         rays = [(u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy, np.ones(u.shape)]
         return np.stack(rays, axis=-1).reshape(-1, 3)
 
     def pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the pixels (n, 2) of points (n, 3) in the table's frame; NaN for points behind the camera."""
+        """Return the pixels at which points are seen.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3) in the table's frame, in metres.
+
+        Returns
+        -------
+        ndarray
+            Column and row of each point, shape (n, 2), also outside the image; NaN for points behind the camera.
+        """
         seen, lens = self.to_camera(points), self.lens
         z = np.where(seen[:, 2] > 0, seen[:, 2], np.nan)
         return np.stack([lens.fx * seen[:, 0] / z + lens.cx, lens.fy * seen[:, 1] / z + lens.cy], axis=1)
 
     def to_table(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Transform points (n, 3) from the camera's frame to the table's."""
+        """Transform points from the camera's frame to the table's.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Points of shape (n, 3), in metres.
+        """
         moved: NDArray[np.float64] = points @ self.pose[:3, :3].T + self.pose[:3, 3]
         return moved
 
     def to_camera(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
-        """Transform points (n, 3) from the table's frame to the camera's."""
+        """Transform points from the table's frame to the camera's.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3), in metres.
+
+        Returns
+        -------
+        ndarray
+            Points of shape (n, 3), in metres; z is their depth.
+        """
         moved: NDArray[np.float64] = (points - self.pose[:3, 3]) @ self.pose[:3, :3]
         return moved
 
     def sees(self, points: NDArray[np.float64]) -> bool:
-        """Return True if all points (n, 3) of the table's frame are within the image."""
+        """Return True if all points are within the image.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3) in the table's frame, in metres.
+
+        Returns
+        -------
+        bool
+            False if one of them is behind the camera. Occlusion is ignored.
+        """
         at = self.pixels(points)
         within = (at >= -0.5) & (at <= (self.lens.width - 0.5, self.lens.height - 0.5))  # NaN is not
         return bool(within.all())
 
     def windowed(self, points: NDArray[np.float64]) -> Camera:
-        """Return the camera of the part of the image around points (n, 3) of the table, with a margin of 1 pixel.
+        """Return the camera of the part of the image around points, with a margin of 1 pixel.
 
-        Raises SimulationError if the image shows none of them.
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3) in the table's frame, in metres.
+
+        Returns
+        -------
+        Camera
+            Camera with an equal pose and a smaller image.
+
+        Raises
+        ------
+        SimulationError
+            If the image shows none of the points.
         """
         at = self.pixels(points)
         low = np.clip(np.floor(at.min(axis=0)) - 1, 0, None)
@@ -85,10 +148,29 @@ class Camera:
 
 
 def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
-    """Return the pose (4, 4) of an upright camera at ``eye`` that looks at ``target``.
+    """Return the pose of an upright camera that looks at a target.
 
     In a view from straight above, the y axis of the table points up in the image.
 
+    Parameters
+    ----------
+    eye
+        Position of the camera, shape (3,), in metres.
+    target
+        Point in the middle of the image, shape (3,), in metres.
+
+    Returns
+    -------
+    ndarray
+        Transform of shape (4, 4) from the camera's frame to the table's.
+
+    Raises
+    ------
+    SimulationError
+        If the points are equal or not finite.
+
+    Examples
+    --------
     >>> looking_pose((0, 0, 1), (0, 0, 0))[:3, :3].tolist()
     [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]
     """
@@ -108,7 +190,22 @@ def looking_pose(eye: ArrayLike, target: ArrayLike) -> NDArray[np.float64]:
 
 
 def check_place(height: float, back: float, azimuth: float) -> None:
-    """Raise SimulationError for an impossible place of a camera; lengths in metres, the azimuth in radians."""
+    """Raise SimulationError for an impossible place of a camera.
+
+    Parameters
+    ----------
+    height
+        Height above the table in metres.
+    back
+        Distance from the table's edge in metres.
+    azimuth
+        Direction in radians.
+
+    Raises
+    ------
+    SimulationError
+        If the height is not above 0, a length is not less than ``MAX_CAMERA_DISTANCE``, or the azimuth is not finite.
+    """
     if not 0 < height < MAX_CAMERA_DISTANCE:
         raise SimulationError(
             f"a camera must be above the table and below {MAX_CAMERA_DISTANCE:g} m, got a height of {height:g} m"

@@ -17,7 +17,20 @@ Profile = list[tuple[float, float]]
 
 
 def plate(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a plate with a flat well and a rim, which is mostly a flange beyond a step, or else one curve."""
+    """Return a plate with a flat well and a rim, which is mostly a flange beyond a step, or else one curve.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter.
+    rng
+        Source of the random thickness, well and rim.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the plate, which stands on z = 0 and is centred on the z axis.
+    """
     radius, height = size.width / 2, size.height
     thickness = min(rng.uniform(0.003, 0.0045), 0.3 * height)
     well = radius * rng.uniform(0.58, 0.70)
@@ -35,7 +48,20 @@ def plate(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def bowl(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a bowl on a foot."""
+    """Return a bowl on a foot.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter.
+    rng
+        Source of the random foot, curve and wall.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the bowl, which stands on z = 0 and is centred on the z axis.
+    """
     radius, height = size.width / 2, size.height
     foot = radius * rng.uniform(0.38, 0.55)
     share = np.linspace(0.0, 1.0, 28) ** 1.5
@@ -44,7 +70,20 @@ def bowl(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def cup(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a cup that widens upwards, with a handle."""
+    """Return a cup that widens upwards, with a handle.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter of the rim; the length includes the handle.
+    rng
+        Source of the random foot, curve, wall and handle.
+
+    Returns
+    -------
+    Mesh
+        Mesh that stands on z = 0. The z axis is that of the vessel without its handle.
+    """
     radius, height = size.width / 2, size.height
     foot = radius * rng.uniform(0.5, 0.65)
     share = np.linspace(0.0, 1.0, 28) ** 1.5
@@ -53,7 +92,20 @@ def cup(size: Size, rng: np.random.Generator) -> Mesh:
 
 
 def mug(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a nearly straight mug with a handle."""
+    """Return a nearly straight mug with a handle.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter of the rim; the length includes the handle.
+    rng
+        Source of the random taper, wall and handle.
+
+    Returns
+    -------
+    Mesh
+        Mesh that stands on z = 0. The z axis is that of the vessel without its handle.
+    """
     radius, height = size.width / 2, size.height
     taper = rng.uniform(0.86, 1.0)
     share = np.concatenate([[0.0, 0.02, 0.05], np.linspace(0.1, 1.0, 10)])
@@ -64,8 +116,21 @@ def mug(size: Size, rng: np.random.Generator) -> Mesh:
 def vessel(outer: NDArray[np.float64], z: NDArray[np.float64], wall: float, floor: float | None = None) -> Profile:
     """Return the profile of an open vessel.
 
-    ``outer`` holds the outer radius at each of the heights ``z``, from the table (z[0] = 0) to the rim, and ``wall``
-    is the thickness of the wall; all in metres.
+    Parameters
+    ----------
+    outer
+        Outer radius at each of n heights, shape (n,), in metres.
+    z
+        Heights from the table (z[0] = 0) to the rim, shape (n,), in metres, ascending.
+    wall
+        Thickness of the wall in metres.
+    floor
+        Height of the inner floor in metres; by default 1.5 times the wall, and at least 4 mm.
+
+    Returns
+    -------
+    Profile
+        Pairs of radius and height, for :func:`revolved`.
     """
     floor = max(1.5 * wall, 0.004) if floor is None else floor
     inside = z > floor
@@ -97,35 +162,103 @@ STEMMED_SLENDERNESS = 1.7
 
 
 def tumbler(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a tumbler that widens upwards."""
+    """Return a tumbler that widens upwards.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the diameter of the rim.
+    rng
+        Source of the random taper and floor.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the tumbler, which stands on z = 0 and is centred on the z axis.
+    """
     share = np.linspace(0.0, 1.0, 12)
     outer = size.width / 2 * (1 - rng.uniform(0.05, 0.3) * (1 - share))
     return revolved(vessel(outer, size.height * share, wall=0.002, floor=rng.uniform(0.006, 0.012)))
 
 
 def water_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a goblet if the glass is slender, or else a tumbler."""
+    """Return a goblet if the glass is slender, or else a tumbler.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the greatest diameter.
+    rng
+        Source of the random stem and bowl.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the glass, which stands on z = 0 and is centred on the z axis.
+    """
     if size.height < STEMMED_SLENDERNESS * size.width:
         return tumbler(size, rng)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.5, 0.75), rim=rng.uniform(0.88, 0.97))
 
 
 def wine_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a wine glass, whose bowl narrows towards the rim."""
+    """Return a wine glass, whose bowl narrows towards the rim.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the greatest diameter.
+    rng
+        Source of the random stem and bowl.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the glass, which stands on z = 0 and is centred on the z axis.
+    """
     return stemmed(size, rng, stem=rng.uniform(0.42, 0.5), belly=rng.uniform(0.35, 0.5), rim=rng.uniform(0.7, 0.86))
 
 
 def champagne_glass(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a flute if the glass is slender, or else a saucer on a stem."""
+    """Return a flute if the glass is slender, or else a saucer on a stem.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the greatest diameter.
+    rng
+        Source of the random stem and bowl.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the glass, which stands on z = 0 and is centred on the z axis.
+    """
     if size.height < 2.0 * size.width:
         return stemmed(size, rng, stem=rng.uniform(0.6, 0.68), belly=0.9, rim=0.99)
     return stemmed(size, rng, stem=rng.uniform(0.3, 0.38), belly=rng.uniform(0.55, 0.7), rim=rng.uniform(0.82, 0.92))
 
 
 def stemmed(size: Size, rng: np.random.Generator, stem: float, belly: float, rim: float) -> Mesh:
-    """Return a glass with a foot, a stem up to a share of the height, and a bowl.
+    """Return a glass with a foot, a stem and a bowl.
 
-    ``belly`` is the share of the bowl's height at which it is widest, ``rim`` the share of that width at the rim.
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the greatest diameter.
+    rng
+        Source of the random foot and thickness of the stem.
+    stem
+        Height of the top of the stem, as a share of the height.
+    belly
+        Share of the bowl's height at which it is widest.
+    rim
+        Diameter of the rim, as a share of the greatest diameter.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the glass, which stands on z = 0 and is centred on the z axis.
     """
     radius, height = size.width / 2, size.height
     foot = radius * min(0.95, rng.uniform(0.8, 0.95) if size.height < 3 * size.width else 0.95)
@@ -143,7 +276,20 @@ def stemmed(size: Size, rng: np.random.Generator, stem: float, belly: float, rim
 
 
 def bottle(size: Size, rng: np.random.Generator) -> Mesh:
-    """Return a closed bottle."""
+    """Return a closed bottle.
+
+    Parameters
+    ----------
+    size
+        Width, length and height in metres. The width is the greatest diameter.
+    rng
+        Source of the random neck, shoulder and throat.
+
+    Returns
+    -------
+    Mesh
+        Mesh of the bottle, which stands on z = 0 and is centred on the z axis.
+    """
     radius, height = size.width / 2, size.height
     neck = min(radius * 0.6, rng.uniform(0.013, 0.016))
     shoulder, throat = rng.uniform(0.55, 0.64), rng.uniform(0.70, 0.78)

@@ -81,7 +81,18 @@ def _round_end(stations: Array, size: Size, half: float) -> Array:
 
 
 def spoon(roundness: float = 0.0) -> Builder:
-    """Return a builder of spoons; ``roundness`` 1 makes the bowl as long as wide, 0 the usual egg."""
+    """Return a builder of spoons.
+
+    Parameters
+    ----------
+    roundness
+        Shape of the bowl: 1 makes it as long as wide, 0 the usual egg.
+
+    Returns
+    -------
+    Builder
+        Function that makes a mesh from a size in metres and a random generator.
+    """
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         wide, deep = size.width / 2, size.width * rng.uniform(0.14, 0.2)
@@ -105,7 +116,18 @@ def spoon(roundness: float = 0.0) -> Builder:
 
 
 def fork(tines: int = 4) -> Builder:
-    """Return a builder of forks with a number of tines."""
+    """Return a builder of forks.
+
+    Parameters
+    ----------
+    tines
+        Number of tines.
+
+    Returns
+    -------
+    Builder
+        Function that makes a mesh from a size in metres and a random generator.
+    """
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:
         wide, root = size.width / 2, rng.uniform(0.72, 0.77)
@@ -133,7 +155,19 @@ def fork(tines: int = 4) -> Builder:
 def knife(blade: float = 0.55, breadth: float = 1.0, grip: float = 0.75, pointed: bool = False) -> Builder:
     """Return a builder of knives, which lie on their side, the edge to the left.
 
-    ``blade`` is its share of the length; the wider of ``breadth`` (of the blade) and ``grip`` is the knife's width.
+    Parameters
+    ----------
+    blade
+        Length of the blade, as a share of the knife's length.
+    breadth, grip
+        Widths of the blade and of the handle, as shares of the knife's width. The larger one should be 1.
+    pointed
+        If True, the tip is a point instead of round.
+
+    Returns
+    -------
+    Builder
+        Function that makes a mesh from a size in metres and a random generator.
     """
 
     def build(size: Size, rng: np.random.Generator) -> Mesh:

@@ -67,16 +67,50 @@ class DepthSensor:
 
     @classmethod
     def ideal(cls) -> DepthSensor:
-        """Return a sensor without noise or missing points."""
+        """Return a sensor without noise or missing points.
+
+        Returns
+        -------
+        DepthSensor
+            Sensor whose depths and colours are exact.
+        """
         return cls(noise=0.0, missing=0.0, grazing=(np.pi, 2 * np.pi), colour_noise=0.0)
 
     def measured(self, depth: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
-        """Return the measured depths (n,) in metres, from the true ones."""
+        """Return the measured depths for true ones.
+
+        The standard deviation of the noise grows with the square of the depth.
+
+        Parameters
+        ----------
+        depth
+            True depths of shape (n,), in metres.
+        rng
+            Source of the noise.
+
+        Returns
+        -------
+        ndarray
+            Depths of shape (n,), in metres.
+        """
         noisy = depth + rng.standard_normal(len(depth)) * self.noise * NOISE * depth**2
         return _quantised(noisy) if self.quantised else noisy
 
     def lost(self, cosine: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.bool_]:
-        """Return True for points (n,) without a depth, given cosines of the angles between rays and normals."""
+        """Return True for each point that has no depth.
+
+        Parameters
+        ----------
+        cosine
+            Cosine of the angle between the ray and the surface's normal at each point, shape (n,).
+        rng
+            Source of the random losses.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
         angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
         start, end = self.grazing
         share = np.maximum(np.clip((angle - start) / (end - start), 0.0, 1.0), self.missing)
@@ -104,7 +138,24 @@ class Look:
 
 
 def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.Generator) -> Look:
-    """Return an image of meshes in the table's frame."""
+    """Return an image of meshes.
+
+    Parameters
+    ----------
+    caster
+        Ray caster for the meshes in the table's frame.
+    camera
+        Camera that looks at them.
+    sensor
+        Errors of the depths.
+    rng
+        Source of these errors.
+
+    Returns
+    -------
+    Look
+        Points in the camera's frame, with the mesh and the shade of each pixel.
+    """
     rays = camera.directions()
     turned = rays @ camera.pose[:3, :3].T
     hits = caster.cast(camera.eye, turned)
@@ -132,8 +183,22 @@ LIGHT = np.array([-0.36, -0.25, 0.9])
 def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, seed: int = 0) -> PointCloud:
     """Return an organised cloud of the table in the camera's frame, with colours and true labels.
 
-    Labels are -1 without a measurement, 0 for the table, and from 1 for the things in the order of the table. The same
-    seed gives the same cloud.
+    Parameters
+    ----------
+    table
+        Table with its things.
+    camera
+        Camera that looks at it.
+    sensor
+        Errors of depths and colours; those of a Kinect by default.
+    seed
+        Seed of these errors; equal seeds give equal clouds.
+
+    Returns
+    -------
+    PointCloud
+        Cloud in metres. Labels are -1 without a measurement, 0 for the table, and from 1 for the things in the order of
+        the table.
     """
     rng = np.random.default_rng(seed)
     sensor = sensor or DepthSensor()
@@ -150,7 +215,20 @@ def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, see
 
 
 def in_table_frame(cloud: PointCloud, camera: Camera) -> PointCloud:
-    """Transform a cloud from the camera's frame to the table's; its origin is then the camera's position."""
+    """Transform a cloud from the camera's frame to the table's.
+
+    Parameters
+    ----------
+    cloud
+        Cloud in the camera's frame, in metres.
+    camera
+        Camera that saw it.
+
+    Returns
+    -------
+    PointCloud
+        Cloud in the table's frame, whose origin is the camera's position.
+    """
     x, y, z = camera.eye.tolist()
     points = camera.to_table(cloud.points.astype(np.float64)).astype(np.float32)
     normals = None if cloud.normals is None else (cloud.normals @ camera.pose[:3, :3].T).astype(np.float32)

@@ -33,17 +33,52 @@ PlanBox = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def overlap_in_plan(box: PlanBox, other: PlanBox) -> bool:
-    """Return True if two boxes overlap in plan."""
+    """Return True if two boxes overlap in plan.
+
+    Parameters
+    ----------
+    box, other
+        Lower and upper corner of each box in plan, in metres.
+
+    Returns
+    -------
+    bool
+        False for boxes that only touch.
+    """
     return bool((box[0] < other[1]).all() and (other[0] < box[1]).all())
 
 
 def plan_box(mesh: Mesh) -> PlanBox:
-    """Return the box around a mesh in plan."""
+    """Return the box around a mesh in plan.
+
+    Parameters
+    ----------
+    mesh
+        Mesh with at least one vertex.
+
+    Returns
+    -------
+    PlanBox
+        Lower and upper corner in plan, each of shape (2,), in metres.
+    """
     return mesh.vertices[:, :2].min(axis=0), mesh.vertices[:, :2].max(axis=0)
 
 
 def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
-    """Return a stiff thing that stands on z = 0, raised without tilting until it rests on the meshes below."""
+    """Return a stiff thing that stands on z = 0, raised without tilting until it rests on the meshes below.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the thing, which stands on z = 0.
+    below
+        Meshes of the things that lie there already.
+
+    Returns
+    -------
+    Mesh
+        The mesh, raised by at least ``CLEARANCE`` above what it rests on; unchanged if nothing is below it.
+    """
     if not below:
         return mesh
     lower, upper = RayCaster(below), RayCaster([mesh])
@@ -56,8 +91,22 @@ def lowered(mesh: Mesh, below: Sequence[Mesh]) -> Mesh:
 def draped(mesh: Mesh, below: Sequence[Mesh], cell: float) -> Mesh:
     """Return a soft thing that lies on z = 0, with each vertex raised by the height of the meshes below it.
 
-    No edge of the mesh may be longer in plan than ``cell`` (metres) times the square root of 2. The height below a
-    vertex is that of the highest place within this distance along each axis, so that no face cuts into the meshes.
+    The height below a vertex is that of the highest place within the length of an edge along each axis, so that no face
+    cuts into the meshes.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the thing.
+    below
+        Meshes of the things that lie there already.
+    cell
+        Side in metres of the cells of the mesh: no edge may be longer in plan than this times the square root of 2.
+
+    Returns
+    -------
+    Mesh
+        The raised mesh.
     """
     from scipy.ndimage import map_coordinates, maximum_filter
 
@@ -192,6 +241,11 @@ def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: 
     ontology
         Kinds and their sizes; by default :func:`default_ontology`.
 
+    Returns
+    -------
+    LaidTable
+        Table whose things have meshes and boxes in its frame, in metres.
+
     Raises
     ------
     SimulationError
@@ -228,7 +282,20 @@ def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]
 def stood(mesh: Mesh) -> Mesh:
     """Return the mesh moved so that its box stands on z = 0, centred on the z axis.
 
-    Raises SimulationError for a mesh without faces, or with vertices that are not finite.
+    Parameters
+    ----------
+    mesh
+        Mesh in metres, with z up.
+
+    Returns
+    -------
+    Mesh
+        Mesh with equal faces.
+
+    Raises
+    ------
+    SimulationError
+        If the mesh has no faces, or its vertices are not all finite.
     """
     if not len(mesh.faces) or not np.isfinite(mesh.vertices).all():
         raise SimulationError("a mesh must have faces and finite vertices")
@@ -238,7 +305,22 @@ def stood(mesh: Mesh) -> Mesh:
 
 
 def top_under(things: Sequence[LaidThing], margin: float = MARGIN, colour: Colour = WOOD) -> TableTop:
-    """Return the top of a table that extends ``margin`` metres beyond all things."""
+    """Return the top of a table that extends beyond all things.
+
+    Parameters
+    ----------
+    things
+        Things on the table; without any, the top is 1 m wide and 0.7 m deep.
+    margin
+        Distance in metres from the things to the edge of the table.
+    colour
+        Colour of the table.
+
+    Returns
+    -------
+    TableTop
+        Rectangle in plan, in metres.
+    """
     if not things:
         return TableTop((-0.5, -0.35), (0.5, 0.35), colour=colour)
     boxes = [plan_box(thing.mesh) for thing in things]
@@ -250,6 +332,18 @@ def truth_scene(table: LaidTable, viewpoint: str = "chair") -> Scene:
     """Return the true scene: every thing with its name and its box in the table's frame.
 
     The object ``o3`` is the thing whose points have label 3.
+
+    Parameters
+    ----------
+    table
+        Table with its things.
+    viewpoint
+        Name of the side from which the scene is seen.
+
+    Returns
+    -------
+    Scene
+        Objects ``o1``, ``o2`` and so on. The object ``o3`` is the thing whose points have label 3.
     """
     things = []
     for number, thing in enumerate(table.things, start=1):

@@ -34,7 +34,20 @@ class RayCaster:
             self._scene.add_triangles(vertices, core.Tensor(np.ascontiguousarray(mesh.faces, dtype=np.uint32)))
 
     def cast(self, origins: NDArray[np.floating], directions: NDArray[np.floating]) -> Hits:
-        """Return the first hit of every ray; ``origins`` (r, 3) or (3,), ``directions`` (r, 3)."""
+        """Return the first hit of every ray.
+
+        Parameters
+        ----------
+        origins
+            Start of each ray, shape (r, 3), or one start for all, shape (3,).
+        directions
+            Direction of each ray, shape (r, 3).
+
+        Returns
+        -------
+        Hits
+            Distance, mesh and normal for each ray.
+        """
         rays = np.empty((len(directions), 6), dtype=np.float32)
         rays[:, :3], rays[:, 3:] = origins, directions
         found = self._scene.cast_rays(self._tensor(rays))
@@ -47,11 +60,33 @@ class RayCaster:
         )
 
     def tops(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the height of the top of the meshes at places (p, 2) in plan; NaN where there is no mesh."""
+        """Return the height of the top of the meshes at places in plan.
+
+        Parameters
+        ----------
+        plan
+            Places of shape (p, 2), in metres.
+
+        Returns
+        -------
+        ndarray
+            Heights of shape (p,), in metres; NaN where there is no mesh.
+        """
         return self._vertical(plan, start=10.0, down=True)
 
     def bottoms(self, plan: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the height of the bottom of the meshes at places (p, 2) in plan; NaN where there is no mesh."""
+        """Return the height of the bottom of the meshes at places in plan.
+
+        Parameters
+        ----------
+        plan
+            Places of shape (p, 2), in metres.
+
+        Returns
+        -------
+        ndarray
+            Heights of shape (p,), in metres; NaN where there is no mesh.
+        """
         return self._vertical(plan, start=-10.0, down=False)
 
     def _vertical(self, plan: NDArray[np.float64], start: float, down: bool) -> NDArray[np.float64]:

@@ -37,11 +37,32 @@ def scattered(
     foreign: Sequence[Placement] = (),
     ontology: Ontology | None = None,
 ) -> list[Placement]:
-    """Return ``count`` things of random kinds, and the ``foreign`` ones, at random places and angles.
+    """Return things of random kinds, and foreign ones, at random places and angles.
 
-    Foreign things have their own meshes. Things are at least ``MIN_GAP`` apart, except those on plates; the area that
-    they cover is wider than deep. Names are kinds with numbers. Raises SimulationError for more than ``MAX_THINGS``
-    things, or for no things.
+    Things are at least ``MIN_GAP`` apart, except those on plates; the area that they cover is wider than deep.
+
+    Parameters
+    ----------
+    count
+        Number of things of random kinds.
+    seed
+        Seed of kinds, shapes and places.
+    kinds
+        Words for the kinds to choose from.
+    foreign
+        Things that are placed first. They have their own meshes.
+    ontology
+        Kinds and their sizes; by default :func:`default_ontology`.
+
+    Returns
+    -------
+    list of Placement
+        The foreign things, and then the others, those on plates last. Names of the others are kinds with numbers.
+
+    Raises
+    ------
+    SimulationError
+        If ``count`` is above ``MAX_THINGS``, there are no things, or a kind is not known.
     """
     if not 0 <= count <= MAX_THINGS or count + len(foreign) == 0:
         raise SimulationError(f"a random table must have 1 to {MAX_THINGS} things, got {count}")

@@ -24,7 +24,19 @@ class Size:
 def drawn_size(usual: SizeRange, rng: np.random.Generator, plan: tuple[float, float] | None = None) -> Size:
     """Draw a size within the usual range; each length has a triangular distribution with its mode at the typical one.
 
-    If ``plan`` gives width and length, only the height is drawn.
+    Parameters
+    ----------
+    usual
+        Ranges of width, length and height in metres.
+    rng
+        Source of the draws. Equal numbers are drawn with and without ``plan``.
+    plan
+        Width and length in metres; if given, only the height is drawn.
+
+    Returns
+    -------
+    Size
+        Extents in metres, which tend to be large or small together.
     """
     draws = rng.random(4)
     if plan is not None:
@@ -44,6 +56,20 @@ def _mixed(common: float, own: float) -> float:
 def quantile(extent: Extent, share: float) -> float:
     """Return the length below which a share of the triangular distribution lies.
 
+    Parameters
+    ----------
+    extent
+        Least, typical and greatest length; the typical one is the mode.
+    share
+        Share in [0, 1].
+
+    Returns
+    -------
+    float
+        Length in the unit of the extent.
+
+    Examples
+    --------
     >>> quantile(Extent(0.0, 1.0, 2.0), 0.5), quantile(Extent(0.0, 1.0, 2.0), 1.0)
     (1.0, 2.0)
     """
@@ -57,7 +83,20 @@ def quantile(extent: Extent, share: float) -> float:
 
 
 def share_below(extent: Extent, length: float) -> float:
-    """Return the share of the triangular distribution below a length, the inverse of :func:`quantile`."""
+    """Return the share of the triangular distribution below a length, the inverse of :func:`quantile`.
+
+    Parameters
+    ----------
+    extent
+        Least, typical and greatest length; the typical one is the mode.
+    length
+        Length in the unit of the extent; one outside of it counts as its nearest end.
+
+    Returns
+    -------
+    float
+        Share in [0, 1]; 0.5 for an extent of one length.
+    """
     low, mode, high = extent.least, extent.typical, extent.greatest
     at = min(max(length, low), high)
     if high == low:

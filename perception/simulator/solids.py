@@ -17,11 +17,28 @@ SEGMENTS = 96
 
 
 def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -> Mesh:
-    """Return the solid that a profile (radius, height) sweeps around the z axis.
+    """Return the solid that a profile sweeps around the z axis.
 
-    The profile runs counter-clockwise, from the axis (radius 0) below outwards and back to the axis above, so that
-    the solid lies on its left. Raises ValueError if an end is not on the axis.
+    Parameters
+    ----------
+    profile
+        Pairs of radius and height. They run counter-clockwise, from the axis (radius 0) below outwards and back to the
+        axis above, so that the solid lies on their left.
+    segments
+        Number of sides of each ring.
 
+    Returns
+    -------
+    Mesh
+        Closed mesh with ``segments`` vertices for each inner point of the profile, and one for each end.
+
+    Raises
+    ------
+    ValueError
+        If an end is not on the axis, or another point is.
+
+    Examples
+    --------
     >>> revolved([(0, 0), (1, 0), (1, 2), (0, 2)], segments=4).vertices.shape
     (10, 3)
     """
@@ -37,10 +54,19 @@ def revolved(profile: Sequence[tuple[float, float]], segments: int = SEGMENTS) -
 
 
 def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: ArrayLike | None = None) -> Mesh:
-    """Return a skin over s closed rings of k points each (s, k, 3), closed at both ends by a fan.
+    """Return a skin over closed rings, closed at both ends by a fan.
 
-    The rings run counter-clockwise as seen from where the last one lies. ``first`` and ``last`` are the tips of the
-    fans; without them the ends are flat.
+    Parameters
+    ----------
+    rings
+        Rings of k points each, shape (s, k, 3), counter-clockwise as seen from where the last one lies.
+    first, last
+        Tips of the fans, shape (3,); without them the ends are flat.
+
+    Returns
+    -------
+    Mesh
+        Closed mesh with s * k + 2 vertices.
     """
     count, sides, _ = rings.shape
     tips = [rings[0].mean(axis=0) if first is None else first, rings[-1].mean(axis=0) if last is None else last]
@@ -58,9 +84,23 @@ def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: Arr
 
 
 def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16) -> Mesh:
-    """Return a bar of elliptic section along a path (s, 3) in the plane x = 0.
+    """Return a bar of elliptic section along a path in the plane x = 0.
 
-    ``depth`` is the diameter across the path in that plane, and ``width`` the one along x, in metres.
+    Parameters
+    ----------
+    path
+        Points of shape (s, 3), in metres.
+    width
+        Diameter along x in metres.
+    depth
+        Diameter across the path in the plane x = 0, in metres.
+    sides
+        Number of sides of each ring.
+
+    Returns
+    -------
+    Mesh
+        Closed mesh.
     """
     along = np.gradient(path, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -80,9 +120,23 @@ def thick_sheet(
 ) -> Mesh:
     """Return the solid between two surfaces over one grid in plan, such as cutlery or cloth.
 
-    ``x``, ``y``, ``bottom`` and ``top`` have shape (rows, columns); x must grow with the column and y with the row, or
-    else the faces point inwards. ``cells`` (rows - 1, columns - 1) is True for the cells that exist; by default all.
+    Parameters
+    ----------
+    x, y
+        Places in plan, shape (rows, columns). x must grow with the column and y with the row, or else the faces point
+        inwards.
+    bottom, top
+        Heights of the two surfaces, shape (rows, columns).
+    cells
+        Mask of the cells that exist, shape (rows - 1, columns - 1); by default all.
 
+    Returns
+    -------
+    Mesh
+        Closed mesh, with walls where cells end.
+
+    Examples
+    --------
     >>> x, y = np.meshgrid([0.0, 1.0], [0.0, 1.0])
     >>> len(thick_sheet(x, y, 0 * x, 0 * x + 1).faces)
     12
@@ -108,21 +162,60 @@ def thick_sheet(
 
 
 def joined(*meshes: Mesh) -> Mesh:
-    """Return several meshes as one; inner faces stay where they overlap."""
+    """Return several meshes as one; inner faces stay where they overlap.
+
+    Parameters
+    ----------
+    meshes
+        Meshes, at least one.
+
+    Returns
+    -------
+    Mesh
+        Mesh with all vertices and faces.
+    """
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     faces = [mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
 
 
 def fitted(mesh: Mesh, width: float, length: float, height: float) -> Mesh:
-    """Return the mesh scaled to an extent along x, y and z; its box is centred on the z axis and stands on z = 0."""
+    """Return the mesh scaled to given extents; its box is centred on the z axis and stands on z = 0.
+
+    Parameters
+    ----------
+    mesh
+        Mesh to scale.
+    width, length, height
+        Extents along x, y and z, in metres.
+
+    Returns
+    -------
+    Mesh
+        Mesh with equal faces.
+    """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     unit = (mesh.vertices - low) / np.where(high > low, high - low, 1.0)
     return Mesh((unit - (0.5, 0.5, 0.0)) * (width, length, height), mesh.faces)
 
 
 def moved(mesh: Mesh, yaw: float = 0.0, by: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh:
-    """Return the mesh turned about the z axis by ``yaw`` radians, counter-clockwise from above, then shifted."""
+    """Return the mesh turned about the z axis, then shifted.
+
+    Parameters
+    ----------
+    mesh
+        Mesh to move.
+    yaw
+        Angle in radians, counter-clockwise from above.
+    by
+        Shift of shape (3,), in metres.
+
+    Returns
+    -------
+    Mesh
+        Mesh with equal faces.
+    """
     cosine, sine = _turn(yaw)
     turned = mesh.vertices @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     return Mesh(turned + np.asarray(by, dtype=np.float64), mesh.faces)

@@ -98,7 +98,25 @@ class Instance:
 
 
 def kind_named(word: str, ontology: Ontology) -> Kind:
-    """Return the kind that a word or a name stands for; raise SimulationError for an unknown word."""
+    """Return the kind that a word or a name stands for.
+
+    Parameters
+    ----------
+    word
+        Word, such as ``dinner plate``.
+    ontology
+        Ontology with the kinds.
+
+    Returns
+    -------
+    Kind
+        Kind of the ontology.
+
+    Raises
+    ------
+    SimulationError
+        If the ontology has no kind for the word.
+    """
     kind = ontology.kinds.of_word(word)
     if kind is None:
         raise SimulationError(f"the ontology has no kind of thing called '{word}'; try 'dinner plate' or 'fork'")
@@ -108,6 +126,20 @@ def kind_named(word: str, ontology: Ontology) -> Kind:
 def form_of(kind: Kind | None, ontology: Ontology) -> Form:
     """Return the shape of the nearest broader kind with one, or else a cylinder or a block, by the kind's outline.
 
+    Parameters
+    ----------
+    kind
+        Kind of the thing; None for an unknown one.
+    ontology
+        Ontology with the broader kinds and the outlines.
+
+    Returns
+    -------
+    Form
+        Shape with its builder and colours.
+
+    Examples
+    --------
     >>> ontology = default_ontology()
     >>> [form_of(ontology.kinds.of_word(word), ontology).name for word in ("salad fork", "vase")]
     ['fork', 'cylinder']
@@ -122,7 +154,20 @@ def form_of(kind: Kind | None, ontology: Ontology) -> Form:
 
 
 def usual_size(kind: Kind | None, ontology: Ontology) -> SizeRange:
-    """Return the range of sizes of generated things: the usual sizes of the kind, with the height of its shape."""
+    """Return the range of sizes of generated things: the usual sizes of the kind, with the height of its shape.
+
+    Parameters
+    ----------
+    kind
+        Kind of the thing; None for an unknown one.
+    ontology
+        Ontology with the usual sizes.
+
+    Returns
+    -------
+    SizeRange
+        Ranges in metres.
+    """
     usual = ontology.sizes.of(kind.iri if kind else None)
     form = form_of(kind, ontology)
     return usual if form.height is None else replace(usual, height=form.height)
@@ -143,6 +188,11 @@ def make(
         Width and length (with the handle) in metres; by default both are drawn from the usual sizes, as the height is.
     ontology
         Kinds and their sizes; by default :func:`default_ontology`.
+
+    Returns
+    -------
+    Instance
+        Thing that stands on z = 0, centred on the z axis.
 
     Raises
     ------
@@ -172,7 +222,22 @@ def make(
 
 
 def drawn_plan(kind: Kind | None, seed: int, ontology: Ontology) -> tuple[float, float]:
-    """Return width and length in metres of the thing that :func:`make` returns for a seed."""
+    """Return width and length of the thing that :func:`make` returns for a seed.
+
+    Parameters
+    ----------
+    kind
+        Kind of the thing; None for an unknown one.
+    seed
+        Seed of the thing.
+    ontology
+        Ontology with the usual sizes.
+
+    Returns
+    -------
+    tuple
+        Width and length in metres.
+    """
     size = _size(form_of(kind, ontology), usual_size(kind, ontology), np.random.default_rng(seed), None)
     return size.width, size.length
 

@@ -78,6 +78,11 @@ def facts_of_claims(
     holds
         Whether a relation between two objects follows from the facts; *between* implies nothing without it.
 
+    Returns
+    -------
+    tuple of ClaimFact
+        Facts in the order of the claims. If two claims imply the same fact, only the first of them is named.
+
     Examples
     --------
     >>> from deixis.ontology.tbox import default_ontology
@@ -125,6 +130,20 @@ def _pairs(
 
 
 def with_facts_of_claims(graph: RelationGraph, found: Sequence[ClaimFact]) -> RelationGraph:
-    """Return the graph with further edges for the facts of claims, after its own."""
+    """Return the graph with further edges for the facts of claims, after its own.
+
+    Parameters
+    ----------
+    graph
+        Graph of the stated facts.
+    found
+        Facts that claims imply, between nodes of the graph.
+
+    Returns
+    -------
+    RelationGraph
+        Graph with the same nodes, kinds and colours. Its edges are those of ``graph``, then one for each fact in
+        ``found``.
+    """
     facts = [*graph.facts(), *(entry.fact for entry in found)]
     return RelationGraph.from_facts(graph.vocabulary, graph.nodes, facts, kinds=graph.kinds, colours=graph.colours)

@@ -40,6 +40,21 @@ class Poses:
     def of_boxes(cls, boxes: Array, fronts: Array | None = None) -> Poses:
         """Return the poses of axis-aligned boxes, shape (n, 2, d), with unknown fronts by default.
 
+        Parameters
+        ----------
+        boxes
+            Lower and upper corners of shape (n, 2, d), in metres, with d at least 2.
+        fronts
+            Unit vectors of shape (n, 2) in the directions of the fronts; nan where a front is unknown, as all are by
+            default.
+
+        Returns
+        -------
+        Poses
+            Poses whose long axes are the longer sides of the boxes seen from above; the x axis for a square.
+
+        Examples
+        --------
         >>> Poses.of_boxes(np.array([[[0.0, 0.0], [3.0, 1.0]]])).stretch.tolist()
         [0.5]
         """
@@ -51,7 +66,22 @@ class Poses:
         return cls(np.full((len(boxes), 2), np.nan) if fronts is None else fronts, axes, stretch, _middle(boxes))
 
     def with_oriented(self, places: list[int], yaws: list[float], extents: list[tuple[float, float]]) -> Poses:
-        """Return the poses in which some things have turned boxes: the angle and the length of their first side."""
+        """Return the poses in which some things have turned boxes: the angle and the length of their first side.
+
+        Parameters
+        ----------
+        places
+            Indices of the things with turned boxes.
+        yaws
+            Angle of the first side of each of these boxes from the x axis, in radians.
+        extents
+            Lengths of the first and the second side of each of these boxes, in metres.
+
+        Returns
+        -------
+        Poses
+            Poses in which the axes and the stretches of these things are replaced.
+        """
         axes, stretch = self.axes.copy(), self.stretch.copy()
         for place, yaw, (first, second) in zip(places, yaws, extents, strict=True):
             angle = yaw if first >= second else yaw + math.pi / 2
@@ -64,7 +94,20 @@ class Poses:
         return replace(self, fronts=self.fronts[some], axes=self.axes[some], stretch=self.stretch[some])
 
     def turned(self, angle: float, mirrored: bool = False) -> Poses:
-        """Return the poses in a scene mirrored left to right, then turned counter-clockwise about the origin."""
+        """Return the poses in a scene mirrored left to right, then turned counter-clockwise about the origin.
+
+        Parameters
+        ----------
+        angle
+            Angle in radians.
+        mirrored
+            If True, mirror the scene left to right before it is turned.
+
+        Returns
+        -------
+        Poses
+            Poses with turned fronts, axes and middles; ``stretch`` is unchanged.
+        """
         turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
         flip = np.diag([-1.0, 1.0]) if mirrored else np.eye(2)
         return replace(
@@ -86,7 +129,20 @@ def _middle(boxes: Array) -> Array:
 
 
 def coaxial(first: Poses, second: Poses) -> Array:
-    """Return how far long axes agree, in [-1, 1], shape (n, m): 1 for thin parallel things, -1 for crossing ones."""
+    """Return how far long axes agree, in [-1, 1], shape (n, m): 1 for thin parallel things, -1 for crossing ones.
+
+    Parameters
+    ----------
+    first
+        Poses of n things.
+    second
+        Poses of m things.
+
+    Returns
+    -------
+    ndarray
+        Shape (n, m). Values are close to 0 for things that are nearly as wide as long.
+    """
     cosine = np.clip(first.axes @ second.axes.T, -1.0, 1.0)
     result: Array = (2 * cosine**2 - 1) * np.sqrt(first.stretch[:, None] * second.stretch[None, :])
     return result

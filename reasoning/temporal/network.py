@@ -176,6 +176,11 @@ class SimpleTemporalNetwork:
         -------
         bool
             True if they were added.
+
+        Raises
+        ------
+        LimitError
+            If the times are too long to be added up exactly.
         """
         for each in constraints:
             self.index(each.tail)

@@ -26,7 +26,7 @@ def dataset_view(store: ox.Store, answering: Answering) -> rdflib.Dataset:
     Parameters
     ----------
     store
-        The store.
+        Store of the memory, read at each access.
     answering
         Function that answers queries, within the default limits.
 

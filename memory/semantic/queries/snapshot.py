@@ -52,6 +52,11 @@ class SnapshotQueries(Closing):
         -------
         tuple
             Kind of the answer, and its bytes.
+
+        Raises
+        ------
+        QueryTimeoutError
+            If the time limit is reached, also while other threads are served.
         """
         deadline = Deadline.after(limits.time)
         if not self._turn.acquire(timeout=min(limits.time, threading.TIMEOUT_MAX)):

@@ -122,7 +122,7 @@ def answer(
     bindings: Mapping[str, Term] | None,
     limits: QueryLimits,
 ) -> StoreAnswer:
-    """Return Oxigraph's answer to a checked query; raise as :func:`run_query`.
+    """Return Oxigraph's answer to a checked query.
 
     Parameters
     ----------
@@ -145,6 +145,13 @@ def answer(
     -------
     StoreAnswer
         Solutions, a boolean, or triples.
+
+    Raises
+    ------
+    QueryError
+        If the query is malformed, or a limit is reached.
+    RuntimeError
+        If Oxigraph cannot read the store.
     """
     request = {
         "text": checked.text,

@@ -26,7 +26,20 @@ class After:
         self._indexes: dict[tuple[GraphName, str], dict[object, list[ox.Triple]]] = {}
 
     def holds(self, name: GraphName, triple: ox.Triple) -> bool:
-        """Return whether a graph has a triple after the change."""
+        """Return whether a graph has a triple after the change.
+
+        Parameters
+        ----------
+        name
+            Canonical graph.
+        triple
+            Triple to look up.
+
+        Returns
+        -------
+        bool
+            True also if the change adds the triple.
+        """
         if triple in self.change.added.get(name, ()):
             return True
         gone = triple in self.change.removed.get(name, ())
@@ -39,9 +52,19 @@ class After:
         predicate: ox.NamedNode | None = None,
         obj: Node | None = None,
     ) -> Iterator[ox.Triple]:
-        """Yield the triples of a graph with a subject, predicate and object, where None matches all.
+        """Yield the triples of a graph with a subject, predicate and object.
 
-        Triples that the change adds come last.
+        Parameters
+        ----------
+        name
+            Canonical graph.
+        subject, predicate, obj
+            Terms of the triples; None matches all.
+
+        Yields
+        ------
+        Triple
+            Triples after the change. Those that it adds come last.
         """
         gone = self.change.removed.get(name)
         for quad in self.store.quads_for_pattern(subject, predicate, obj, self._graphs[name]):  # type: ignore[arg-type]
@@ -58,12 +81,42 @@ class After:
             yield from self.change.added.get(name, ())
 
     def coming(self, name: GraphName, subject: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
-        """Yield the triples that the change adds about a subject."""
+        """Yield the triples that the change adds about a subject.
+
+        Parameters
+        ----------
+        name
+            Canonical graph.
+        subject
+            Subject of the triples.
+        predicate
+            Their predicate; None matches all.
+
+        Yields
+        ------
+        Triple
+            Added triples of the graph.
+        """
         triples = self._index(name, "subject").get(subject, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
     def arriving(self, name: GraphName, predicate: ox.NamedNode | None, obj: Node) -> Iterator[ox.Triple]:
-        """Yield the triples that the change adds with an object."""
+        """Yield the triples that the change adds with an object.
+
+        Parameters
+        ----------
+        name
+            Canonical graph.
+        predicate
+            Predicate of the triples; None matches all.
+        obj
+            Their object.
+
+        Yields
+        ------
+        Triple
+            Added triples of the graph.
+        """
         triples = self._index(name, "object").get(obj, ())
         return (triple for triple in triples if predicate in (None, triple.predicate))
 
@@ -77,12 +130,36 @@ class After:
         return found
 
     def says(self, subject: Node, predicate: ox.NamedNode) -> bool:
-        """Return whether a subject can have a predicate in any graph; if not, no graph has to be read."""
+        """Return whether a subject can have a predicate in any graph; if not, no graph has to be read.
+
+        Parameters
+        ----------
+        subject
+            Subject of the triples.
+        predicate
+            Their predicate.
+
+        Returns
+        -------
+        bool
+            True also for triples that the change removes.
+        """
         stored = self.store.quads_for_pattern(subject, predicate, None, None)  # type: ignore[arg-type]
         return any(True for _ in stored) or any(True for name in DATA for _ in self.coming(name, subject, predicate))
 
     def of_data(self, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
-        """Yield the triples of stored quads that are in a data graph and stay there."""
+        """Yield the triples of stored quads that are in a data graph and stay there.
+
+        Parameters
+        ----------
+        quads
+            Quads of the store.
+
+        Yields
+        ------
+        Triple
+            Triples that the change does not remove.
+        """
         for quad in quads:
             name = self._data.get(quad.graph_name)
             if name is not None:

@@ -30,7 +30,18 @@ class Change:
 
 
 def together(*changes: Change) -> Change:
-    """Return one change that makes several changes in one step, in their order."""
+    """Return one change that makes several changes in one step, in their order.
+
+    Parameters
+    ----------
+    changes
+        Changes in the order in which their operations run.
+
+    Returns
+    -------
+    Change
+        Change with the operations of all changes.
+    """
     added: dict[GraphName, frozenset[ox.Triple]] = {}
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     for change in changes:
@@ -42,14 +53,42 @@ def together(*changes: Change) -> Change:
 
 
 def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
-    """Return the change that a new lesson makes, without what follows from it."""
+    """Return the change that a new lesson makes, without what follows from it.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    lesson
+        Name of the lesson.
+    said
+        Contributions of the lesson by canonical graph, as :func:`incoming` returns them.
+
+    Returns
+    -------
+    Change
+        Change that adds the triples which the canonical graphs lack.
+    """
     held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
     added = {name: frozenset(triples).difference(held[name]) for name, triples in said.items()}
     return Change(added=added, operations=tuple(ledger.arrival(store, lesson, said, held)))
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
-    """Return the change that forgetting a lesson makes, without what followed from it."""
+    """Return the change that forgetting a lesson makes, without what followed from it.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    lesson
+        Name of the lesson.
+
+    Returns
+    -------
+    Change
+        Change that removes the triples which only this lesson contributes.
+    """
     removed: dict[GraphName, frozenset[ox.Triple]] = {}
     operations: list[ledger.Operation] = []
     for name, triples in ledger.copies(store, lesson).items():
@@ -61,7 +100,20 @@ def departing(store: ox.Store, lesson: str) -> Change:
 
 
 def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
-    """Return the change that replaces the inferred graph."""
+    """Return the change that replaces the inferred graph.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    inferred
+        All triples of the new inferred graph.
+
+    Returns
+    -------
+    Change
+        Change with the difference between the old graph and the new one.
+    """
     graph = graph_iri(GraphName.INFERRED)
     gone, come = ledger.difference(store, graph, named("inferred", inferred))
     operations = (*ledger.deletion(graph, gone), *ledger.insertion(graph, come))
@@ -69,7 +121,20 @@ def concluding(store: ox.Store, inferred: Iterable[ox.Triple]) -> Change:
 
 
 def modelling(store: ox.Store, models: Models) -> Change:
-    """Return the change that replaces sets of learned models."""
+    """Return the change that replaces sets of learned models.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    models
+        Sets of learned models; sets that are left out stay.
+
+    Returns
+    -------
+    Change
+        Change of the learned graph, and of the copies of the sets.
+    """
     return together(*(_modelling(store, models_graph(which), triples) for which, triples in models.items()))
 
 
@@ -78,7 +143,24 @@ def _modelling(store: ox.Store, copy: ox.NamedNode, triples: Iterable[ox.Triple]
 
 
 def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], come: Sequence[ox.Triple]) -> Change:
-    """Return the change that replaces triples in a copy of learned models."""
+    """Return the change that replaces triples in a copy of learned models.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    copy
+        Graph of the copy.
+    gone
+        Triples to remove from the copy. The learned graph keeps those that also come from elsewhere.
+    come
+        Triples to add.
+
+    Returns
+    -------
+    Change
+        Change of the learned graph, and of the copy.
+    """
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
         {GraphName.LEARNED: frozenset(come).difference(ledger.held(store, graph_iri(GraphName.LEARNED), come))},
@@ -88,14 +170,45 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
 
 
 def reconcluding(gone: Iterable[ox.Triple], come: Iterable[ox.Triple]) -> Change:
-    """Return the change that replaces triples in the inferred graph; only existing triples are removed."""
+    """Return the change that replaces triples in the inferred graph; only existing triples are removed.
+
+    Parameters
+    ----------
+    gone
+        Triples to remove, all of which are in the inferred graph.
+    come
+        Triples to add.
+
+    Returns
+    -------
+    Change
+        Change of the inferred graph.
+    """
     graph, gone, come = graph_iri(GraphName.INFERRED), frozenset(gone), frozenset(come)
     operations = (*ledger.deletion(graph, sorted(gone, key=str)), *ledger.insertion(graph, sorted(come, key=str)))
     return Change({GraphName.INFERRED: come}, {GraphName.INFERRED: gone}, operations)
 
 
 def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]) -> dict[GraphName, list[ox.Triple]]:
-    """Return contributions as they will be stored. Raises RejectedWriteError for triples that no lesson may have."""
+    """Return contributions as they will be stored.
+
+    Parameters
+    ----------
+    lesson
+        Name of the lesson.
+    contributions
+        Triples by canonical graph.
+
+    Returns
+    -------
+    dict
+        Triples by canonical graph, in the spelling of the store. Their blank nodes are named after the lesson.
+
+    Raises
+    ------
+    RejectedWriteError
+        If the name is empty, or a triple is nested or in the inferred graph.
+    """
     if not lesson.strip():
         raise RejectedWriteError("the name of a lesson must not be empty")
     if GraphName.INFERRED in contributions:
@@ -107,7 +220,25 @@ def incoming(lesson: str, contributions: Mapping[GraphName, Iterable[ox.Triple]]
 
 
 def named(key: str, triples: Iterable[ox.Triple]) -> Iterable[ox.Triple]:
-    """Yield triples whose blank nodes are named under ``key``; raise RejectedWriteError for nested triples."""
+    """Yield triples whose blank nodes are named.
+
+    Parameters
+    ----------
+    key
+        Key under which blank nodes are named, so that equal ones of other sources stay apart.
+    triples
+        Triples with or without blank nodes.
+
+    Yields
+    ------
+    Triple
+        Triples without blank nodes.
+
+    Raises
+    ------
+    RejectedWriteError
+        If a triple is nested in another one.
+    """
     for triple in triples:
         subject, obj = triple.subject, triple.object
         if isinstance(subject, ox.NamedNode) and isinstance(obj, ox.NamedNode | ox.Literal):

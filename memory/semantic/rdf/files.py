@@ -44,6 +44,18 @@ _SAFE_LOCAL = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 def short(iri: str) -> str:
     """Return an IRI for messages: with a prefix where there is a known one, else in angle brackets.
 
+    Parameters
+    ----------
+    iri
+        IRI.
+
+    Returns
+    -------
+    str
+        Prefix and the rest, which need not be valid Turtle.
+
+    Examples
+    --------
     >>> short("https://w3id.org/deixis/learned/layout/dinner-1")
     'lx:layout/dinner-1'
     """
@@ -56,6 +68,18 @@ def short(iri: str) -> str:
 def turtle_name(iri: str) -> str:
     """Return an IRI in Turtle: with a prefix where the rest is a plain name, else in angle brackets.
 
+    Parameters
+    ----------
+    iri
+        IRI.
+
+    Returns
+    -------
+    str
+        Valid Turtle.
+
+    Examples
+    --------
     >>> turtle_name("https://w3id.org/deixis/learned/layout/dinner-1")
     '<https://w3id.org/deixis/learned/layout/dinner-1>'
     """
@@ -69,12 +93,34 @@ _STRINGS = {PREFIXES["xsd"] + "string", PREFIXES["rdf"] + "langString", PREFIXES
 
 
 def turtle(triples: Iterable[ox.Triple]) -> str:
-    """Return a Turtle document; named blank nodes become blank nodes again."""
+    """Return a Turtle document; named blank nodes become blank nodes again.
+
+    Parameters
+    ----------
+    triples
+        Triples in any order.
+
+    Returns
+    -------
+    str
+        Document with its prefixes.
+    """
     return "\n".join([*_prefixes(), "", *_statements(triples, "")]) + "\n"
 
 
 def trig(graphs: Iterable[tuple[ox.NamedNode, Iterable[ox.Triple]]]) -> str:
-    """Return a TriG document of named graphs, in the order given; empty ones are left out."""
+    """Return a TriG document of named graphs, in the order given; empty ones are left out.
+
+    Parameters
+    ----------
+    graphs
+        Pairs of a graph and its triples.
+
+    Returns
+    -------
+    str
+        Document with its prefixes.
+    """
     lines = [*_prefixes()]
     for graph, triples in graphs:
         statements = list(_statements(triples, "    "))
@@ -145,7 +191,23 @@ _BARE = ((b"<\0\0\0", "utf-32-le"), (b"\0\0\0<", "utf-32-be"), (b"<\0", "utf-16-
 
 
 def read_quads(file: Path) -> Iterator[ox.Quad]:
-    """Yield the statements of a file. Raises ImportFormatError, with the place where it is malformed."""
+    """Yield the statements of a file.
+
+    Parameters
+    ----------
+    file
+        File whose ending names its format.
+
+    Yields
+    ------
+    Quad
+        Statements in the order of the file.
+
+    Raises
+    ------
+    ImportFormatError
+        If the file is missing, too large or malformed; the message has the place.
+    """
     file_format = FORMATS.get(file.suffix.lower())
     if file_format is None:
         raise ImportFormatError(f"{file}: unknown format; its name must end in {', '.join(FORMATS)} or .zip (views)")

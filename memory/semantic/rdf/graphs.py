@@ -59,7 +59,18 @@ MERGED = ox.NamedNode(GRAPHS + "merged")
 
 
 def graph_iri(name: GraphName) -> ox.NamedNode:
-    """Return the IRI of a canonical graph."""
+    """Return the IRI of a canonical graph.
+
+    Parameters
+    ----------
+    name
+        Canonical graph.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the graph.
+    """
     return ox.NamedNode(GRAPHS + name)
 
 
@@ -70,6 +81,20 @@ CANONICAL = {graph_iri(name): name for name in GraphName}
 def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
     """Return the graph with the contributions of one lesson to a canonical graph.
 
+    Parameters
+    ----------
+    lesson
+        Name of the lesson, in any characters.
+    name
+        Canonical graph that the lesson contributes to.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the copy.
+
+    Examples
+    --------
     >>> lesson_graph("set 1", GraphName.LEARNED).value
     'https://w3id.org/deixis/graph/lesson/set%201/learned'
     """
@@ -77,18 +102,52 @@ def lesson_graph(lesson: str, name: GraphName) -> ox.NamedNode:
 
 
 def package_graph(name: GraphName) -> ox.NamedNode:
-    """Return the graph with the contributions of the package: the ontology and the shapes."""
+    """Return the graph with the contributions of the package: the ontology and the shapes.
+
+    Parameters
+    ----------
+    name
+        Canonical graph that the package contributes to.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the copy.
+    """
     return ox.NamedNode(PACKAGE + name)
 
 
 def loaded_graph(name: GraphName) -> ox.NamedNode:
-    """Return the graph of the triples that were loaded in bulk and also come from a lesson."""
+    """Return the graph of the triples that were loaded in bulk and also come from a lesson.
+
+    Parameters
+    ----------
+    name
+        Canonical graph that the triples are in.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the copy.
+    """
     return ox.NamedNode(LOADED + name)
 
 
 def models_graph(models: ModelSet) -> ox.NamedNode:
     """Return the graph with the copy of a set of models in the learned graph.
 
+    Parameters
+    ----------
+    models
+        Set of models.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the copy.
+
+    Examples
+    --------
     >>> models_graph(ModelSet.SIZES).value
     'https://w3id.org/deixis/graph/models/sizes'
     """
@@ -96,7 +155,18 @@ def models_graph(models: ModelSet) -> ox.NamedNode:
 
 
 def models_of_graph(iri: str) -> ModelSet | None:
-    """Return the set of models that the IRI of a copy names, or None for another IRI."""
+    """Return the set of models that the IRI of a copy names, or None for another IRI.
+
+    Parameters
+    ----------
+    iri
+        IRI of any graph.
+
+    Returns
+    -------
+    ModelSet or None
+        The set of models.
+    """
     name = iri.removeprefix(MODELS)
     return ModelSet(name) if iri.startswith(MODELS) and name in list(ModelSet) else None
 
@@ -104,6 +174,18 @@ def models_of_graph(iri: str) -> ModelSet | None:
 def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
     """Return the lesson and the graph that the IRI of a copy names, or None for another IRI.
 
+    Parameters
+    ----------
+    iri
+        IRI of any graph.
+
+    Returns
+    -------
+    tuple or None
+        Name of the lesson, and the canonical graph that it contributes to.
+
+    Examples
+    --------
     >>> lesson_of_graph("https://w3id.org/deixis/graph/lesson/set%201/learned")
     ('set 1', <GraphName.LEARNED: 'learned'>)
     >>> lesson_of_graph("https://w3id.org/deixis/graph/lesson/set 1/learned/x") is None
@@ -125,7 +207,18 @@ KEPT_UP = ox.NamedNode(STATISTICS + "kept-up")
 
 
 def share_graph(lesson: str) -> ox.NamedNode:
-    """Return the graph with the share of one lesson in the statistics."""
+    """Return the graph with the share of one lesson in the statistics.
+
+    Parameters
+    ----------
+    lesson
+        Name of the lesson, in any characters.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the graph.
+    """
     return ox.NamedNode(f"{STATISTICS}lesson/{quote(lesson, safe='')}")
 
 
@@ -141,13 +234,36 @@ CATEGORY_OF_VIEW = ox.NamedNode(VIEWS + "category")
 
 
 def views_graph(lesson: str) -> ox.NamedNode:
-    """Return the graph of the views that a lesson taught."""
+    """Return the graph of the views that a lesson taught.
+
+    Parameters
+    ----------
+    lesson
+        Name of the lesson, in any characters.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the graph.
+    """
     return ox.NamedNode(f"{VIEWS}lesson/{quote(lesson, safe='')}")
 
 
 def lesson_of_views(graph: object) -> str | None:
     """Return the lesson whose views a graph has, or None for another graph.
 
+    Parameters
+    ----------
+    graph
+        Name of any graph; the default graph is another one.
+
+    Returns
+    -------
+    str or None
+        Name of the lesson.
+
+    Examples
+    --------
     >>> lesson_of_views(views_graph("set 1"))
     'set 1'
     """
@@ -156,7 +272,18 @@ def lesson_of_views(graph: object) -> str | None:
 
 
 def view_node(id: str) -> ox.NamedNode:
-    """Return the IRI of a view of the perceptual store."""
+    """Return the IRI of a view of the perceptual store.
+
+    Parameters
+    ----------
+    id
+        Id of the view, in any characters.
+
+    Returns
+    -------
+    NamedNode
+        IRI of the view.
+    """
     return ox.NamedNode(f"{VIEWS}id/{quote(id, safe='')}")
 
 
@@ -164,6 +291,16 @@ def copied_graph(iri: str) -> GraphName | None:
     """Return the canonical graph that a copy contributes to, or None for another graph.
 
     A copy is that of a lesson, of models, of the package, or of loaded triples.
+
+    Parameters
+    ----------
+    iri
+        IRI of any graph.
+
+    Returns
+    -------
+    GraphName or None
+        The canonical graph.
     """
     found = lesson_of_graph(iri)
     if found:

@@ -28,20 +28,56 @@ class Link(NamedTuple):
 
 
 def linking(lesson: str, views: Mapping[str, str]) -> Change:
-    """Return the change that links a lesson to its views; ``views`` maps their ids to their categories."""
+    """Return the change that links a lesson to its views.
+
+    Parameters
+    ----------
+    lesson
+        Name of the lesson.
+    views
+        Categories of the views, by their ids.
+
+    Returns
+    -------
+    Change
+        Change that leaves the canonical graphs as they are.
+    """
     triples = [ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category)) for view, category in views.items()]
     return Change(operations=tuple(ledger.insertion(views_graph(lesson), triples)))
 
 
 def unlinking(lesson: str) -> Change:
-    """Return the change that removes the links of a lesson."""
+    """Return the change that removes the links of a lesson.
+
+    Parameters
+    ----------
+    lesson
+        Name of the lesson.
+
+    Returns
+    -------
+    Change
+        Change that leaves the canonical graphs as they are.
+    """
     return Change(operations=(ledger.drop(views_graph(lesson)),))
 
 
 def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: frozenset[str] = frozenset()) -> Change:
-    """Return the change that gives linked views other categories, by their ids; None removes the links of a view.
+    """Return the change that gives linked views other categories.
 
-    The links of the lessons in ``besides`` stay as they are. Views without links are ignored.
+    Parameters
+    ----------
+    store
+        Store before the change.
+    categories
+        New categories by the ids of the views; None removes the links of a view. Views without links are ignored.
+    besides
+        Lessons whose links stay as they are.
+
+    Returns
+    -------
+    Change
+        Change that leaves the canonical graphs as they are.
     """
     operations: list[ledger.Operation] = []
     for view, category in categories.items():
@@ -57,18 +93,55 @@ def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: fr
 
 
 def links_of(store: ox.Store, lesson: str) -> tuple[Link, ...]:
-    """Return the links of a lesson, in order."""
+    """Return the links of a lesson, in order.
+
+    Parameters
+    ----------
+    store
+        Store to read.
+    lesson
+        Name of the lesson.
+
+    Returns
+    -------
+    tuple of Link
+        Links in the order of the views' ids.
+    """
     return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, views_graph(lesson)))))
 
 
 def lessons_with(store: ox.Store, view: str) -> tuple[str, ...]:
-    """Return the lessons that taught a view, in order of their ids."""
+    """Return the lessons that taught a view, in order of their ids.
+
+    Parameters
+    ----------
+    store
+        Store to read.
+    view
+        Id of the view.
+
+    Returns
+    -------
+    tuple of str
+        Names of the lessons; empty for an unknown view.
+    """
     found = _links(store.quads_for_pattern(view_node(view), CATEGORY_OF_VIEW, None, None))
     return tuple(sorted({link.lesson for link in found}))
 
 
 def all_links(store: ox.Store) -> tuple[Link, ...]:
-    """Return the links of all lessons, in order, for comparing the two stores."""
+    """Return the links of all lessons, in order, for comparing the two stores.
+
+    Parameters
+    ----------
+    store
+        Store to read.
+
+    Returns
+    -------
+    tuple of Link
+        Links in the order of lessons, then of the views' ids.
+    """
     return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, None))))
 
 

@@ -33,7 +33,13 @@ def packaged_quads() -> tuple[ox.Quad, ...]:
 
 
 def package_digest() -> str:
-    """Return a digest of the packaged texts, by which a memory knows whether it has them."""
+    """Return a digest of the packaged texts, by which a memory knows whether it has them.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal digits.
+    """
     return hashlib.sha256("".join(_texts().values()).encode()).hexdigest()
 
 

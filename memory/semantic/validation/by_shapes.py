@@ -54,6 +54,20 @@ def validate_by_shapes(
 
     Warnings and informations are results too; ``conforms`` is False for them, as the standard says.
 
+    Parameters
+    ----------
+    data
+        Triples to check.
+    shapes
+        Shapes as triples. They must not query another endpoint (``SERVICE``).
+    deadline
+        Time limit of the check, which runs in another process.
+
+    Returns
+    -------
+    ShapesReport
+        Results of all severities, and the report in Turtle.
+
     Raises
     ------
     LimitError

@@ -56,7 +56,20 @@ class Shape:
     checks: tuple[Check, ...]
 
     def targets(self, view: FocusData, node: Node) -> bool:
-        """Return whether a node is a focus node of the shape."""
+        """Return whether a node is a focus node of the shape.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+        node
+            Node of the data.
+
+        Returns
+        -------
+        bool
+            True if a class or a predicate of the node is a target.
+        """
         return (
             not view.classes(node).isdisjoint(self.classes)
             or any(view.some(node, predicate, 1) for predicate in self.subjects_of)
@@ -64,11 +77,35 @@ class Shape:
         )
 
     def sure(self, view: FocusData, node: Node) -> bool:
-        """Return True if a focus node certainly conforms."""
+        """Return True if a focus node certainly conforms.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+        node
+            Focus node of the shape.
+
+        Returns
+        -------
+        bool
+            False if the node is doubtful, so that it must be checked in full.
+        """
         return all(check(view, node) for check in self.checks)
 
     def focus(self, view: FocusData) -> set[Node]:
-        """Return all focus nodes of the shape."""
+        """Return all focus nodes of the shape.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+
+        Returns
+        -------
+        set of Node
+            Nodes that the shape targets.
+        """
         found = {node for kind in self.classes for node in view.instances(kind)}
         for predicate in self.subjects_of:
             found |= view.subjects_of(predicate)
@@ -95,6 +132,18 @@ class Shapes:
 
         For a node with many statements only the change is checked; a shape that did not target it before counts as
         doubtful.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+        node
+            Node of the data.
+
+        Returns
+        -------
+        bool
+            False if the node is doubtful for one of the shapes.
         """
         return all(
             shape.sure(view, node) and not (view.says_much(node) and not shape.targets(view.before, node))
@@ -110,7 +159,23 @@ def packaged_shapes() -> Shapes:
 
 
 def compile_shapes(file: Path) -> Shapes:
-    """Compile a Turtle file of shapes. Raises OntologyError for an unsupported constraint."""
+    """Compile a Turtle file of shapes.
+
+    Parameters
+    ----------
+    file
+        File of shapes.
+
+    Returns
+    -------
+    Shapes
+        Shapes with the classes and paths that they use.
+
+    Raises
+    ------
+    OntologyError
+        If the file has an unsupported constraint.
+    """
     compiler = _Compiler(ox.parse(path=file, format=ox.RdfFormat.TURTLE))
     shapes = tuple(compiler.node_shape(node) for node in compiler.node_shapes())
     compiler.require_all_read()

@@ -25,11 +25,39 @@ class Values(Protocol):
         ...
 
     def some(self, view: FocusData, node: Node, number: int) -> Iterable[Node]:
-        """Return at most ``number`` of these nodes."""
+        """Return at most ``number`` of these nodes.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+        node
+            Start of the path.
+        number
+            Maximum number of nodes.
+
+        Returns
+        -------
+        Iterable[Node]
+            Distinct nodes.
+        """
         ...
 
     def fresh(self, view: FocusData, node: Node) -> Iterable[Node]:
-        """Return the nodes whose class the change may have altered."""
+        """Return the nodes whose class the change may have altered.
+
+        Parameters
+        ----------
+        view
+            Data after a change.
+        node
+            Start of the path.
+
+        Returns
+        -------
+        Iterable[Node]
+            Nodes that must be checked again; there may be more than necessary.
+        """
         ...
 
 

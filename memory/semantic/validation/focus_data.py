@@ -40,11 +40,33 @@ class FocusData:
         return FocusData(self._store)
 
     def says_much(self, node: Node) -> bool:
-        """Return whether a node has so many statements that it is read predicate by predicate."""
+        """Return whether a node has so many statements that it is read predicate by predicate.
+
+        Parameters
+        ----------
+        node
+            Subject of the statements.
+
+        Returns
+        -------
+        bool
+            False for a node whose statements are all read at once.
+        """
         return self._few(node) is None
 
     def about(self, node: Node) -> dict[ox.NamedNode, set[Node]]:
-        """Return the objects of a node, by predicate."""
+        """Return the objects of a node, by predicate.
+
+        Parameters
+        ----------
+        node
+            Subject of the statements.
+
+        Returns
+        -------
+        dict
+            Objects by predicate, after the change.
+        """
         found = self._few(node)
         if found is None:
             found = defaultdict(set)
@@ -73,7 +95,20 @@ class FocusData:
         return found
 
     def values(self, node: Node, predicate: ox.NamedNode) -> Iterable[Node]:
-        """Return the objects of a node for a predicate."""
+        """Return the objects of a node for a predicate.
+
+        Parameters
+        ----------
+        node
+            Subject of the statements.
+        predicate
+            Their predicate.
+
+        Returns
+        -------
+        Iterable[Node]
+            Distinct objects.
+        """
         few = self._few(node)
         if few is not None:
             return few.get(predicate, ())
@@ -84,7 +119,22 @@ class FocusData:
         return known
 
     def some(self, node: Node, predicate: ox.NamedNode, number: int) -> Iterable[Node]:
-        """Return at most ``number`` objects of a node for a predicate."""
+        """Return at most ``number`` objects of a node for a predicate.
+
+        Parameters
+        ----------
+        node
+            Subject of the statements.
+        predicate
+            Their predicate.
+        number
+            Maximum number of objects.
+
+        Returns
+        -------
+        Iterable[Node]
+            Distinct objects; as few as possible are read.
+        """
         few = self._few(node)
         if few is not None:
             return list(few.get(predicate, ()))[:number]
@@ -105,6 +155,18 @@ class FocusData:
         """Return the new objects of a node for a predicate, and those whose class the change may have altered.
 
         Where there are few objects, and where there is no change, return all of them.
+
+        Parameters
+        ----------
+        node
+            Subject of the statements.
+        predicate
+            Their predicate.
+
+        Returns
+        -------
+        Iterable[Node]
+            Objects that must be checked again.
         """
         if self._whole or not self.says_much(node):
             return self.values(node, predicate)
@@ -125,40 +187,125 @@ class FocusData:
         return found
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
-        """Return the subjects of a predicate with this node as object."""
+        """Return the subjects of a predicate with this node as object.
+
+        Parameters
+        ----------
+        predicate
+            Predicate of the statements.
+        node
+            Their object.
+
+        Returns
+        -------
+        set of Node
+            Distinct subjects.
+        """
         return {triple.subject for triple in self.leading(node, predicate)}
 
     def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
-        """Return whether this node is an object of a predicate."""
+        """Return whether this node is an object of a predicate.
+
+        Parameters
+        ----------
+        predicate
+            Predicate of the statements.
+        node
+            Their object.
+
+        Returns
+        -------
+        bool
+            False if there is no such statement.
+        """
         return any(True for _ in self.leading(node, predicate))
 
     def leading(self, node: Node, predicate: ox.NamedNode | None = None) -> Iterator[ox.Triple]:
-        """Yield the triples with a node as object, for one predicate or all; a triple may occur twice."""
+        """Yield the triples with a node as object, for one predicate or all; a triple may occur twice.
+
+        Parameters
+        ----------
+        node
+            Object of the triples.
+        predicate
+            Their predicate; None matches all.
+
+        Yields
+        ------
+        Triple
+            Triples of all data graphs.
+        """
         if isinstance(node, ox.NamedNode | ox.Literal | ox.BlankNode):
             yield from self._after.of_data(self._store.quads_for_pattern(None, predicate, node, None))
             for name in DATA:
                 yield from self._after.arriving(name, predicate, node)
 
     def is_a(self, node: Node, kind: Node) -> bool:
-        """Return whether a node is an instance of a class or of a sub-class of it."""
+        """Return whether a node is an instance of a class or of a sub-class of it.
+
+        Parameters
+        ----------
+        node
+            Node of the data.
+        kind
+            Class.
+
+        Returns
+        -------
+        bool
+            False for a node without a class.
+        """
         return kind in self.classes(node)
 
     def classes(self, node: Node) -> frozenset[Node]:
-        """Return the classes of a node, with all their super-classes."""
+        """Return the classes of a node, with all their super-classes.
+
+        Parameters
+        ----------
+        node
+            Node of the data.
+
+        Returns
+        -------
+        frozenset of Node
+            Classes; empty for a node without a class.
+        """
         known = self._classes.get(node)
         if known is None:
             known = self._classes[node] = frozenset[Node]().union(*map(self.broader, self.values(node, TYPE)))
         return known
 
     def broader(self, kind: Node) -> frozenset[Node]:
-        """Return a class and all of its super-classes."""
+        """Return a class and all of its super-classes.
+
+        Parameters
+        ----------
+        kind
+            Class.
+
+        Returns
+        -------
+        frozenset of Node
+            Classes, with ``kind``.
+        """
         known = self._broader.get(kind)
         if known is None:
             known = self._broader[kind] = frozenset(self._closure(kind, upwards=True))
         return known
 
     def narrower(self, kind: Node) -> frozenset[Node]:
-        """Return a class and all of its sub-classes."""
+        """Return a class and all of its sub-classes.
+
+        Parameters
+        ----------
+        kind
+            Class.
+
+        Returns
+        -------
+        frozenset of Node
+            Classes, with ``kind``.
+        """
         return frozenset(self._closure(kind, upwards=False))
 
     def _closure(self, kind: Node, upwards: bool) -> set[Node]:
@@ -172,14 +319,47 @@ class FocusData:
         return seen
 
     def instances(self, kind: Node) -> Iterator[Node]:
-        """Yield the instances of a class and of its sub-classes."""
+        """Yield the instances of a class and of its sub-classes.
+
+        Parameters
+        ----------
+        kind
+            Class.
+
+        Yields
+        ------
+        Node
+            Instances; one of several classes occurs repeatedly.
+        """
         for narrower in self.narrower(kind):
             yield from self.subjects(TYPE, narrower)
 
     def subjects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """Return all subjects of a predicate."""
+        """Return all subjects of a predicate.
+
+        Parameters
+        ----------
+        predicate
+            Predicate of the statements.
+
+        Returns
+        -------
+        set of Node
+            Subjects in all data graphs.
+        """
         return {triple.subject for name in DATA for triple in self._after.triples(name, None, predicate)}
 
     def objects_of(self, predicate: ox.NamedNode) -> set[Node]:
-        """Return all objects of a predicate."""
+        """Return all objects of a predicate.
+
+        Parameters
+        ----------
+        predicate
+            Predicate of the statements.
+
+        Returns
+        -------
+        set of Node
+            Objects in all data graphs.
+        """
         return {triple.object for name in DATA for triple in self._after.triples(name, None, predicate)}

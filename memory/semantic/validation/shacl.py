@@ -29,7 +29,20 @@ def shapes_graph() -> rdflib.Graph:
 
 
 def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Return the violations of the packaged shapes by some focus nodes or by all, sorted and without warnings."""
+    """Return the violations of the packaged shapes by some focus nodes or by all, sorted and without warnings.
+
+    Parameters
+    ----------
+    triples
+        Triples to check.
+    focus
+        Texts of the focus nodes; all nodes by default.
+
+    Returns
+    -------
+    list of ShapeResult
+        Distinct violations in the order of their text. Values that cannot be compared are reported as one, too.
+    """
     triples = list(triples)
     try:
         results = validate(triples, focus)
@@ -47,7 +60,25 @@ def _incomparable(node: str = "somewhere") -> ShapeResult:
 
 
 def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Return all results of validating triples, of any severity, for some focus nodes or for all."""
+    """Return all results of validating triples, of any severity, for some focus nodes or for all.
+
+    Parameters
+    ----------
+    triples
+        Triples to check.
+    focus
+        Texts of the focus nodes; all nodes by default.
+
+    Returns
+    -------
+    list of ShapeResult
+        Results in the order of the report.
+
+    Raises
+    ------
+    RuntimeError
+        If pyshacl does not return a report.
+    """
     import pyshacl
     import rdflib
 
@@ -83,7 +114,13 @@ def _asked(about: rdflib.term.Node | None, focus: Collection[str]) -> bool:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Silence rdflib's warnings, and its log of ill-typed literals, which the report has."""
+    """Silence rdflib's warnings, and its log of ill-typed literals, which the report has.
+
+    Yields
+    ------
+    None
+        None, once.
+    """
     logger = logging.getLogger("rdflib.term")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

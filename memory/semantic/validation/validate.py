@@ -21,19 +21,58 @@ BATCH = 200
 
 
 def check_change(store: ox.Store, change: Change) -> None:
-    """Raise RejectedWriteError where the store would break the shapes after a change."""
+    """Raise RejectedWriteError if the store would break the shapes after a change.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    change
+        Change that is not written yet.
+
+    Raises
+    ------
+    RejectedWriteError
+        If a node that the change may alter does not conform; the error has the violations.
+    """
     shapes, view = packaged_shapes(), FocusData(store, change)
     _check(shapes, view, touched(shapes, view, change))
 
 
 def check_store(store: ox.Store) -> None:
-    """Raise RejectedWriteError where the store breaks the shapes."""
+    """Raise RejectedWriteError if the store breaks the shapes.
+
+    Parameters
+    ----------
+    store
+        Store to check as a whole.
+
+    Raises
+    ------
+    RejectedWriteError
+        If a node does not conform; the error has the violations.
+    """
     shapes, view = packaged_shapes(), FocusData(store)
     _decide(shapes, view, {node for shape in shapes.shapes for node in shape.focus(view) if not shape.sure(view, node)})
 
 
 def touched(shapes: Shapes, view: FocusData, change: Change) -> set[Node]:
-    """Return the nodes whose conformance a change may alter."""
+    """Return the nodes whose conformance a change may alter.
+
+    Parameters
+    ----------
+    shapes
+        Compiled shapes.
+    view
+        Data after the change.
+    change
+        Change that is not written yet.
+
+    Returns
+    -------
+    set of Node
+        Nodes to check; all others conform if they did before.
+    """
     found: set[Node] = set()
     for side in (change.added, change.removed):
         for name in DATA:
@@ -108,7 +147,20 @@ def _triple(subject: Node, predicate: ox.NamedNode, obj: Node) -> ox.Triple:
 
 
 def report(triples: Iterable[ox.Triple], nodes: Iterable[Node] | None = None) -> list[ShapeResult]:
-    """Return the violations that pyshacl finds among some triples, for some focus nodes or for all."""
+    """Return the violations that pyshacl finds among some triples, for some focus nodes or for all.
+
+    Parameters
+    ----------
+    triples
+        Triples to check.
+    nodes
+        Focus nodes; all nodes by default.
+
+    Returns
+    -------
+    list of ShapeResult
+        Violations in the order of their text.
+    """
     from deixis.memory.semantic.validation.shacl import violations
 
     return violations(triples, None if nodes is None else {str(getattr(node, "value", "")) for node in nodes})

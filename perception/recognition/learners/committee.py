@@ -62,41 +62,118 @@ class Committee:
         return max(outlook, key=lambda name: outlook[name])
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return the prediction of the member or combination that answers now."""
+        """Return the prediction of the member or combination that answers now.
+
+        Parameters
+        ----------
+        view
+            View with the descriptors of this learner.
+
+        Returns
+        -------
+        Prediction
+            Scores of that member or combination.
+        """
         return self._opinions(view)[self.attended]
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Teach all members."""
+        """Teach all members.
+
+        Parameters
+        ----------
+        category
+            Name of the category, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         self._changed()
         for member in self._members:
             member.learn(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Record which members were right, and correct every member."""
+        """Record which members were right, and correct every member.
+
+        Parameters
+        ----------
+        category
+            Category that the view shows, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         self._watch(category, view)
         for member in self._members:
             member.correct(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Record which members were right, and confirm the answer to every member."""
+        """Record which members were right, and confirm the answer to every member.
+
+        Parameters
+        ----------
+        category
+            Category that was predicted.
+        view
+            View with the descriptors of this learner.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         self._watch(category, view)
         for member in self._members:
             member.confirm(category, view)
 
     def forget(self, category: str) -> None:
-        """Forget the category in every member, but keep the record of success."""
+        """Forget the category in every member, but keep the record of success.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         self._changed()
         for member in self._members:
             member.forget(category)
 
     def rename(self, category: str, name: str) -> None:
-        """Rename the category in every member."""
+        """Rename the category in every member.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+        name
+            New name of it.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known, or another one has the new name.
+        """
         self._changed()
         for member in self._members:
             member.rename(category, name)
 
     def merge(self, category: str, into: str) -> None:
-        """Merge the categories in every member."""
+        """Merge the categories in every member.
+
+        Parameters
+        ----------
+        category
+            Category that is removed.
+        into
+            Category that keeps the knowledge of both.
+
+        Raises
+        ------
+        RecognitionError
+            If one of the categories is not known, or both are one category.
+        """
         self._changed()
         for member in self._members:
             member.merge(category, into)
@@ -134,6 +211,18 @@ class Committee:
 def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
     """Return the votes by category; ties go to the category of the earlier voter, by less than one vote.
 
+    Parameters
+    ----------
+    support
+        Pairs of the category that a member votes for, and its mass, in the order of the members.
+
+    Returns
+    -------
+    dict
+        Number of votes for each category, reduced by less than one for the later ones.
+
+    Examples
+    --------
     >>> votes = majority([("cup", 0.9), ("mug", 0.6), ("mug", 0.5)])
     >>> max(votes, key=votes.__getitem__)
     'mug'
@@ -146,8 +235,18 @@ def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:
 def dempster_shafer(support: Sequence[tuple[str, float]]) -> dict[str, float]:
     """Return the masses of categories combined by Dempster's rule.
 
-    ``support`` holds pairs of a category and its mass, below 1; the rest of each mass goes to ignorance.
+    Parameters
+    ----------
+    support
+        Pairs of a category and its mass, below 1; the rest of each mass goes to ignorance.
 
+    Returns
+    -------
+    dict
+        Mass of each category. Together with the mass of ignorance, the sum is 1.
+
+    Examples
+    --------
     >>> masses = dempster_shafer([("cup", 0.5), ("mug", 0.5)])
     >>> round(masses["cup"], 3), round(masses["mug"], 3)
     (0.333, 0.333)

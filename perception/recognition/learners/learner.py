@@ -28,7 +28,20 @@ class Prediction:
 
     @classmethod
     def of(cls, scores: dict[str, float], unknown: float) -> Prediction:
-        """Return a prediction from the categories' scores; equal scores are ordered by name."""
+        """Return a prediction from the categories' scores; equal scores are ordered by name.
+
+        Parameters
+        ----------
+        scores
+            Score of each category; higher ones are more likely.
+        unknown
+            Score of unknown.
+
+        Returns
+        -------
+        Prediction
+            Prediction; an empty one without categories.
+        """
         ranked = sorted(scores.items(), key=lambda item: (-item[1], item[0]))
         return cls(tuple(ranked), unknown) if ranked else cls()
 
@@ -61,31 +74,108 @@ class Learner(Protocol):
         ...
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Learn that a view shows the category."""
+        """Learn that a view shows the category.
+
+        Parameters
+        ----------
+        category
+            Name of the category, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         ...
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return the prediction for a view, without learning from it."""
+        """Return the prediction for a view, without learning from it.
+
+        Parameters
+        ----------
+        view
+            View with the descriptors of this learner.
+
+        Returns
+        -------
+        Prediction
+            Known categories with scores, the most likely first; empty if the view cannot be compared.
+        """
         ...
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Learn that the prediction for a view was wrong: it shows the category."""
+        """Learn that the prediction for a view was wrong: it shows the category.
+
+        Parameters
+        ----------
+        category
+            Category that the view shows, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         ...
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Learn that the prediction for a view was right: it shows the category."""
+        """Learn that the prediction for a view was right: it shows the category.
+
+        Parameters
+        ----------
+        category
+            Category that was predicted.
+        view
+            View with the descriptors of this learner.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         ...
 
     def forget(self, category: str) -> None:
-        """Remove a category."""
+        """Remove a category.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         ...
 
     def rename(self, category: str, name: str) -> None:
-        """Rename a category; raise RecognitionError if the new name is that of another one."""
+        """Rename a category.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+        name
+            New name of it.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known, or another one has the new name.
+        """
         ...
 
     def merge(self, category: str, into: str) -> None:
-        """Move the knowledge of one category to another, and remove the first."""
+        """Move the knowledge of one category to another, and remove the first.
+
+        Parameters
+        ----------
+        category
+            Category that is removed.
+        into
+            Category that keeps the knowledge of both.
+
+        Raises
+        ------
+        RecognitionError
+            If one of the categories is not known, or both are one category.
+        """
         ...
 
 
@@ -112,33 +202,99 @@ class TaughtViews(ABC):
         return sum(map(len, self._views.values()))
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Store the view."""
+        """Store the view.
+
+        Parameters
+        ----------
+        category
+            Name of the category, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         self._views[category] = (*self._views.get(category, ()), view)
         self._added(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Store the view, as if it had been taught."""
+        """Store the view, as if it had been taught.
+
+        Parameters
+        ----------
+        category
+            Category that the view shows, which may be new.
+        view
+            View with the descriptors of this learner.
+        """
         self.learn(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Store nothing; raise RecognitionError if the category is not known."""
+        """Store nothing.
+
+        Parameters
+        ----------
+        category
+            Category that was predicted.
+        view
+            View with the descriptors of this learner.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         require_known(category, self._views)
 
     def forget(self, category: str) -> None:
-        """Remove the category with all its views."""
+        """Remove the category with all its views.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known.
+        """
         require_known(category, self._views)
         del self._views[category]
         self._rebuilt(category, ())
 
     def rename(self, category: str, name: str) -> None:
-        """Rename the category, which keeps its place in the order."""
+        """Rename the category, which keeps its place in the order.
+
+        Parameters
+        ----------
+        category
+            Name of a known category.
+        name
+            New name of it.
+
+        Raises
+        ------
+        RecognitionError
+            If the category is not known, or another one has the new name.
+        """
         require_free(category, name, self._views)
         self._views = {name if old == category else old: views for old, views in self._views.items()}
         self._rebuilt(category, ())
         self._rebuilt(name, self._views[name])
 
     def merge(self, category: str, into: str) -> None:
-        """Append the views of the first category to those of the second."""
+        """Append the views of the first category to those of the second.
+
+        Parameters
+        ----------
+        category
+            Category that is removed.
+        into
+            Category that keeps the knowledge of both.
+
+        Raises
+        ------
+        RecognitionError
+            If one of the categories is not known, or both are one category.
+        """
         require_two(category, into, self._views)
         self._views[into] += self._views.pop(category)
         self._rebuilt(category, ())
@@ -146,7 +302,18 @@ class TaughtViews(ABC):
 
     @abstractmethod
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return the prediction for a view."""
+        """Return the prediction for a view.
+
+        Parameters
+        ----------
+        view
+            View with the descriptors of this learner.
+
+        Returns
+        -------
+        Prediction
+            Known categories with scores, the most likely first; empty if the view cannot be compared.
+        """
 
     @abstractmethod
     def _added(self, category: str, view: ViewFeatures) -> None:
@@ -158,20 +325,61 @@ class TaughtViews(ABC):
 
 
 def require_known(category: str, known: Collection[str]) -> None:
-    """Raise RecognitionError, with the known names, if the category is not known."""
+    """Raise RecognitionError if a category is not known.
+
+    Parameters
+    ----------
+    category
+        Name of the category.
+    known
+        Names of the known categories, which the error lists.
+
+    Raises
+    ------
+    RecognitionError
+        If the category is not known.
+    """
     if category not in known:
         raise RecognitionError(f"unknown category '{category}'; the categories are: {', '.join(known) or 'none'}")
 
 
 def require_free(category: str, name: str, known: Collection[str]) -> None:
-    """Raise RecognitionError unless the category is known, and the name is its own or not in use."""
+    """Raise RecognitionError unless the category is known, and the name is its own or not in use.
+
+    Parameters
+    ----------
+    category
+        Name of the category.
+    name
+        New name of it.
+    known
+        Names of the known categories.
+
+    Raises
+    ------
+    RecognitionError
+        If the category is not known, or another one has the new name.
+    """
     require_known(category, known)
     if name in known and name != category:
         raise RecognitionError(f"there is a category '{name}' already; merge '{category}' into it instead")
 
 
 def require_two(category: str, into: str, known: Collection[str]) -> None:
-    """Raise RecognitionError unless both categories are known and different."""
+    """Raise RecognitionError unless both categories are known and different.
+
+    Parameters
+    ----------
+    category, into
+        Names of the two categories.
+    known
+        Names of the known categories.
+
+    Raises
+    ------
+    RecognitionError
+        If one of them is not known, or both are one category.
+    """
     require_known(category, known)
     require_known(into, known)
     if category == into:

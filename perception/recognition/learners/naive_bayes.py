@@ -30,10 +30,34 @@ class Codebook:
     def of(
         cls, views: Iterable[ViewFeatures], words: int = 80, descriptor: str = "spin_images", seed: int = 0
     ) -> Codebook:
-        """Return a codebook of the views' descriptors, by k-means from k-means++ (Arthur and Vassilvitskii 2007).
+        """Return a codebook of the descriptors of views, by k-means.
 
-        It does not use categories. There are fewer words if there are fewer distinct descriptors. Raises
-        RecognitionError for a number of words below 1, and for views without a descriptor.
+        It does not use categories.
+
+        Parameters
+        ----------
+        views
+            Views, of which one must have a descriptor.
+        words
+            Number of words; there are fewer if there are fewer distinct descriptors.
+        descriptor
+            Name of the descriptor.
+        seed
+            Seed of the first centres.
+
+        Returns
+        -------
+        Codebook
+            Codebook whose words are the centres of the clusters.
+
+        Raises
+        ------
+        RecognitionError
+            If ``words`` is below 1, or no view has a descriptor.
+
+        Notes
+        -----
+        The first centres are chosen by k-means++ (Arthur and Vassilvitskii 2007).
         """
         from scipy.cluster.vq import kmeans2
 
@@ -54,7 +78,18 @@ class Codebook:
         return len(self.centres)
 
     def counts(self, view: ViewFeatures) -> NDArray[np.float64]:
-        """Return the counts (w,) of the words in a view; each descriptor counts as its nearest word."""
+        """Return the counts of the words in a view; each descriptor counts as its nearest word.
+
+        Parameters
+        ----------
+        view
+            View with the codebook's descriptor.
+
+        Returns
+        -------
+        ndarray
+            Counts of the w words, shape (w,).
+        """
         rows = roots(view[self.descriptor])
         distances = (self.centres**2).sum(axis=1) - 2.0 * rows @ self.centres.T
         return np.bincount(distances.argmin(axis=1), minlength=len(self)).astype(np.float64)

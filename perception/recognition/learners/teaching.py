@@ -146,6 +146,11 @@ def teach(
     tick
         Callback after each answer.
 
+    Returns
+    -------
+    Course
+        Answers in the order of the questions, and the number of answers before each introduction.
+
     Raises
     ------
     RecognitionError

@@ -43,12 +43,38 @@ class ViewFeatures:
         return self.descriptors[name]
 
     def has(self, name: str) -> bool:
-        """Return True if there is at least one descriptor of a name."""
+        """Return True if there is at least one descriptor of a name.
+
+        Parameters
+        ----------
+        name
+            Name of the descriptor.
+
+        Returns
+        -------
+        bool
+            False for an unknown name, and for a view that could not be described.
+        """
         return name in self.descriptors and len(self.descriptors[name]) > 0
 
 
 def features_of(cloud: PointCloud, describers: Iterable[Describer], thing: str | None = None) -> ViewFeatures:
-    """Return the features of a view of one thing by all describers."""
+    """Return the features of a view of one thing by all describers.
+
+    Parameters
+    ----------
+    cloud
+        View of the thing, in metres.
+    describers
+        Descriptors to compute.
+    thing
+        Thing that the view shows, if it is known.
+
+    Returns
+    -------
+    ViewFeatures
+        Descriptors by the names of the describers.
+    """
     return ViewFeatures({describer.name: describer.describe(cloud) for describer in describers}, thing)
 
 
@@ -57,6 +83,16 @@ def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
 
     The Euclidean distance between square roots of histograms is the Hellinger distance, in which a few full bins do not
     dominate the others.
+
+    Parameters
+    ----------
+    descriptors
+        Descriptors of shape (k, d).
+
+    Returns
+    -------
+    ndarray
+        Square roots of shape (k, d).
     """
     return np.sqrt(np.maximum(descriptors, np.float32(0.0)))
 
@@ -64,8 +100,20 @@ def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
 def pooled(view: ViewFeatures, names: Iterable[str]) -> NDArray[np.float64] | None:
     """Return one vector for a view: the means over keypoints of the square roots of its descriptors, concatenated.
 
-    Returns None if a name has no descriptor.
+    Parameters
+    ----------
+    view
+        View with its descriptors.
+    names
+        Names of the descriptors, in the order of the vector.
 
+    Returns
+    -------
+    ndarray or None
+        Vector whose length is the sum of the descriptors' lengths; None if a name has no descriptor.
+
+    Examples
+    --------
     >>> pooled(ViewFeatures({"a": np.array([[4.0], [16.0]]), "b": np.array([[1.0, 0.0]])}), ["a", "b"])
     array([3., 1., 0.])
     """

@@ -162,6 +162,11 @@ def keep_words(
     -------
     LearnedWords
         The models that changed.
+
+    Raises
+    ------
+    NothingFoundError
+        If no fact of any lesson has both of its objects in its scene.
     """
     change = memory.arrival({lesson.id: _contributions(lesson, ontology) for lesson in lessons})
     words = fit(_recollected(After(memory.store, change), ontology), strength)

@@ -101,6 +101,11 @@ def perceived_figure(scene: Scene) -> Figure:
     -------
     Figure
         The figure.
+
+    Raises
+    ------
+    SceneError
+        If the scene was not perceived from a cloud.
     """
     from deixis.perception.detection.viewpoint import in_frame
     from deixis.perception.errors import SceneError

@@ -58,13 +58,35 @@ class Arrangement:
     graded: tuple[int, ...]
 
     def outcomes(self, boxes: Array) -> tuple[ClaimOutcome, ...]:
-        """Return the outcomes of the claims for boxes (n, 2, 2)."""
+        """Return the outcomes of the claims for boxes (n, 2, 2).
+
+        Parameters
+        ----------
+        boxes
+            Boxes of the things in plan, shape (n, 2, 2), in metres.
+
+        Returns
+        -------
+        tuple of ClaimOutcome
+            One outcome per claim, in the order of the claims.
+        """
         nodes = self.graph.nodes
         filled = {name: name for name in nodes}
         return check_claims(self.claims, filled, nodes, boxes, self.graph.vocabulary, shipped_models())
 
     def degrees(self, boxes: Array) -> Array:
-        """Return the degrees of the graded facts and then of the claims; 1 for what boxes do not decide."""
+        """Return the degrees of the graded facts and then of the claims; 1 for what boxes do not decide.
+
+        Parameters
+        ----------
+        boxes
+            Boxes of the things in plan, shape (n, 2, 2), in metres.
+
+        Returns
+        -------
+        ndarray
+            Degrees in [0, 1], shape (g + c,) for g graded facts and c claims.
+        """
         claims = [1.0 if entry.degree is None else entry.degree for entry in self.outcomes(boxes)]
         found: list[float] = []
         if self.graded:
@@ -77,7 +99,18 @@ class Arrangement:
         return np.array([*found, *claims])
 
     def firm(self, boxes: Array) -> bool:
-        """Return whether all kept facts hold of the boxes."""
+        """Return whether all kept facts hold of the boxes.
+
+        Parameters
+        ----------
+        boxes
+            Boxes of the things in plan, shape (n, 2, 2), in metres.
+
+        Returns
+        -------
+        bool
+            False if a kept fact does not hold.
+        """
         graph = self.graph
         names = scene_relations(graph.nodes, boxes, graph.vocabulary).names
         for edge in self.kept:
@@ -121,7 +154,18 @@ class Arrangement:
         return found
 
     def things_of(self, statement: int) -> tuple[list[int], list[int]]:
-        """Return the subjects and the other objects of a graded fact, or of a claim after these."""
+        """Return the subjects and the other objects of a graded fact, or of a claim after these.
+
+        Parameters
+        ----------
+        statement
+            Index of a graded fact or, after all of them, of a claim.
+
+        Returns
+        -------
+        tuple
+            Indices of the subjects, and indices of the other objects.
+        """
         if statement < len(self.graded):
             edge = self.graded[statement]
             return [int(self.graph.subjects[edge])], [int(self.graph.objects[edge])]
@@ -131,7 +175,24 @@ class Arrangement:
 
 
 def arrange(task: Arrangement, boxes: Array, rng: np.random.Generator, deadline: Deadline) -> Array:
-    """Return boxes (n, 2, 2), in metres, of which more of the statements hold, and all kept facts."""
+    """Move the boxes of a table so that more of its statements hold, and return them.
+
+    Parameters
+    ----------
+    task
+        Statements to satisfy, and facts to keep.
+    boxes
+        Boxes to start from, of which all kept facts hold; shape (n, 2, 2), in metres.
+    rng
+        Source of the random moves.
+    deadline
+        Time limit; the search also ends after ``SEARCH_SECONDS``.
+
+    Returns
+    -------
+    ndarray
+        Boxes of shape (n, 2, 2), in metres, of which all kept facts hold; the given boxes if no move helps.
+    """
     deadline = min(deadline, Deadline.after(SEARCH_SECONDS))
     best, degrees = boxes, task.degrees(boxes)
     allowed = _overlaps(boxes)

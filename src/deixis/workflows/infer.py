@@ -85,7 +85,20 @@ class Inference(Answer):
         return tuple(self.each_inferred())
 
     def derive(self, relation: Relation, subject: str, thing: str) -> Derivation | None:
-        """Return a derivation of a fact from stated facts and claims, or None if it does not follow."""
+        """Return a derivation of a fact from stated facts and claims, or None if it does not follow.
+
+        Parameters
+        ----------
+        relation
+            Relation of the fact, from the subject to the thing.
+        subject, thing
+            Names of two objects.
+
+        Returns
+        -------
+        Derivation or None
+            Derivation of ``relation(subject, thing)``; None if the fact does not follow.
+        """
         fact = Fact(subject, (relation,), thing)
         found = self._first_that_implies(fact).derive(relation, subject, thing)
         return None if found is None else self._with_claims(found, {str(entry.fact): entry for entry in self.of_claims})

@@ -157,7 +157,22 @@ def _english_findings(script: Script, reading: Reading) -> Iterator[Finding]:
 
 
 def source_of_span(text: str, span: tuple[int, int], file: str) -> Source:
-    """Return the lines and columns of a span of characters."""
+    """Return the lines and columns of a span of characters.
+
+    Parameters
+    ----------
+    text
+        Text of the file.
+    span
+        Offset of the first character of the span in the text, and the offset after its last one.
+    file
+        Name of the file.
+
+    Returns
+    -------
+    Source
+        Lines and columns, counted from 1.
+    """
     (line, column), (end_line, end_column) = (
         (text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)) for at in span
     )

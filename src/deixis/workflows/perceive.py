@@ -38,8 +38,6 @@ def perceive(
 ) -> Scene:
     """Find the table in a point cloud, and the objects on it.
 
-    ``stage`` is called with the name of each of ``STAGES`` that begins.
-
     Each object of the scene has its points, so that it can be taught, learned and recognised at once;
     :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the object of each of its points, and notes on what
     is unusual.
@@ -54,6 +52,8 @@ def perceive(
         Name of the side from which the camera looks.
     settings
         Which table to choose, and what is known of the camera's frame.
+    stage
+        Called with the name of each of ``STAGES`` that begins.
 
     Returns
     -------

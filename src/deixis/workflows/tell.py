@@ -81,12 +81,38 @@ def tell(
 
 
 def holds_facts(file: str | Path) -> bool:
-    """Return True for the name of a layout or of a text, False for that of a scene."""
+    """Return True for the name of a layout or of a text, False for that of a scene.
+
+    Parameters
+    ----------
+    file
+        Name of the file, which need not exist.
+
+    Returns
+    -------
+    bool
+        Decided by the ending of the name.
+    """
     return str(file).casefold().endswith(SCRIPT_ENDING) or is_english(file)
 
 
 def tell_layout(script: Script, all_facts: bool, deadline: Deadline) -> Telling:
-    """Say a script; see :func:`tell`."""
+    """Say the facts of a script in English; see :func:`tell`.
+
+    Parameters
+    ----------
+    script
+        Script to say.
+    all_facts
+        If False, leave out facts that follow from the others.
+    deadline
+        Time limit for finding facts that follow.
+
+    Returns
+    -------
+    Telling
+        Sentences, the words for each object, and the facts that were left out.
+    """
     stated = _stated(script)
     left_out, complete = ([], True) if all_facts else _implied(script, stated, deadline)
     said = _without_numbers([fact for number, fact in enumerate(stated) if number not in set(left_out)])

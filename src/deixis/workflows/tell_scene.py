@@ -45,7 +45,22 @@ UNKNOWN = "thing"
 
 
 def tell_scene(scene: Scene, all_facts: bool, deadline: Deadline) -> Telling:
-    """Say a scene; see :func:`deixis.workflows.tell.tell`."""
+    """Say where the objects of a scene are, in English; see :func:`deixis.workflows.tell.tell`.
+
+    Parameters
+    ----------
+    scene
+        Scene to say.
+    all_facts
+        If True, say the relation of each object to each other one; if False, leave most relations out.
+    deadline
+        Time limit for checking the text and for describing each object by itself.
+
+    Returns
+    -------
+    Telling
+        Sentences, and the words for each object, with whether the text singles it out.
+    """
     if not scene.objects:
         return Telling(scene.file, (), (), (), notes=("the scene has no objects",))
     ontology = default_ontology()

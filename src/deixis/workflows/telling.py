@@ -67,12 +67,34 @@ class Telling(Answer):
 
 
 def objects_of(content: Fact | Claim) -> tuple[str, ...]:
-    """Return the objects that a fact or a claim is about."""
+    """Return the objects that a fact or a claim is about.
+
+    Parameters
+    ----------
+    content
+        Fact or claim.
+
+    Returns
+    -------
+    tuple of str
+        Subjects first, then objects; a name is repeated if it is mentioned twice.
+    """
     return (content.subject, content.object) if isinstance(content, Fact) else (*content.subjects, *content.arguments)
 
 
 def each_denied(stated: StatedFact) -> Iterator[StatedFact]:
-    """Yield a fact; of a denied choice, the denial of each alternative."""
+    """Yield a fact; of a denied choice, the denial of each alternative.
+
+    Parameters
+    ----------
+    stated
+        Stated fact or claim.
+
+    Yields
+    ------
+    StatedFact
+        The fact itself if it is positive or a claim; else one denied fact for each of its relations.
+    """
     content = stated.content
     if isinstance(content, Claim) or content.positive:
         yield stated
@@ -87,6 +109,18 @@ def each_denied(stated: StatedFact) -> Iterator[StatedFact]:
 def designations(names: Sequence[str]) -> dict[str, Designation]:
     """Return words for the objects of a layout: their names, and ordinals for ``cup_1``, ``cup_2`` and so on.
 
+    Parameters
+    ----------
+    names
+        Names of all objects of the layout.
+
+    Returns
+    -------
+    dict
+        Words for each object, by its name.
+
+    Examples
+    --------
     >>> designations(["cup_1", "plate", "cup_2", "2nd?"])["cup_2"]
     Designation(words='cup', number=2, literal=False)
     """
@@ -123,7 +157,18 @@ def _is_counted(group: Mapping[int, str]) -> bool:
 
 
 def literal(name: str) -> Designation:
-    """Return the name as it is, which the reader takes without reading it."""
+    """Return the name as it is, which the reader takes without reading it.
+
+    Parameters
+    ----------
+    name
+        Name of an object.
+
+    Returns
+    -------
+    Designation
+        Designation that is written between backticks.
+    """
     return Designation(name, None, True)
 
 
@@ -155,12 +200,34 @@ class Plan:
         self.read_again = True
 
     def words(self, name: str) -> str:
-        """Return the words for an object without an article."""
+        """Return the words for an object without an article.
+
+        Parameters
+        ----------
+        name
+            Name of an object.
+
+        Returns
+        -------
+        str
+            Words with a number where several objects share them, such as ``cup 2``.
+        """
         chosen = self.designations[name]
         return chosen.words if chosen.number is None else f"{chosen.words} {chosen.number}"
 
     def readable(self, deadline: Deadline) -> tuple[ToldSentence, ...]:
-        """Return sentences that are read as the facts; ``misread`` are the facts for which no wording was found."""
+        """Return sentences that are read as the facts; ``misread`` are the facts for which no wording was found.
+
+        Parameters
+        ----------
+        deadline
+            Time limit for reading the sentences again.
+
+        Returns
+        -------
+        tuple of ToldSentence
+            Sentences in the order of the facts, joined where they are still read correctly.
+        """
         apart: set[int] = set()
         sentences: tuple[ToldSentence, ...] = ()
         for _ in range(ROUNDS):
@@ -245,7 +312,18 @@ class Plan:
         return relation in ("colour", "size", "material", "shape") and value in words
 
     def names_read(self, reading: Reading) -> dict[str, str]:
-        """Return the object that each name of the reading stands for."""
+        """Return the object that each name of the reading stands for.
+
+        Parameters
+        ----------
+        reading
+            What the English reader makes of the sentences.
+
+        Returns
+        -------
+        dict
+            Name of the object by the name that the reader gave it. Names that fit no words of the plan are missing.
+        """
         by_words = {self.words(name).replace(" ", "_").casefold(): name for name in self.designations}
         found: dict[str, str] = {}
         for read, mentions in reading.mentions.items():
@@ -268,6 +346,18 @@ def meaning_of(content: Fact | Claim, names: Mapping[str, str]) -> tuple[Any, ..
 
     Of a relation and its inverse, the first by name is taken. A fact with a weight of at most one half need not hold,
     so it is optional anyway.
+
+    Parameters
+    ----------
+    content
+        Fact or claim.
+    names
+        Names by which objects are replaced; names that are missing here stay.
+
+    Returns
+    -------
+    tuple of Any
+        Tuple that is equal for statements with the same meaning.
     """
     weight = min(0.2, content.weight) if content.weight < 0.3 else round(content.weight, 2)
     how = (content.positive, content.optional or content.weight <= 0.5, weight)
