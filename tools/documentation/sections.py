@@ -1,7 +1,7 @@
 """Check that public functions have the numpydoc sections of their parameters and results.
 
-Public is what the Python reference documents. All of it must have these sections in the packages of ``SECTIONED``.
-Everything that ``deixis`` and ``deixis.testing`` export must have them too, with the inherited methods of its classes.
+Public is what the Python reference documents: the functions and methods of all packages whose names begin with no
+underscore, and everything that ``deixis`` and ``deixis.testing`` export, with the inherited methods of its classes.
 """
 
 from __future__ import annotations
@@ -17,58 +17,6 @@ from documentation.package_reference import packages
 
 EXPORTING = ("deixis", "deixis.testing")
 """Packages whose exported names must have all sections, wherever they are defined."""
-
-SECTIONED: tuple[str, ...] = (
-    "deixis",
-    "deixis.experiments",
-    "deixis.experiments.open_ended",
-    "deixis.experiments.scoreboard",
-    "deixis.grammar",
-    "deixis.grammar.english",
-    "deixis.grammar.formats",
-    "deixis.learning",
-    "deixis.lsp",
-    "deixis.memory",
-    "deixis.memory.perceptual",
-    "deixis.memory.semantic",
-    "deixis.memory.semantic.queries",
-    "deixis.memory.semantic.rdf",
-    "deixis.memory.semantic.validation",
-    "deixis.ontology",
-    "deixis.ontology.lessons",
-    "deixis.ontology.lexicon",
-    "deixis.ontology.models",
-    "deixis.perception",
-    "deixis.perception.clouds",
-    "deixis.perception.detection",
-    "deixis.perception.features",
-    "deixis.perception.formats",
-    "deixis.perception.recognition",
-    "deixis.perception.recognition.learners",
-    "deixis.perception.simulator",
-    "deixis.plots",
-    "deixis.reasoning",
-    "deixis.reasoning.comparison",
-    "deixis.reasoning.constraints",
-    "deixis.reasoning.description_logic",
-    "deixis.reasoning.entailment",
-    "deixis.reasoning.geometry",
-    "deixis.reasoning.grounding",
-    "deixis.reasoning.grounding.evidence",
-    "deixis.reasoning.grounding.fitting",
-    "deixis.reasoning.grounding.matching",
-    "deixis.reasoning.grounding.questions",
-    "deixis.reasoning.grounding.reference",
-    "deixis.reasoning.habits",
-    "deixis.reasoning.qualitative",
-    "deixis.reasoning.qualitative.calculi",
-    "deixis.reasoning.qualitative.networks",
-    "deixis.reasoning.temporal",
-    "deixis.report",
-    "deixis.testing",
-    "deixis.workflows",
-)
-"""Packages, without their sub-packages, whose public functions have all sections; others join once all have them."""
 
 NO_RESULT = (inspect.Signature.empty, None, "None", "NoReturn")
 """Return annotations of functions that return nothing."""
@@ -102,12 +50,11 @@ def public_functions() -> Iterator[tuple[type | None, Callable[..., Any]]]:
         for exported in module.__all__:
             yield from _functions(getattr(module, exported))
     for name, folder in packages():
-        if name in SECTIONED:
-            for module in modules(name, folder):
-                members = [value for key, value in vars(module).items() if not key.startswith("_")]
-                for member in members:
-                    if getattr(member, "__module__", None) == module.__name__:
-                        yield from _functions(member)
+        for module in modules(name, folder):
+            members = [value for key, value in vars(module).items() if not key.startswith("_")]
+            for member in members:
+                if getattr(member, "__module__", None) == module.__name__:
+                    yield from _functions(member)
 
 
 def modules(package: str, folder: Path) -> Iterator[Any]:

@@ -83,6 +83,20 @@ def compose(network: DifferenceNetwork, wishes: Wishes, deadline: Deadline) -> N
     The solution of the program is rounded, and then moved to the nearest solution of the constraints, so that its
     numerical errors do not matter. Without a solution before the deadline, the objects stand at any valid positions.
     Round objects are made as long as wide if possible; ``network`` keeps these constraints.
+
+    Parameters
+    ----------
+    network
+        The constraints that hold of all edges; those of round objects are added to it.
+    wishes
+        The preferences: sizes, the side of each length, gaps.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    NDArray of int64
+        Positions in millimetres.
     """
     points = 2 * len(wishes.things)
     if not points:
@@ -181,11 +195,39 @@ def _wish_near(
 
 
 def within(network: DifferenceNetwork, axis: int, inner: int, outer: int) -> bool:
-    """Return whether the constraints imply that one projection lies within another."""
+    """Return whether the constraints imply that one projection lies within another.
+
+    Parameters
+    ----------
+    network
+        The constraints.
+    axis
+        0 for x, 1 for y.
+    inner
+        The object whose projection is inside.
+    outer
+        The object around it.
+
+    Returns
+    -------
+    bool
+        True if every solution has it so.
+    """
     begins = network.distances[axis, low(inner), low(outer)] <= ZERO
     return bool(begins and network.distances[axis, high(outer), high(inner)] <= ZERO)
 
 
 def in_line(pairs: Iterable[tuple[int, int]]) -> tuple[tuple[int, int], ...]:
-    """Return the unordered pairs, each once."""
+    """Return the unordered pairs, each once.
+
+    Parameters
+    ----------
+    pairs
+        Ordered pairs, in any order.
+
+    Returns
+    -------
+    tuple
+        The pairs with the lesser number first.
+    """
     return tuple(dict.fromkeys((min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]))

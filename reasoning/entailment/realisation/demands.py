@@ -49,27 +49,88 @@ class Demand:
 
 
 def low(thing: int) -> int:
-    """Return the point of the left or near edge of an object."""
+    """Return the point of the left or near edge of an object.
+
+    Parameters
+    ----------
+    thing
+        Number of the object.
+
+    Returns
+    -------
+    int
+        Number of the point.
+    """
     return 2 * thing
 
 
 def high(thing: int) -> int:
-    """Return the point of the right or far edge of an object."""
+    """Return the point of the right or far edge of an object.
+
+    Parameters
+    ----------
+    thing
+        Number of the object.
+
+    Returns
+    -------
+    int
+        Number of the point.
+    """
     return 2 * thing + 1
 
 
 def at_most(axis: int, tail: int, head: int, bound: int) -> Difference:
-    """Return the constraint ``x[head] - x[tail] <= bound`` on an axis, in whole millimetres."""
+    """Return the constraint ``x[head] - x[tail] <= bound`` on an axis, in whole millimetres.
+
+    Parameters
+    ----------
+    axis
+        0 for x, 1 for y.
+    tail
+        The point that is subtracted.
+    head
+        The other point.
+    bound
+        Greatest difference, in millimetres.
+
+    Returns
+    -------
+    Difference
+        The constraint.
+    """
     return Difference(axis, tail, head, 2 * bound + 1)
 
 
 def proper_boxes(things: int) -> tuple[Clause, ...]:
-    """Return the clauses that give every box sides of at least a millimetre."""
+    """Return the clauses that give every box sides of at least a millimetre.
+
+    Parameters
+    ----------
+    things
+        Number of objects.
+
+    Returns
+    -------
+    tuple of Clause
+        Two clauses for each object, one for each axis.
+    """
     return tuple(Clause(((at_most(axis, high(i), low(i), -MARGIN),),)) for i in range(things) for axis in (0, 1))
 
 
 def fact_demands(graph: RelationGraph) -> tuple[Demand, ...]:
-    """Return one demand per edge of the graph, in their order."""
+    """Return one demand per edge of the graph, in their order.
+
+    Parameters
+    ----------
+    graph
+        The stated facts as a graph.
+
+    Returns
+    -------
+    tuple of Demand
+        The demands.
+    """
     facts = [graph.fact(edge) for edge in range(len(graph))]
     return tuple(
         Demand(About.FACT, (edge,), _clauses(graph, edge, region(fact)), fact.weight) for edge, fact in enumerate(facts)
@@ -81,6 +142,18 @@ def name_demands(graph: RelationGraph, edges: Sequence[int]) -> tuple[Demand, ..
 
     Boxes that overlap in part have the exact relation of the offset of their centres. This may be a relation that is
     denied, although its atoms are not those of the pair.
+
+    Parameters
+    ----------
+    graph
+        The stated facts as a graph.
+    edges
+        Numbers of edges; those that are not denials are skipped.
+
+    Returns
+    -------
+    tuple of Demand
+        A demand for each denial.
     """
     # the atoms (13, 13) that exactly one exact relation admits
     exact = [relation.admits() for relation in graph.vocabulary.of_reading(Reading.EXACT)]
@@ -107,7 +180,18 @@ def _differences(piece: Piece, subject: int, thing: int) -> tuple[Difference, ..
 
 
 def size_demands(things: Things) -> tuple[Demand, ...]:
-    """Return one demand per object for usual sides, in either orientation, the preferred one first."""
+    """Return one demand per object for usual sides, in either orientation, the preferred one first.
+
+    Parameters
+    ----------
+    things
+        The objects with their sizes.
+
+    Returns
+    -------
+    tuple of Demand
+        The demands.
+    """
     return tuple(Demand(About.SIZE, (i,), _size_clauses(things, i)) for i in range(len(things)))
 
 
@@ -134,7 +218,21 @@ def _sides(thing: int, least: NDArray[np.int64], greatest: NDArray[np.int64]) ->
 def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.float64]) -> Demand:
     """Return the demand that two boxes do not overlap; the direction of the smallest move comes first.
 
-    ``edges`` (2, points) are the current positions; ``noise`` (4,) is added to the four moves, in millimetres.
+    Parameters
+    ----------
+    a
+        Number of one object.
+    b
+        Number of the other object.
+    edges
+        Current positions in millimetres, shape (2, points).
+    noise
+        Added to the four moves, in millimetres, shape (4,).
+
+    Returns
+    -------
+    Demand
+        One of the four moves apart.
     """
     ways = [(axis, first, second) for axis in (0, 1) for first, second in ((a, b), (b, a))]
     moved = [int(edges[axis, high(first)] - edges[axis, low(second)]) for axis, first, second in ways]
@@ -144,5 +242,16 @@ def apart_demand(a: int, b: int, edges: NDArray[np.int64], noise: NDArray[np.flo
 
 
 def is_firm(fact: Fact) -> bool:
-    """Return whether a fact is neither optional nor hedged, so that it must hold."""
+    """Return whether a fact is neither optional nor hedged, so that it must hold.
+
+    Parameters
+    ----------
+    fact
+        The fact.
+
+    Returns
+    -------
+    bool
+        True if it must hold.
+    """
     return not fact.optional and fact.weight >= 1

@@ -117,6 +117,11 @@ def realise(
     rng
         Generator of sizes, gaps and arrangements. Without it, the picture is always the same.
 
+    Returns
+    -------
+    Picture, Impossible or Undecided
+        The boxes; or the facts that allow none; or the reason why neither was found.
+
     Raises
     ------
     LimitError

@@ -38,6 +38,16 @@ def region(fact: Fact) -> NDArray[np.bool_]:
     It leaves out atoms that a relation shares with its inverse, for which only heights can decide: of two equal boxes,
     one lies on the other, but a plan does not show which. This loses no pictures: unless a chain of *on* is a cycle,
     its boxes can be made smaller along it. The atoms of a graded word are necessary for it, and its denial denies none.
+
+    Parameters
+    ----------
+    fact
+        A fact of a graph.
+
+    Returns
+    -------
+    NDArray of bool
+        True for each admitted atom.
     """
     if any(relation.by_model for relation in fact.relations):
         necessary: NDArray[np.bool_] = np.logical_or.reduce([relation.admits() for relation in fact.relations])
@@ -67,6 +77,18 @@ def choice(wanted: NDArray[np.bool_]) -> PieceChoice:
     The cover is greedy: each piece admits as many uncovered atoms as possible, so that the largest come first. Pieces
     may overlap. They leave out the inequalities of the hull.
 
+    Parameters
+    ----------
+    wanted
+        Atoms to admit, shape (13, 13), axes x and y, by Allen code.
+
+    Returns
+    -------
+    PieceChoice
+        The inequalities that always hold, and the pieces of which one must hold.
+
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> choice(default_ontology().relations["left"].admits())
     PieceChoice(always=(Inequality(axis=0, lesser=1, greater=2, strict=False),), pieces=((),))

@@ -36,7 +36,24 @@ class Relaxed:
 def satisfy(
     points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline
 ) -> DifferenceNetwork | tuple[Demand, ...] | None:
-    """Return a solution of the base and all demands, or inconsistent demands, or None if time runs out."""
+    """Return a solution of the base and all demands, or inconsistent demands, or None if time runs out.
+
+    Parameters
+    ----------
+    points
+        Number of points on each axis.
+    base
+        Clauses that always hold.
+    demands
+        The demands.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    DifferenceNetwork, tuple of Demand or None
+        The solution; or demands that are inconsistent with the base; or None if time runs out.
+    """
     clauses = [*base, *(clause for demand in demands for clause in demand.clauses)]
     owners = [-1] * len(base) + [position for position, demand in enumerate(demands) for _ in demand.clauses]
     found = solve(points, 2, clauses, deadline)
@@ -46,7 +63,24 @@ def satisfy(
 
 
 def minimised(points: int, base: Sequence[Clause], demands: Sequence[Demand], deadline: Deadline) -> Minimal[Demand]:
-    """Return inconsistent demands, minimal as far as time allows."""
+    """Return inconsistent demands, minimal as far as time allows.
+
+    Parameters
+    ----------
+    points
+        Number of points on each axis.
+    base
+        Clauses that always hold.
+    demands
+        Inconsistent demands.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Minimal
+        Demands that are inconsistent together.
+    """
 
     def refuted(chosen: Sequence[Demand]) -> tuple[Demand, ...] | None:
         found = satisfy(points, base, chosen, deadline)
@@ -63,6 +97,24 @@ def relaxed(
     As long as soft demands are inconsistent with the others, the last one of a conflict is given up; then those given
     up are tried again. The function returns inconsistent firm demands instead, or None if time runs out before anything
     is solved.
+
+    Parameters
+    ----------
+    points
+        Number of points on each axis.
+    base
+        Clauses that always hold.
+    firm
+        Demands that must hold.
+    soft
+        Demands that are given up if need be, the last first.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Relaxed, tuple of Demand or None
+        The solution; or inconsistent firm demands; or None if time runs out.
     """
     kept, dropped = list(soft), list[Dropped]()
     while True:

@@ -28,14 +28,40 @@ class Things:
         return len(self.least)
 
     def ways(self, thing: int) -> tuple[tuple[int, int], ...]:
-        """Return the possible orientations, the preferred one first; only one if it makes no difference."""
+        """Return the possible orientations, the preferred one first; only one if it makes no difference.
+
+        Parameters
+        ----------
+        thing
+            Number of the object.
+
+        Returns
+        -------
+        tuple
+            Sides on x and y in millimetres, for each orientation.
+        """
         if (self.least[thing, 0], self.greatest[thing, 0]) == (self.least[thing, 1], self.greatest[thing, 1]):
             return (UPRIGHT,)
         return (LYING, UPRIGHT) if self.lying[thing] else (UPRIGHT, LYING)
 
 
 def things_of(ranges: Sequence[SizeRange], lying: Sequence[bool], rng: np.random.Generator | None = None) -> Things:
-    """Return objects with sizes in these ranges: typical ones, or with ``rng`` random ones."""
+    """Return objects with sizes in these ranges: typical ones, or with ``rng`` random ones.
+
+    Parameters
+    ----------
+    ranges
+        Usual sizes of the objects.
+    lying
+        Whether each object preferably lies along x.
+    rng
+        Generator of sizes; None for typical ones.
+
+    Returns
+    -------
+    Things
+        The objects.
+    """
     extents = [(size.length, size.width) for size in ranges]
     metres = np.array([[(e.least, e.typical, e.greatest) for e in pair] for pair in extents]).reshape(-1, 2, 3)
     least, wanted, greatest = np.moveaxis(np.rint(1000 * metres).astype(np.int64), 2, 0)

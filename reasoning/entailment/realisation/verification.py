@@ -16,6 +16,18 @@ def facts_that_hold(graph: RelationGraph, boxes: NDArray[np.float64]) -> NDArray
     Of a word that only a model decides, such as *near*, only the admitted atoms are verified.
 
     Between two equal boxes, no relation holds that says which lies on the other.
+
+    Parameters
+    ----------
+    graph
+        The stated facts as a graph.
+    boxes
+        Least and greatest corners, shape (n, 2, 2).
+
+    Returns
+    -------
+    NDArray of bool
+        True for each edge that holds, shape (edges,).
     """
     a, b = boxes[graph.subjects], boxes[graph.objects]
     codes = [allen_relations(a[:, 0, axis], a[:, 1, axis], b[:, 0, axis], b[:, 1, axis]) for axis in (0, 1)]
@@ -37,6 +49,18 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
     """Return which edges hold by the one exact relation of each pair, as in grounding and checking.
 
     The result differs from :func:`facts_that_hold` only for boxes that overlap in part or are equal.
+
+    Parameters
+    ----------
+    graph
+        The stated facts as a graph.
+    boxes
+        Least and greatest corners, shape (n, 2, 2).
+
+    Returns
+    -------
+    NDArray of bool
+        True for each edge that holds, shape (edges,).
     """
     vocabulary = graph.vocabulary
     order = np.argsort(np.argsort(np.array(graph.nodes, dtype=np.str_)))
@@ -57,7 +81,18 @@ def facts_that_are_named(graph: RelationGraph, boxes: NDArray[np.float64]) -> ND
 
 
 def partly_overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return which ordered pairs of boxes (n, 2, 2) overlap in part, neither within the other, shape (n, n)."""
+    """Return which ordered pairs of boxes (n, 2, 2) overlap in part, neither within the other, shape (n, n).
+
+    Parameters
+    ----------
+    boxes
+        Least and greatest corners, shape (n, 2, 2).
+
+    Returns
+    -------
+    NDArray of bool
+        True for each such pair, shape (n, n).
+    """
     low, high = boxes[:, 0], boxes[:, 1]
     share = ((low[:, None] < high[None]) & (low[None] < high[:, None])).all(axis=2)
     inside = ((low[:, None] >= low[None]) & (high[:, None] <= high[None])).all(axis=2)
