@@ -49,6 +49,7 @@ PROPERTIES = frozenset(
 """Claims that do not say where a thing is."""
 
 MIN_COMPARED_LETTERS = 4  # minimum number of letters of a name that is compared with others
+MAX_NAMES_SHOWN = 4  # names of a group that a message lists
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
@@ -341,10 +342,8 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
     found = []
     for group in groups[1:]:
         stated = next(stated for stated in connecting if not group.isdisjoint(_ends(stated)))
-        name, other = (next(name for name in script.objects if name in members) for members in (group, groups[0]))
-        more, others = (len(members - {_SURFACE}) - 1 for members in (group, groups[0]))
-        message = f"no facts connect '{name}' and {more} more with '{other}' and {others} more"
-        found.append(Finding("F004", _place(stated, script), message))
+        some, others = (_shown([name for name in script.objects if name in members]) for members in (group, groups[0]))
+        found.append(Finding("F004", _place(stated, script), f"no facts connect {some} with {others}"))
     if verdict is None:
         return found, False
     graph = script.graph()
@@ -355,6 +354,13 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
             found.append(Finding("F002", _place(fact, script), f"{fact} follows from the other facts"))
         seen.add(str(fact))
     return found, complete
+
+
+def _shown(names: Sequence[str]) -> str:
+    """Return the first names of a group in quotation marks, and the number of the others."""
+    more = len(names) - MAX_NAMES_SHOWN
+    first = ", ".join(f"'{name}'" for name in names[:MAX_NAMES_SHOWN])
+    return f"{first} and {more} more" if more > 0 else first
 
 
 _SURFACE = ""
