@@ -500,7 +500,8 @@ class Scene(Answer):
         places = {person: np.array(place) for person, place in known.items() if place is not None}
         labels = [thing.label for thing in self.objects]
         viewer = self.viewpoint != UNKNOWN_VIEWPOINT
-        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer, places)
+        named = [dict(thing.candidates) for thing in self.objects]
+        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer, places, named)
 
     def __getitem__(self, name: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == name)

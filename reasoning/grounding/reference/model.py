@@ -25,6 +25,7 @@ from deixis.reasoning.grounding.reference.likelihood import (
     log_sum,
     weighted,
 )
+from deixis.reasoning.grounding.reference.nouns import class_shares
 from deixis.reasoning.grounding.reference.properties import SIDES, called_by, property_features
 from deixis.reasoning.grounding.reference.query import (
     Description,
@@ -42,7 +43,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Kept = TypeVar("Kept")
 NounFit = Callable[[str, Room], Array]
-"""Function from a noun and a room to features of each object, shape (n, f)."""
+"""Function from a noun and a room to features of each object under its k possible classes, shape (k, n, f)."""
 
 IMPOSSIBLE = -30.0
 """Log score of a landmark that is the candidate itself."""
@@ -71,6 +72,9 @@ COUNTED = frozenset({"proximity", "support", "inside"})
 COUNTED_GAP = 0.4
 """Greatest distance of a counted landmark over the scale of the scene."""
 
+SIZE_TOLERANCE = 1.0
+"""Sum of the logarithms by which the sides of an object without a label may lie outside the usual ones of a noun."""
+
 MAX_LANDMARKS = 12
 """Maximum number of objects that a landmark may be; the rest fit its noun less well."""
 
@@ -94,7 +98,9 @@ class Model:
     kept: dict[tuple[int, str], Any] | None = None
 
     def candidates(self, query: Query, room: Room) -> Indices:
-        """Return the objects that the query may mean: those that its noun may name, or all if it names none.
+        """Return the objects that the query may mean: those that its noun may name.
+
+        These are all objects if the noun names none, or if any object has no label.
 
         Parameters
         ----------
@@ -111,7 +117,7 @@ class Model:
 
         def named() -> Indices:
             known = np.flatnonzero(self._fit(query.target, room) > 0)
-            return known if len(known) else np.arange(len(room))
+            return known if len(known) and not room.unlabelled.any() else np.arange(len(room))
 
         return self._keep(query, "candidates", named)
 
@@ -205,17 +211,18 @@ class Model:
             f"noun of {among.tobytes()!r}",
             lambda: (
                 self._rivals(said, room, among),
-                self._noun_features(said, room)[among],
+                self._noun_features(said, room)[:, among],
                 self.lexis.number_fit(said.plural, room)[among],
             ),
         )
-        found = weighted(nouns, "noun", self.weights)[None]
+        found = self._named(nouns, class_shares(room)[:, among])[None]
         if said.noun:
             found = found + weighted(numbers, "number", self.weights)[None]
         if target:
             sizes = np.zeros((len(among), 2))
-            for group in rivals:
-                sizes[group] = (len(group) > 1, np.log(len(group)))
+            if not room.unlabelled.any():  # with missing labels, the sizes of classes are unknown
+                for group in rivals:
+                    sizes[group] = (len(group) > 1, np.log(len(group)))
             found = (
                 found
                 + weighted(np.column_stack([sizes, room.surrounds[among].astype(np.float64)]), "target", self.weights)[
@@ -230,12 +237,29 @@ class Model:
                 found = found + score
         return found
 
+    def _named(self, features: Array, shares: Array) -> Score:
+        """Return log scores of a noun, shape (x,), summed over the possible classes of each object.
+
+        Parameters
+        ----------
+        features
+            Features of the noun and each class, shape (k, x, f).
+        shares
+            Probabilities of the classes, shape (k, x).
+        """
+        if len(features) == 1:
+            return weighted(features[0], "noun", self.weights)
+        with np.errstate(divide="ignore"):
+            return log_sum(weighted(features, "noun", self.weights) + constant(np.log(shares)), 0)
+
     def _rivals(self, said: Description, room: Room, among: Indices) -> tuple[Indices, ...]:
         """Return the groups of objects that compete: those with one label, then those that have the said colour too.
 
-        *The tallest red cup* is compared with the red cups, and a blue cup with all cups.
+        *The tallest red cup* is compared with the red cups, and a blue cup with all cups. All objects
+        compete for *the tallest object*, and wherever no noun is given and any of them has no label.
         """
-        groups = rival_groups(room, among)
+        anything = not said.noun and (said.anything or room.unlabelled.any())
+        groups = (np.arange(len(among)),) if anything else rival_groups(room, among)
         for prop in said.properties:
             if prop.positive and (called := called_by(prop.word, room, self.lexis.colours)) is not None:
                 parts = (group[called[among[group]]] for group in groups)
@@ -323,13 +347,13 @@ class Model:
         return weighted(self._keep(said, f"count of {among.tobytes()!r}", counted), "count", self.weights)[None]
 
     def _noun_features(self, said: Description, room: Room) -> Array:
-        """Return the features of the noun that fits each object best, shape (n, f)."""
+        """Return the features of the noun that fits each object best, shape (k, n, f)."""
         first = self.lexis.noun_fit(said.noun, room)
         if not said.other_nouns:
             return first
         features = np.stack([first, *(self.lexis.noun_fit(noun, room) for noun in said.other_nouns)])
         best = np.argmax([self.lexis.similarity(noun, room) for noun in said.nouns], axis=0)
-        found: Array = features[best, np.arange(len(room))]
+        found: Array = np.moveaxis(features[best, :, np.arange(len(room))], 0, 1)
         return found
 
     def _fit(self, said: Description, room: Room) -> Array:
@@ -339,29 +363,34 @@ class Model:
             fit = np.maximum(fit, self.lexis.similarity(noun, room))
         return fit
 
+    def _size_fit(self, said: Description, room: Room) -> Array:
+        """Return log densities of the sizes of objects without a label for a noun, 0 for the others, shape (n,)."""
+        result: Array = self._noun_features(said, room)[-2:, :, -1].min(axis=0)
+        return result
+
     def _unseen(self, said: Description, room: Room) -> bool:
-        """Return whether a landmark has a noun that names none of the labelled objects."""
+        """Return whether a landmark has a noun that names none of the objects, nor has one without a label its size."""
 
         def unnamed() -> bool:
-            if not said.noun or all(label is None for label in room.labels):
+            if not said.noun or room.unlabelled.all():
                 return False
-            return not (self._fit(said, room) > 0).any()
+            sized = room.unlabelled & (self._size_fit(said, room) > -SIZE_TOLERANCE)
+            return not (self._fit(said, room) > 0).any() and not sized.any()
 
         return self._keep(said, "unseen", unnamed)
 
     def _landmarks(self, said: Description, room: Room) -> Indices:
-        """Return the objects that a landmark may be: those that fit its noun best."""
+        """Return the objects that a landmark may be: those that fit its noun best, and those without a label."""
         return self._keep(said, "landmarks", lambda: self._best_landmarks(said, room))
 
     def _best_landmarks(self, said: Description, room: Room) -> Indices:
         fit = self._fit(said, room)
-        if fit.max(initial=0.0) <= 0:  # no labels: the objects of about the right size
-            fit = self._noun_features(said, room)[:, -1]
-            most = MAX_UNKNOWN_LANDMARKS
-        else:
-            most = min(int((fit > 0).sum()), MAX_LANDMARKS)
-        result: Indices = np.sort(np.argsort(-fit, kind="stable")[:most])
-        return result
+        named = np.argsort(-fit, kind="stable")[: min(int((fit > 0).sum()), MAX_LANDMARKS)]
+        if len(named) and not room.unlabelled.any():
+            return np.sort(named)
+        others = np.flatnonzero(room.unlabelled) if said.noun and room.unlabelled.any() else np.arange(len(room))
+        by_size = others[np.argsort(-self._size_fit(said, room)[others], kind="stable")]
+        return np.union1d(named, by_size[:MAX_UNKNOWN_LANDMARKS])
 
     def _seen(self, room: Room, landmarks: Indices) -> Score:
         """Return log probabilities of the views for a speaker who looks at each landmark, shape (v, 1, a)."""

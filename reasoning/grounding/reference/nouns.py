@@ -31,11 +31,46 @@ ALIKE = 0.75
 """Ratio of matching letters from which on two words count as spellings of one."""
 
 
+NAMED = 0.06
+"""Prior probability that an object of an unknown class is of the class that a noun names.
+
+About the share of pairs of objects in a scene that have one class, which is greater in rooms with many chairs and
+smaller on tables.
+"""
+
+
+def class_shares(room: Room) -> Array:
+    """Return the probabilities of the possible classes of each object before a noun is heard, shape (k, n), sum 1.
+
+    The classes of an object with a label are its label alone. Those of an object without one are its candidates; what
+    these leave over is divided between the last two: the class that the noun names, and any other one.
+
+    Parameters
+    ----------
+    room
+        The scene of n objects.
+
+    Returns
+    -------
+    ndarray
+        Probabilities, shape (k, n).
+    """
+    most = max((len(names) for names in room.names), default=0)
+    unknown = bool(room.unlabelled.any())
+    found = np.zeros((max(most, 0 if unknown else 1) + 2 * unknown, len(room)))
+    for index, names in enumerate(room.names):
+        found[: len(names), index] = list(names.values())
+    if unknown:
+        rest = np.maximum(1.0 - found.sum(axis=0), 1e-6) * room.unlabelled
+        found[-2:] = NAMED * rest, (1 - NAMED) * rest
+    return found
+
+
 class Nouns:
     """The fit of nouns to the objects of rooms; kept, because people repeat few nouns.
 
-    ``features`` returns an array of shape (n, f) in the order of ``NOUN_FEATURES``; ``similarity`` one number in [0, 1]
-    for each object, shape (n,).
+    ``features`` returns an array of shape (k, n, f) for k possible classes of each object, with features in the order
+    of ``NOUN_FEATURES``; ``similarity`` one number in [0, 1] for each object, shape (n,).
     """
 
     def __init__(self, lexicon: Lexicon) -> None:
@@ -44,7 +79,7 @@ class Nouns:
         self._is_plural = lru_cache(maxsize=10_000)(self._label_is_plural)
 
     def features(self, noun: str, room: Room) -> Array:
-        """Return the features of the fit of a noun to each object.
+        """Return the features of the fit of a noun to each object, under each of its possible classes.
 
         Parameters
         ----------
@@ -56,24 +91,39 @@ class Nouns:
         Returns
         -------
         ndarray
-            Features in the order of ``NOUN_FEATURES``, shape (n, f).
+            Features in the order of ``NOUN_FEATURES``, shape (k, n, f), for the classes of :func:`class_shares`.
         """
-        found = np.zeros((len(room), len(NOUN_FEATURES)))
+        found = np.zeros((len(class_shares(room)), len(room), len(NOUN_FEATURES)))
         if not noun:
-            found[:, -2] = 1.0
+            found[..., -2] = 1.0
             return found
-        for index, label in enumerate(room.labels):
-            if label is None:
-                found[index, -3] = 1.0
-            else:
-                found[index, :-3] = self._pair(noun, label)[:-1]
-        if any(label is None for label in room.labels):
-            unlabelled = np.array([label is None for label in room.labels])
-            found[unlabelled, -1] = self._sizes(noun, room)[unlabelled]
+        for index, names in enumerate(room.names):
+            for place, name in enumerate(names):
+                found[place, index, :-3] = self._pair(noun, name)[:-1]
+        if room.unlabelled.any():
+            named, other = found[-2:, room.unlabelled]
+            named[:, :-3] = self._class_called(noun, room)
+            named[:, -1] = self._sizes(noun, room)[room.unlabelled]
+            other[:, FITS.index(Relatedness.UNRELATED)] = 1.0
+            found[-2:, room.unlabelled] = named, other
+            found[-2:, room.unlabelled, -3] = 1.0
         return found
 
+    def _class_called(self, noun: str, room: Room) -> tuple[float, ...]:
+        """Return the features of a noun and the class that it names, in the words of the room's source.
+
+        They are those of the name in the room that means the noun, so that a label *sofa* counts as much for *couch* as
+        an object that may turn out to be a sofa; without such a name, those of the noun itself.
+        """
+        names = dict.fromkeys(name for names in room.names for name in names)
+        told = [self._pair(noun, name) for name in names]
+        meant = [one for one in told if one[FITS.index(Relatedness.SAME)] or one[FITS.index(Relatedness.SYNONYM)]]
+        if meant:
+            return max(meant, key=lambda one: one[-1])[:-1]
+        return (*(float(fit == Relatedness.SAME) for fit in FITS), 1.0, 1.0, 1.0)
+
     def similarity(self, noun: str, room: Room) -> Array:
-        """Return the fit of the noun to each object as one number; 0 without a noun or a label.
+        """Return the fit of the noun to each object as one number; 0 without a noun, a label and candidates.
 
         Parameters
         ----------
@@ -89,7 +139,9 @@ class Nouns:
         """
         if not noun:
             return np.zeros(len(room))
-        return np.array([0.0 if label is None else self._pair(noun, label)[-1] for label in room.labels])
+        return np.array(
+            [sum(share * self._pair(noun, name)[-1] for name, share in names.items()) for names in room.names]
+        )
 
     def number(self, plural: bool, room: Room) -> Array:
         """Return how the number of a noun agrees with that of each label.

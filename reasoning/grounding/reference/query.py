@@ -52,7 +52,8 @@ class Description:
     """A noun phrase: what it says of the object that it stands for; ``noun`` is empty where no noun is given.
 
     ``count`` is the number of objects in a group (*between two chairs*); None for one object. ``plural`` is True for a
-    noun in the plural. ``other_nouns`` are further nouns, of which one may fit instead (*the window or mirror*).
+    noun in the plural. ``anything`` is True for a noun that every object fits (*the tallest thing*). ``other_nouns``
+    are further nouns, of which one may fit instead (*the window or mirror*).
     """
 
     noun: str
@@ -62,6 +63,7 @@ class Description:
     negated: bool = False
     plural: bool = False
     other_nouns: tuple[str, ...] = ()
+    anything: bool = False
 
     @property
     def nouns(self) -> tuple[str, ...]:

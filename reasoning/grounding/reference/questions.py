@@ -145,7 +145,7 @@ def answered(probabilities: Array, room: Room, question: Question, yes: bool) ->
 def _questions(room: Room, likely: NDArray[np.intp], labelled: bool) -> Iterator[tuple[str, Mask, float]]:
     """Yield questions with the likely objects of the answer yes, and a cost in bits for long questions."""
     labels = [room.labels[index] for index in likely]
-    if labelled:
+    if labelled and None not in labels:  # an object without a label may be of any class
         for label in dict.fromkeys(label for label in labels if label is not None):
             yield f"Is it {named(label)}?", np.array([one == label for one in labels]), 0.0
     floor, top = room.boxes[likely, 0, 2] - room.bounds[0, 2], room.boxes[likely, 1, 2] - room.bounds[0, 2]

@@ -40,6 +40,9 @@ class Room:
         Whether the y axis points away from a viewer; False if the viewpoint is unknown.
     places
         Where the speaker and the addressee are in the plane, if it is known, shape (2,).
+    candidates
+        Possible names of each object with their probabilities, the sum at most 1; only those of objects without a label
+        count.
     """
 
     ids: tuple[str, ...]
@@ -49,6 +52,7 @@ class Room:
     fronts: Array
     viewer: bool = False
     places: Mapping[Person, Array] = field(default_factory=dict)
+    candidates: tuple[Mapping[str, float], ...] = ()
 
     @classmethod
     def of(
@@ -60,6 +64,7 @@ class Room:
         fronts: Array | None = None,
         viewer: bool = False,
         places: Mapping[Person, Array] | None = None,
+        candidates: Sequence[Mapping[str, float]] | None = None,
     ) -> Room:
         """Return a room of boxes with 2 or 3 axes, with unknown colours and fronts where none are given.
 
@@ -79,6 +84,8 @@ class Room:
             Whether the y axis points away from a viewer.
         places
             Places of the speaker and the addressee in the plane, shape (2,) each, where known.
+        candidates
+            Possible names of each object with their probabilities; only those of objects without a label count.
 
         Returns
         -------
@@ -90,10 +97,31 @@ class Room:
             boxes = np.concatenate([boxes, np.zeros((n, 2, 1))], axis=2)
         colours = np.full((n, 3), np.nan) if colours is None else colours
         fronts = np.full((n, 2), np.nan) if fronts is None else fronts
-        return cls(tuple(ids), boxes.astype(np.float64), tuple(labels), colours, fronts, viewer, places or {})
+        return cls(
+            tuple(ids),
+            boxes.astype(np.float64),
+            tuple(labels),
+            colours,
+            fronts,
+            viewer,
+            places or {},
+            tuple(candidates or ({},) * n),
+        )
 
     def __len__(self) -> int:
         return len(self.ids)
+
+    @cached_property
+    def unlabelled(self) -> NDArray[np.bool_]:
+        """True for objects without a label, shape (n,)."""
+        return np.array([label is None for label in self.labels], dtype=np.bool_)
+
+    @cached_property
+    def names(self) -> tuple[Mapping[str, float], ...]:
+        """Possible names of each object with their probabilities: its label, or else its candidates."""
+        return tuple(
+            each if label is None else {label: 1.0} for label, each in zip(self.labels, self.candidates, strict=True)
+        )
 
     @cached_property
     def centres(self) -> Array:

@@ -95,6 +95,9 @@ EMPTY = frozenset(
 )
 """Nouns that say nothing of the kind."""
 
+ANYTHING = frozenset({"thing", "object", "item"})
+"""Nouns that every object fits; the other ones of EMPTY stand for a noun said before."""
+
 PERSONS = {"me": Person.SPEAKER, "i": Person.SPEAKER, "myself": Person.SPEAKER, "us": Person.SPEAKER}
 PERSONS |= {"you": Person.ADDRESSEE, "yourself": Person.ADDRESSEE}
 """Pronouns for those who take part in the conversation."""
@@ -186,6 +189,7 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
             target,
             properties=_ranked(_distinct((*target.properties, *told.properties, *properties))),
             other_nouns=target.other_nouns or told.other_nouns,
+            anything=target.anything or told.anything,
             relations=_distinct((*target.relations, *told.relations, *relations)),
         )
     target = replace(_with_own_noun(target, viewer), properties=_ordered(target.properties))
@@ -236,10 +240,11 @@ def _with_nouns(target: Description, viewer: Viewer | None, context: Description
 
     *It* is what was described before (``context``), or what the viewer looks at (*facing the desk, the lamp to the
     right of it*); *the others* are of the target's kind (*the chair between the other two*).
+    *The largest object* gets none.
     """
 
     def named(told: Description) -> Description:
-        if told.noun:
+        if told.noun or (told.anything and any(one.degree == "superlative" for one in told.properties)):
             return told
         if context is not None and told == Description(""):
             return context
@@ -385,7 +390,8 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.owner is not None and not phrase.owner.pronoun:
         relations = (*relations, Relation("with", (_description(phrase.owner, depth + 1),)))
     count = phrase.count if phrase.plural or phrase.count else None
-    return Description(noun, _ranked(_distinct((*properties, *more))), relations, count, phrase.negated, plural)
+    said = _ranked(_distinct((*properties, *more)))
+    return Description(noun, said, relations, count, phrase.negated, plural, anything=not noun and head in ANYTHING)
 
 
 def _either(first: Description, others: Sequence[Description]) -> Description:

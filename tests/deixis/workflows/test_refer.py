@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -210,3 +211,76 @@ def test_on_a_flat_scene_the_top_is_the_far_side(across: deixis.Scene) -> None:
     alone = replace(across, viewpoint="chair", speaker=None, addressee=None)
     assert deixis.refer("the blue block at the top", alone).target == "o5"
     assert deixis.refer("the lowest blue block", alone).target == "o2"
+
+
+@pytest.fixture(scope="module")
+def table() -> deixis.Scene:
+    return deixis.read_scene(ROOT / "examples" / "place_setting.scene.json")
+
+
+def labelled(scene: deixis.Scene, labels: Mapping[str, str]) -> deixis.Scene:
+    """Return a scene with labels for some of its objects."""
+    things = tuple(replace(one, label=labels.get(one.id)) for one in scene.objects)
+    return replace(scene, objects=things)
+
+
+@pytest.fixture(scope="module")
+def partly(table: deixis.Scene) -> deixis.Scene:
+    return labelled(table, {"o2": "bowl", "o8": "plate"})
+
+
+@pytest.mark.parametrize("text", ["the teacup", "the cup", "the saucer", "the mug on the tray"])
+def test_objects_without_labels_may_be_what_a_noun_names(partly: deixis.Scene, text: str) -> None:
+    found = deixis.refer(text, partly)
+    shares = dict([(found.target or "", found.probability), *found.alternatives])
+    assert not found.decided and len(found.alternatives) > 5
+    assert shares.get("o2", 0.0) + shares.get("o8", 0.0) < 0.25
+
+
+@pytest.mark.parametrize(("text", "target"), [("the bowl", "o2"), ("the plate", "o8"), ("the dish", "o8")])
+def test_a_fitting_label_outweighs_missing_ones(partly: deixis.Scene, text: str, target: str) -> None:
+    found = deixis.refer(text, partly)
+    assert found.target == target and 0.5 < found.probability < 0.95
+
+
+def test_a_synonym_counts_as_much_as_the_label_itself(table: deixis.Scene) -> None:
+    scene = labelled(table, {"o8": "sofa"})
+    assert deixis.refer("the couch", scene).target == "o8"
+    assert deixis.refer("the couch", scene).probability == pytest.approx(
+        deixis.refer("the sofa", scene).probability, abs=0.15
+    )
+
+
+@pytest.mark.parametrize("labels", [{}, {"o2": "bowl", "o8": "plate"}, {f"o{place}": "" for place in range(1, 13)}])
+@pytest.mark.parametrize(
+    ("text", "targets"),
+    [
+        ("the leftmost object", {"o3", "o4"}),
+        ("the smallest thing", {"o3"}),
+        ("the largest object", {"o8"}),
+        ("the object on the far left", {"o3", "o4"}),
+        ("the rightmost item", {"o5"}),
+    ],
+)
+def test_any_object_is_compared_with_all_objects(
+    table: deixis.Scene, labels: dict[str, str], text: str, targets: set[str]
+) -> None:
+    scene = labelled(table, {name: label or f"kind{name}" for name, label in labels.items()})
+    found = deixis.refer(text, scene)
+    assert found.target in targets and found.probability > 2 / len(scene.objects)
+
+
+def test_a_landmark_may_be_the_largest_object(table: deixis.Scene) -> None:
+    scene = labelled(table, {one.id: "cup" if one.id in {"o11", "o4"} else one.id for one in table.objects})
+    assert deixis.refer("the cup next to the largest object", scene).target == "o11"
+
+
+def test_candidates_are_evidence_of_the_class(partly: deixis.Scene) -> None:
+    things = (
+        replace(one, candidates=(("mug", 0.7), ("glass", 0.2))) if one.id == "o12" else one for one in partly.objects
+    )
+    scene = replace(partly, objects=tuple(things))
+    mug, glass, fork = (deixis.refer(f"the {noun}", scene) for noun in ("mug", "glass", "fork"))
+    assert (mug.target, glass.target) == ("o12", "o12")
+    assert mug.probability > glass.probability > deixis.refer("the glass", partly).probability
+    assert fork.target != "o12"

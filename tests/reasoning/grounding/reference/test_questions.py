@@ -37,6 +37,11 @@ def test_objects_without_labels_are_asked_for_by_measures() -> None:
     assert "door" not in question.text and len(question.yes) == 1
 
 
+def test_no_question_asks_for_a_label_that_may_be_missing() -> None:
+    question = best_question(np.array([0.5, 0.5, 0.0, 0.0]), row_of_chairs(("chair", None, None, "door")))
+    assert question is not None and "chair" not in question.text
+
+
 @pytest.mark.parametrize(
     ("shares", "enough", "expected"),
     [([0.96, 0.04], 0.95, 0.0), ([0.9, 0.1], 0.95, 1.0), ([0.9, 0.1], 0.9, 0.0), ([0.25] * 4, 0.95, 2.0)],
