@@ -65,7 +65,7 @@ _SINGULAR = {many: one for one, many in IRREGULAR.items()} | {"cactuses": "cactu
 
 
 def plural(noun: str) -> str:
-    """Return the plural of a noun in the singular; of several words, the last one is inflected.
+    """Return the plural of a noun; of several words, the last one is inflected, and a plural in *s* stays as it is.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def plural(noun: str) -> str:
     """
     before, last = _last_word(noun)
     key = last.casefold()
-    if key in SAME:
+    if key in SAME or (key.endswith("s") and is_plural(key)):
         return noun
     if key in IRREGULAR:
         return before + IRREGULAR[key]
@@ -94,6 +94,30 @@ def plural(noun: str) -> str:
     if re.search(r"[^aeiou]y$|quy$", key):
         return before + last[:-1] + "ies"
     return noun + ("es" if re.search(r"(s|x|z|ch|sh)$", key) else "s")
+
+
+def is_plural(noun: str) -> bool:
+    """Return True for a noun whose last word is a plural: a verb after it is plural, and it has no article *a*.
+
+    Parameters
+    ----------
+    noun
+        The noun, with spaces, hyphens or underscores between its words.
+
+    Returns
+    -------
+    bool
+        True for a noun that is plural only, irregular, or ends in *s* as a plural does; the lexicon is not consulted.
+
+    Examples
+    --------
+    >>> [is_plural(noun) for noun in ("chopsticks", "kitchen_scissors", "mice", "series", "chess", "bus")]
+    [True, True, True, False, False, False]
+    """
+    key = _last_word(noun)[1].casefold()
+    if key in SAME:
+        return key.endswith("s") and not key.endswith(("ss", "ies"))
+    return key in _SINGULAR or (key.endswith("s") and singular(key) != key and not key.endswith(("us", "as", "is")))
 
 
 def singulars(noun: str) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
-from deixis.ontology.inflection import singulars
+from deixis.ontology.inflection import is_plural, singulars
 
 
 def plain_name(name: str) -> str:
@@ -33,7 +33,7 @@ def plain_name(name: str) -> str:
 
 
 def with_article(noun: str) -> str:
-    """Return a noun with its indefinite article, chosen by its spelling.
+    """Return a noun with its indefinite article, chosen by its spelling; without one for a plural.
 
     Parameters
     ----------
@@ -47,9 +47,11 @@ def with_article(noun: str) -> str:
 
     Examples
     --------
-    >>> with_article("egg cup"), with_article("utensil"), with_article("fork")
-    ('an egg cup', 'a utensil', 'a fork')
+    >>> with_article("egg cup"), with_article("utensil"), with_article("fork"), with_article("kitchen scissors")
+    ('an egg cup', 'a utensil', 'a fork', 'kitchen scissors')
     """
+    if is_plural(noun):
+        return noun
     return f"{'an' if re.match(r'(?!eu|one|uni|us|ute)[aeiou]', noun, re.IGNORECASE) else 'a'} {noun}"
 
 

@@ -80,6 +80,8 @@ def _run_command(command: Command, following: Command | None, monkeypatch: pytes
         return 0
     if program == "python":
         code, out, err = 0, _output_of_script(rest), ""
+    elif program == "pytest":
+        code, out, err = *_run_suite(shlex.split(rest)), ""
     else:
         code, out, err = Shown(command.line).run()
     expected = int(following.printed[0]) if following and following.line == "echo $?" else 0
@@ -87,6 +89,13 @@ def _run_command(command: Command, following: Command | None, monkeypatch: pytes
     if command.printed:
         assert _fits(list(command.printed), (out + err).splitlines()), f"{command.line} prints:\n{out}{err}"
     return 1
+
+
+def _run_suite(arguments: list[str]) -> tuple[int, str]:
+    """Run pytest on files of the page in this process: exit code and standard output."""
+    with redirect_stdout(io.StringIO()) as out:
+        code = pytest.main([*arguments, "--rootdir=.", "-p", "no:cacheprovider", "-p", "no:dash", "-p", "no:xdist"])
+    return int(code), out.getvalue()
 
 
 def _output_of_script(file: str) -> str:

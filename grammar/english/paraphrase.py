@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from deixis.grammar.english.wording import (
     auxiliary,
     clause_of_claim,
-    is_plural,
     name_plainly,
     said_of_claim,
     said_of_fact,
@@ -15,6 +14,7 @@ from deixis.grammar.english.wording import (
 from deixis.grammar.reading import StatedFact, joined_choices
 from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact
+from deixis.ontology.inflection import is_plural
 
 
 def paraphrase(facts: Sequence[StatedFact], surface: str = "table") -> str:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from deixis.grammar.english.wording import (
     auxiliary,
     clause_of_claim,
-    is_plural,
     listed,
     oriented,
     said_of_claim,
@@ -17,7 +16,7 @@ from deixis.grammar.english.wording import (
 from deixis.grammar.english.words import NUMBERS, ORDINALS
 from deixis.grammar.reading import StatedFact
 from deixis.ontology.facts import Fact
-from deixis.ontology.inflection import plural
+from deixis.ontology.inflection import is_plural, plural
 
 MAX_PREDICATES = 4
 """Maximum number of predicates in a sentence."""
@@ -181,7 +180,7 @@ def _alone(stated: StatedFact, surface: str, names: _Names) -> str:
         own_clause = said_of_claim(content, surface) is None
         top = "" if own_clause else names.phrase(subjects, introducing=True)
         predicate = said_of_claim(content, surface, names.phrase)
-    be = auxiliary(stated, plural=len(subjects) > 1 or is_plural(subjects[0])) + (" not" if denied else "")
+    be = auxiliary(stated, plural=len(subjects) > 1 or names.is_plural(subjects[0])) + (" not" if denied else "")
     if predicate is None:
         assert not isinstance(content, Fact)
         return _conditional(stated, clause_of_claim(content, be, names.phrase))
@@ -268,7 +267,7 @@ def _realised(sentence: _Sentence, names: _Names) -> str:
                 f"{before} {names.phrase(things[i : i + MAX_NAMED])}" for i in range(0, len(things), MAX_NAMED)
             ]
     stated = sentence.points[0].stated
-    be = auxiliary(stated, plural=len(subjects) > 1 or is_plural(subjects[0]))
+    be = auxiliary(stated, plural=len(subjects) > 1 or names.is_plural(subjects[0]))
     clause = f"{top} {be} {_predicates(predicates)}"
     return _conditional(stated, clause)
 
@@ -309,6 +308,10 @@ class _Names:
 
     def _counted(self, words: str) -> str:
         return f"{_NUMBER.get(len(self.groups[words]), '')} {plural(words)}"
+
+    def is_plural(self, name: str) -> bool:
+        """Return True for an object whose words are a plural, such as *the scissors* and *the first scissors*."""
+        return is_plural(self.designations[name].words)
 
     def phrase(self, names: Sequence[str], introducing: bool = False) -> str:
         """Return the words for objects; ``introducing`` is True for a subject, which can introduce a whole group."""

@@ -77,22 +77,6 @@ def listed(parts: Sequence[str], last: str = "and") -> str:
     return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} {last} {parts[-1]}"
 
 
-def is_plural(name: str) -> bool:
-    """Return True for a name that ends in a plural noun, such as ``milk_cups`` and ``tongs``.
-
-    Parameters
-    ----------
-    name
-        Name in the layout language.
-
-    Returns
-    -------
-    bool
-        True by the ending alone; the lexicon is not consulted.
-    """
-    return name.endswith("s") and not name.endswith(("ss", "us", "is", "as"))
-
-
 def relation_words(relation: Relation | str) -> str:
     """Return the words of a relation that stand before its object.
 

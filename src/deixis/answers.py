@@ -157,3 +157,34 @@ def count(number: int, noun: str) -> str:
     if number == 1:
         return f"1 {noun}"
     return f"{number} {noun[:-1]}ies" if noun.endswith("y") else f"{number} {noun}s"
+
+
+def share(part: int, total: int, noun: str) -> str:
+    """Return how many of all things are meant, as a noun phrase: *both facts*, *2 of 5 facts*.
+
+    Parameters
+    ----------
+    part
+        Number of things that are meant, from 0 to ``total``.
+    total
+        Number of all things, at least 1.
+    noun
+        The noun in the singular.
+
+    Returns
+    -------
+    str
+        A noun phrase.
+
+    Examples
+    --------
+    >>> share(1, 1, "fact"), share(2, 2, "fact"), share(5, 5, "fact"), share(2, 5, "fact")
+    ('the only fact', 'both facts', 'all 5 facts', '2 of 5 facts')
+    >>> share(0, 2, "name"), share(0, 5, "name")
+    ('neither name', 'none of 5 names')
+    """
+    if part == total:
+        return {1: f"the only {noun}", 2: count(2, noun).replace("2", "both")}.get(total, f"all {count(total, noun)}")
+    if part == 0 and total > 1:
+        return f"neither {noun}" if total == 2 else f"none of {count(total, noun)}"
+    return f"{part} of {count(total, noun)}"

@@ -9,7 +9,7 @@ from typing import get_type_hints
 import pytest
 
 import deixis
-from deixis.answers import Answer
+from deixis.answers import Answer, share
 from deixis.errors import DeixisError
 from deixis.extras import MissingExtraError
 from deixis.report.renderers import RENDERERS, to_rows
@@ -123,3 +123,17 @@ def test_an_answer_without_a_picture_says_so() -> None:
 def test_a_script_given_as_a_file_name_is_explained() -> None:
     with pytest.raises(DeixisError, match="if 'fork left of plate' is the script itself, pass it as text="):
         deixis.read_script("fork left of plate")
+
+
+@pytest.mark.parametrize(
+    ("part", "total", "words"),
+    [
+        (1, 1, "the only name"),
+        (2, 2, "both names"),
+        (7, 7, "all 7 names"),
+        (0, 2, "neither name"),
+        (0, 7, "none of 7 names"),
+    ],
+)
+def test_shares_are_said_in_words(part: int, total: int, words: str) -> None:
+    assert share(part, total, "name") == words

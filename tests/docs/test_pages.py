@@ -24,6 +24,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/refer",
     "guides/tell",
     "guides/habits",
+    "guides/testing",
     "guides/robot",
     "reference/scenes",
     "reference/lint",

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 
 import pyoxigraph as ox
 
+from deixis.answers import count
 from deixis.memory.errors import RejectedWriteError, ShapeResult
 from deixis.memory.semantic.rdf.after import DATA, Node
 from deixis.memory.semantic.rdf.change import Change
@@ -106,7 +107,7 @@ def _decide(shapes: Shapes, view: FocusData, nodes: set[Node]) -> None:
             left = len(doubtful) - (position + 1) * BATCH
             more = f"; {left} more nodes may be wrong too" if left > 0 else ""
             raise RejectedWriteError(
-                f"nothing was written: it breaks the shapes in {len(results)} places{more}", results
+                f"nothing was written: it breaks the shapes in {count(len(results), 'place')}{more}", results
             )
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.ontology.inflection import is_plural
 from deixis.reasoning.grounding.reference.answer import DECIDED, Question
 from deixis.reasoning.grounding.reference.room import Room
 from deixis.reasoning.grounding.reference.wording import named
@@ -147,7 +148,8 @@ def _questions(room: Room, likely: NDArray[np.intp], labelled: bool) -> Iterator
     labels = [room.labels[index] for index in likely]
     if labelled and None not in labels:  # an object without a label may be of any class
         for label in dict.fromkeys(label for label in labels if label is not None):
-            yield f"Is it {named(label)}?", np.array([one == label for one in labels]), 0.0
+            be = "Are they" if is_plural(label) else "Is it"
+            yield f"{be} {named(label)}?", np.array([one == label for one in labels]), 0.0
     floor, top = room.boxes[likely, 0, 2] - room.bounds[0, 2], room.boxes[likely, 1, 2] - room.bounds[0, 2]
     measures = (
         ("Is it longer or wider than {}?", room.extents[likely, :2].max(axis=1)),

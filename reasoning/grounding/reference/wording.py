@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deixis.ontology.inflection import plural
 from deixis.ontology.kinds import with_article
 from deixis.reasoning.grounding.reference.query import Description, Person, Property, Query, Relation, Viewer
 
@@ -56,6 +57,8 @@ PLACES = {
     "left": "on the left",
     "right": "on the right",
     "front": "at the front",
+    "far": "at the far side",
+    "near": "at the near side",
     "high": "high up",
     "low": "low down",
 }
@@ -102,7 +105,10 @@ def noun_phrase(said: Description) -> str:
     after += [f"not {_adjective(one)}" for one in said.properties if not one.positive]
     after += [_relation(one) for one in said.relations]
     count = "" if said.count is None or said.count < 2 else f"{said.count} "
-    phrase = " ".join(["the", f"{count}{' '.join([*before, ' or '.join(said.nouns) or 'one'])}", _joined(after)])
+    many = said.plural or bool(count)
+    nouns = [plural(noun) if many and noun else noun for noun in said.nouns]
+    named_by = " or ".join(nouns) or ("ones" if many else "one")
+    phrase = " ".join(["the", f"{count}{' '.join([*before, named_by])}", _joined(after)])
     return phrase.strip()
 
 
@@ -137,7 +143,8 @@ def _place(said: Property) -> str:
     if said.person is not None:
         return _from_person(said, said.person)
     if said.rank is not None:
-        return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from the {said.word}"
+        side = f"{said.word} side" if said.word in {"far", "near"} else said.word
+        return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from the {side}"
     return PLACES.get(said.word, f"at the {said.word}")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from deixis.answers import count
+from deixis.answers import share
 from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
@@ -91,28 +91,32 @@ def sureness_lines(found: Grounding) -> list[str]:
     Returns
     -------
     list of str
-        An empty line and one sentence, marked as doubt unless all names are settled; empty without matches.
+        An empty line and one sentence, marked as doubt unless all names of the description are settled; empty without
+        matches. A name that was left out counts as not settled.
     """
     from deixis.reasoning.grounding.options import DECIDED
 
     if not found.matches:
         return []
-    total = len(found.matches)
-    names = "the only name" if total == 1 else f"all {total} names"
-    settled = [match for match in found.matches.values() if match.decided]
+    left_out = len(found.unmatched_objects)
+    total = len(found.matches) + left_out
+    settled = sum(match.decided for match in found.matches.values())
     known = [match for match in found.matches.values() if match.probability is not None]
+    rest = f"; {left_out} left out" if left_out else ""
     if not known:
-        line = f"{len(settled)} of {count(total, 'name')} settled; this engine gives no probabilities."
-        return ["", doubt(line, len(settled) < total)]
-    if len(settled) == total:
-        return ["", f"Sure of {names}: each match has a probability of at least {DECIDED:g}."]
+        line = f"{share(settled, total, 'name')} settled{rest}; this engine gives no probabilities."
+        return ["", doubt(f"{line[0].upper()}{line[1:]}", settled < total)]
+    if settled == total:
+        what = "its match" if total == 1 else "each match"
+        return ["", f"Sure of {share(total, total, 'name')}: {what} has a probability of at least {DECIDED:g}."]
     least = min(known, key=lambda match: match.probability or 0.0)
-    least_certain = f"the least certain is {least.object} ({_probability(least.probability or 0.0).strip()})"
+    probability = _probability(least.probability or 0.0).strip()
     if total == 1:
-        line = f"Not sure: {least.object} has a probability of {_probability(least.probability or 0.0).strip()}."
-        return ["", doubt(line)]
-    sure = f"Sure of {len(settled) or 'none'} of {total} names (probability {DECIDED:g} or more)"
-    return ["", doubt(f"{sure}; {least_certain}.")]
+        return ["", doubt(f"Not sure: {least.object} has a probability of {probability}.")]
+    line = f"Sure of {share(settled, total, 'name')} (probability {DECIDED:g} or more)"
+    if settled < len(found.matches):
+        line += f"; the least certain is {least.object} ({probability})"
+    return ["", doubt(f"{line}{rest}.")]
 
 
 def kinds_lines(script: Script) -> list[str]:

@@ -48,9 +48,9 @@ def _words(concept: str, other: bool) -> str:
 
 
 def _line(placement: Placement) -> str:
-    line = f"{placement.thing} goes to {placement.place}, probability {placement.probability:.2f}"
+    line = f"{placement.thing}: {placement.place}, probability {placement.probability:.2f}"
     if placement.because == "example":
-        return f"{placement.thing} goes to {placement.place}, as in the examples"
+        return f"{placement.thing}: {placement.place}, as in the examples"
     if placement.because is not None:
         line += f", by the rule about {placement.because}"
     if not placement.known:

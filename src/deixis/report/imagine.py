@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from deixis.answers import share
 from deixis.ontology.export import fact_to_dict
 from deixis.ontology.facts import Fact
 from deixis.ontology.sizes import Extent
@@ -49,7 +50,7 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
         size, place = f"{_cm(right - x)} x {_cm(top - y)} cm", f"at {_cm(x)}, {_cm(y)}"
         yield f"{sized.name:<24} {size:<16} {place:<16} {kind}"
     total = len(table.holds) + len(table.waived) + len(table.not_shown)
-    yield f"Facts: {len(table.holds)} of {total} hold."
+    yield _held_line(len(table.holds), total)
     for waived in table.waived:
         what = "optional" if waived.fact.optional else f"weight {waived.fact.weight:g}"
         yield f"Given up: {waived.fact}{_at(waived.fact)} [{what}]" + (", which goes against" if waived.because else "")
@@ -68,6 +69,16 @@ def _table_lines(table: ImaginedTable) -> Iterator[str]:
             yield f"Note: {entry.claim} is not shown: {entry.measured}."
     if not table.finished:
         yield "Note: time limit reached before everything was in its best place; all firm facts hold."
+
+
+def _held_line(held: int, total: int) -> str:
+    """Return how many of the stated facts hold."""
+    if total == 0:
+        return "The script states no facts."
+    if total == 1:
+        return "The only fact holds." if held else "The only fact does not hold."
+    words = share(held, total, "fact")
+    return f"{words[0].upper()}{words[1:]} {'holds' if held == 1 or words.startswith('neither') else 'hold'}."
 
 
 def _cm(metres: float) -> str:

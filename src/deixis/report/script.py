@@ -118,7 +118,7 @@ def inference_lines(inference: Inference) -> Iterator[str]:
         if not entry.steps:
             places = "facts that leave a choice"
         elif not lines or len(lines) > MAX_LISTED:
-            places = f"{entry.steps} facts"
+            places = f"{entry.steps} fact{'s' if entry.steps != 1 else ''}"
         else:
             places = ("line " if len(lines) == 1 else "lines ") + ", ".join(map(str, lines))
         yield f"    {entry.fact}   by {entry.rule} from {places}"

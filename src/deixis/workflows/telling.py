@@ -314,6 +314,8 @@ class Plan:
     def names_read(self, reading: Reading) -> dict[str, str]:
         """Return the object that each name of the reading stands for.
 
+        No two names stand for one object: *the shoes* can be read as two objects, of which one is the object meant.
+
         Parameters
         ----------
         reading
@@ -330,7 +332,7 @@ class Plan:
             phrases = [re.sub(r"^(the|an?) ", "", m.casefold()).replace("`", "") for m in mentions]
             for key in (read, *(phrase.replace(" ", "_") for phrase in phrases)):
                 if key in by_words:
-                    found[read] = by_words[key]
+                    found[read] = by_words.pop(key)
                     break
         return found
 

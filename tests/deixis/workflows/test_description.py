@@ -23,6 +23,7 @@ def query(text: str) -> Query:
         ("the tray with a spoon on it", "the tray with the spoon on it"),
         ("the mug that is not on the tray", "the mug not on the tray"),
         ("Facing the sink, the mug on the right", "facing the sink, the mug on the right"),
+        ("The mug under the chopsticks", "the mug under the chopsticks"),
         ("facing the mugs, the one on the left", "facing the mugs, the mug on the left"),
         ("The mug is blue. It is next to the jar.", "the blue mug next to the jar"),
         ("Pick up the mug closest to you.", "the mug closest to you"),
@@ -32,7 +33,7 @@ def query(text: str) -> Query:
         ("From my point of view, the jug on the left", "from my point of view, the jug on the left"),
         ("the furthest away mug", "the farthest mug"),
         ("Pickup the mug in front of me.", "the mug near me"),
-        ("the second farthest mug", "the mug that is second from the far"),
+        ("the second farthest mug", "the mug that is second from the far side"),
         ("the jug in the middle of the kettle and the jar", "the jug between the kettle and the jar"),
         ("The mug by the sink. Not the mug on the tray.", "the mug near the sink and not on the tray"),
         (
@@ -45,7 +46,7 @@ def query(text: str) -> Query:
         ("the blue jug or vase by the sink", "the blue jug or vase near the sink"),
         ("the mug closest to the green wall", "the mug closest to the green wall"),
         ("the mug against the wall", "the mug against a wall"),
-        ("It is the far right, under the shelf.", "the one at the far and on the right and under the shelf"),
+        ("It is the far right, under the shelf.", "the one at the far side and on the right and under the shelf"),
         (
             "facing the mugs, the right one. There is a jar by it.",
             "facing the mugs, the mug on the right and with the jar near it",
@@ -53,7 +54,7 @@ def query(text: str) -> Query:
     ],
 )
 def test_descriptions_become_queries(text: str, said: str) -> None:
-    assert paraphrase(query(text)) == said.replace("facing the mugs", "facing the mug")
+    assert paraphrase(query(text)) == said
 
 
 def test_one_of_two_nouns_may_fit() -> None:

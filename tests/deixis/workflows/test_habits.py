@@ -19,7 +19,7 @@ def test_the_command_prints_rules_and_places(tmp_path: Path) -> None:
     file.write_text(FILE, encoding="utf-8")
     code, out, err = run("habits", file, "loafers", "novel", "qwrtz")
     assert (code, err) == (0, "")
-    assert "shoes:" in out and "loafers goes to rack" in out and "novel goes to desk" in out
+    assert "shoes:" in out and "loafers: rack, prob" in out and "novel: desk, prob" in out
     assert "the lexicon does not know it" in out
 
 

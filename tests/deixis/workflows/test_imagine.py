@@ -225,7 +225,7 @@ def test_the_command_writes_a_picture_and_a_scene_laid_well(tmp_path: Path) -> N
     script = EXAMPLES / "formal_dinner.layout"
     code, out, _ = deixis("imagine", script, "-o", scene, "--plot", plot)
     assert code == 0
-    assert "Facts: 11 of 11 hold." in out
+    assert "All 11 facts hold." in out
     assert f"Written: {scene}" in out
     assert plot.read_bytes().startswith(b"\x89PNG")
     assert deixis("check", script, scene, "--memory", tmp_path / "memory")[0] == 0

@@ -108,6 +108,21 @@ def test_names_that_would_be_misread_are_in_backticks() -> None:
     assert meanings(read_again(told)) == meanings(script)
 
 
+@pytest.mark.parametrize("name", ["chopsticks", "scissors", "sunglasses", "shoes", "boots"])
+def test_a_plural_name_is_read_again_as_one_object(name: str) -> None:
+    script = deixis.read_script(text=f"{name} left of plate; mug behind {name}")
+    told = deixis.tell(script)
+    assert f"{name} are left of" in told.text.replace("`", "")
+    assert told.misread == () and meanings(read_again(told)) == meanings(script)
+
+
+def test_a_label_that_is_a_plural_has_a_plural_verb() -> None:
+    boxes = {"plate": (10, 33), "chopsticks": (35, 37), "mug": (50, 58)}
+    objects = [{"id": f"o{n}", "min": [a, 5], "max": [b, 25], "label": n} for n, (a, b) in boxes.items()]
+    told = deixis.tell({"unit": "cm", "objects": objects})
+    assert "he chopsticks are " in told.text and "chopsticks is" not in told.text
+
+
 def test_an_english_text_is_told_with_its_claims() -> None:
     text = "The lamp is in the far left corner of the desk. The cup is between the lamp and the jug. The cup is red."
     told = deixis.tell(deixis.read_script(text=text, english=True))

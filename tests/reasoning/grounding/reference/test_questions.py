@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.reasoning.grounding.reference.answer import Question
-from deixis.reasoning.grounding.reference.questions import answered, best_question, fewest_questions
+from deixis.reasoning.grounding.reference.questions import _questions, answered, best_question, fewest_questions
 from deixis.reasoning.grounding.reference.room import Room
 
 
@@ -29,6 +29,11 @@ def test_a_question_never_names_an_id() -> None:
         question = best_question(weights, room)
         assert question is not None
         assert not set(room.ids) & set(question.text.replace("?", "").split())
+
+
+def test_a_question_about_a_plural_label_has_no_article() -> None:
+    texts = {asked for asked, _, _ in _questions(row_of_chairs(("chopsticks",) * 4), np.arange(4), True)}
+    assert "Are they chopsticks?" in texts
 
 
 def test_objects_without_labels_are_asked_for_by_measures() -> None:
