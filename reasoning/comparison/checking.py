@@ -105,6 +105,7 @@ class TableCheck:
     unexpected: tuple[FactOutcome, ...]  # hedged facts that do not hold, which are not faults
     grounding: Grounding
     claims: tuple[ClaimOutcome, ...] = ()
+    surface: str | None = None  # the object that is the surface of the layout, which is not extra
 
     def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
         """Return the roles with a verdict.
@@ -203,8 +204,11 @@ def check_table(
         layout.vocabulary,
         evidence.meaning.models or shipped_models(),
         evidence.metric,
+        evidence.surface,
     )
-    return TableCheck(tuple(roles), _extra(labels, grounding, sure), broken, unexpected, grounding, claims)
+    others = {thing: label for thing, label in labels.items() if thing != evidence.surface}
+    extra = _extra(others, grounding, sure)
+    return TableCheck(tuple(roles), extra, broken, unexpected, grounding, claims, evidence.surface)
 
 
 def _is_colour_of_role(claim: Claim, colours: Colours | None) -> bool:

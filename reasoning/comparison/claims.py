@@ -81,6 +81,7 @@ def check_claims(
     vocabulary: Relations,
     models: RelationModels,
     metric: bool = True,
+    surface: str | None = None,
 ) -> tuple[ClaimOutcome, ...]:
     """Return the outcome of each claim.
 
@@ -98,6 +99,8 @@ def check_claims(
         Relation words and their models, for claims that are made of relations.
     metric
         Whether the boxes are in metres.
+    surface
+        Name of the thing that is the surface of the layout; None if it is not among the things.
 
     Returns
     -------
@@ -108,7 +111,8 @@ def check_claims(
     if boxes is not None and 1 <= len(boxes) <= MAX_THINGS:
         role = {thing: name for name, thing in filled.items()}
         called = [role.get(thing, thing) for thing in things]
-        measures = _Measures(np.asarray(boxes, dtype=np.float64), called, vocabulary, models, metric)
+        on = None if surface is None else place[surface]
+        measures = _Measures(np.asarray(boxes, dtype=np.float64), called, vocabulary, models, metric, on)
     outcomes = []
     for claim in claims:
         names = (*claim.subjects, *claim.arguments)
@@ -147,9 +151,11 @@ class _Measures:
         vocabulary: Relations,
         models: RelationModels,
         metric: bool,
+        surface: int | None,
     ) -> None:
         self.boxes, self.things, self.vocabulary, self.metric = boxes, things, vocabulary, metric
-        self.degrees = ClaimDegrees(boxes, vocabulary, models, metric)
+        self.degrees = ClaimDegrees(boxes, vocabulary, models, metric, surface)
+        self.on_surface = [i for i in range(len(boxes)) if i != surface]
 
     def of(self, claim: Claim, subjects: list[int], arguments: list[int]) -> Measured:
         """Return the degree of a claim about these things, the least of its subjects, and what was measured."""
@@ -193,20 +199,30 @@ class _Measures:
         if term in ("on", "in_front", "parallel") and not others:
             degree = self.degrees.degrees_alone(claim)
             if degree is not None:
-                low = self.boxes[:, 0, -1]
-                stands = f"its underside is {self._length(low[subject] - low.min())} above the lowest"
                 extents = (self.boxes[subject, 1] - self.boxes[subject, 0])[:2]
-                shown = {"on": stands, "parallel": f"it extends {' by '.join(map(self._length, extents))}"}
+                shown = {
+                    "on": self._stands(subject),
+                    "parallel": f"it extends {' by '.join(map(self._length, extents))}",
+                }
                 return float(degree[subject]), shown.get(term, self._where(subject))
         if term == "empty":
             return self._none("inside", [subject])
         return None, _undecidable(claim)
 
+    def _stands(self, subject: int) -> str:
+        low, surface = self.boxes[:, 0, -1], self.degrees.surface
+        if surface is None:
+            return f"its underside is {self._length(low[subject] - low.min())} above the lowest"
+        if not self.degrees.over_surface[subject]:
+            return f"it is not above {self.things[surface]}"
+        above = max(float(low[subject] - self.boxes[surface, 1, -1]), 0.0)
+        return f"its underside is {self._length(above)} above the top of {self.things[surface]}"
+
     def _length(self, length: float) -> str:
         return f"{round(100 * length, 2):g} cm" if self.metric else f"{round(length, 4):g}"
 
     def _where(self, subject: int) -> str:
-        x, y = lean_on_surface(self.boxes)[subject]
+        x, y = lean_on_surface(self.boxes, self.degrees.surface)[subject]
         return f"it is {x:.0%} of the way from left to right and {y:.0%} from near to far"
 
     def _place(self, claim: Claim, subject: int, others: list[int]) -> Measured:
@@ -248,7 +264,7 @@ class _Measures:
         distances = self.degrees.distances
         worst: Measured = (1.0, "")
         for other in others:
-            rest = [i for i in range(len(self.boxes)) if i not in (subject, other)]
+            rest = [i for i in self.on_surface if i not in (subject, other)]
             own = float(distances[subject, other])
             shown = f"it is {self._length(own)} from {self.things[other]}"
             sign = 1 if term == "nearest" else -1
@@ -290,9 +306,9 @@ class _Measures:
         if term in ("tallest", "shortest") and self.boxes.shape[2] < 3:
             return None, "the scene has no heights"
         measures = sign * measure(self.boxes)
-        rivals = others or [i for i in range(len(self.boxes)) if i != subject]
+        rivals = others or [i for i in self.on_surface if i != subject]
         if value is not None:
-            there = place_degree("part", value, lean_on_surface(self.boxes))
+            there = place_degree("part", value, lean_on_surface(self.boxes, self.degrees.surface))
             if there is None:
                 return None, f"{value!r} is not a side"
             if there[subject] <= HOLDS_ABOVE:
@@ -315,7 +331,7 @@ class _Measures:
         if len(sides) != 1 or not said.lstrip("-").isdigit():
             return None, f"{value!r} is not a rank from one side"
         axis, sign = sides[0]
-        group = [subject, *others] if others else list(range(len(self.boxes)))
+        group = [subject, *others] if others else self.on_surface
         places = -sign * self.degrees.centres[group, axis]
         rank = 1 + int((places < places[group.index(subject)] - 1e-9).sum())
         wanted = int(said) if int(said) > 0 else len(group) + 1 + int(said)
@@ -376,7 +392,7 @@ class _Measures:
             table = np.max([self.degrees.relation(relation)[:, subject] for subject in subjects], axis=0)
         else:
             return None, f"boxes do not show what is {relation} it"
-        others = [i for i in range(len(self.boxes)) if i not in subjects]
+        others = [i for i in self.on_surface if i not in subjects]
         found = max(others, key=lambda i: float(table[i]), default=None)
         if found is None or table[found] <= HOLDS_ABOVE:
             return 1.0 - (float(table[found]) if found is not None else 0.0), "nothing is there"
@@ -387,6 +403,8 @@ def _undecidable(claim: Claim) -> str:
     term, value = claim.relation.replace("_", " "), claim.value
     if claim.relation in ("pointing", "facing"):
         return "boxes have no direction"
+    if claim.relation == "on" and not claim.arguments and value is None:
+        return "the scene has no heights"
     if claim.relation == "size":
         return f"{value!r} is relative to the usual size of the kind"
     if value is not None and not claim.arguments and claim.relation not in _OF_ONE:

@@ -157,6 +157,9 @@ class Grounding(Answer):
         requested.
     frames
         Frames of reference of the stated directions, in the order in which they were stated.
+    surface
+        Name among ``matches`` of the surface that the objects stand on, which is not an object; None where the scene
+        does not have it.
     scene
         The scene, for pictures; None where an engine was called directly.
     """
@@ -183,12 +186,19 @@ class Grounding(Answer):
     viewpoints: tuple[Viewpoint, ...] | None = None
     frames: tuple[FrameOfFact, ...] = ()
     scene: object | None = field(default=None, compare=False)
+    surface: str | None = None
+
+    @property
+    def object_matches(self) -> Mapping[str, Match]:
+        """Matches of the objects, without that of the surface."""
+        return {name: match for name, match in self.matches.items() if name != self.surface}
 
     def summary(self) -> str:
         """Return how many objects are matched and decided, and how probably the description fits the scene."""
-        objects = len(self.matches) + len(self.unmatched_objects)
-        decided = sum(match.decided for match in self.matches.values())
-        parts = [f"{len(self.matches)} of {count(objects, 'object')} matched", f"{decided} decided"]
+        matched = self.object_matches
+        objects = len(matched) + len(self.unmatched_objects)
+        decided = sum(match.decided for match in matched.values())
+        parts = [f"{len(matched)} of {count(objects, 'object')} matched", f"{decided} decided"]
         parts.append(f"{len(self.satisfied)} of {count(len(self.outcomes), 'fact')} satisfied")
         if self.fits is not None:
             parts.append(f"fits {self.fits:.2f}")

@@ -26,6 +26,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/habits",
     "guides/testing",
     "guides/robot",
+    "reference/english",
     "reference/scenes",
     "reference/lint",
 )

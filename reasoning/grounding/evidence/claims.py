@@ -102,6 +102,7 @@ def claim_tables(
     models: RelationModels,
     unary: Array,
     metric: bool = True,
+    surface: int | None = None,
 ) -> ClaimTables:
     """Return the evidence of claims about n1 objects for n2 boxes.
 
@@ -119,6 +120,8 @@ def claim_tables(
         Evidence of the matches without facts and claims, shape (n1, n2): what the third object of a claim may be.
     metric
         Whether the boxes are in metres; otherwise, distances say nothing.
+    surface
+        Index of the box of the surface that the objects stand on; None if it is not among the boxes.
 
     Returns
     -------
@@ -128,7 +131,7 @@ def claim_tables(
     said = np.zeros(unary.shape)
     pairs: dict[tuple[int, int], Array] = {}
     if 1 < len(boxes) <= MAX_THINGS:
-        scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric)
+        scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric, surface)
         for claim in claims:
             if any(name not in index for name in (*claim.subjects, *claim.arguments)):
                 continue
@@ -211,10 +214,14 @@ def between_degrees(centres: Array) -> Array:
 
 
 class ClaimDegrees:
-    """Degrees of claims in one scene."""
+    """Degrees of claims in one scene; ``surface`` is the index of the box that the claims call the surface."""
 
-    def __init__(self, boxes: Array, vocabulary: Relations, models: RelationModels, metric: bool) -> None:
+    def __init__(
+        self, boxes: Array, vocabulary: Relations, models: RelationModels, metric: bool, surface: int | None = None
+    ) -> None:
         self.boxes, self.vocabulary, self.models, self.metric = boxes, vocabulary, models, metric
+        # a box in an image shows the front of a table as well as its top
+        self.surface = surface if boxes.shape[2] == 3 else None
         self.centres = boxes[:, :, :2].mean(axis=1)
 
     @cached_property
@@ -303,14 +310,14 @@ class ClaimDegrees:
         """
         term, value = claim.relation, claim.value
         if term in PLACES:
-            return place_degree(term, value, lean_on_surface(self.boxes))
+            return place_degree(term, value, lean_on_surface(self.boxes, self.surface))
         if term == "in_front" and value is not None:  # of the viewer
-            lean = lean_on_surface(self.boxes)
+            lean = lean_on_surface(self.boxes, self.surface)
             near, ahead = (np.asarray(place_degree(place, "near", lean)) for place in ("part", "middle"))
             return np.asarray(near * ahead)
         if term in MEASURES:
             measure, sign = MEASURES[term]
-            return _extreme(sign * measure(self.boxes))
+            return _extreme(self._without_surface(sign * measure(self.boxes)))
         if term == "size" and value in SIZE_WORDS:
             measure, sign = MEASURES[SIZE_WORDS[value]]
             degree = np.exp(np.interp(_rank(sign * measure(self.boxes)), (0.0, 0.5, 0.75), (EXTREME, BORDER, 0.0)))
@@ -325,11 +332,32 @@ class ClaimDegrees:
             return self._along(value)
         return None
 
+    def _without_surface(self, values: Array) -> Array:
+        """Return values of all things (n, …) with that of the surface below all others."""
+        if self.surface is not None:
+            values = values.copy()
+            values[self.surface] = -np.inf
+        return values
+
     def _standing(self) -> Array:
-        """Return the degree to which each thing stands on the surface: its underside is the lowest of the scene."""
-        low = self.boxes[:, 0, 2]
-        height = max(float(np.median(_extents(self.boxes)[:, 2])), 1e-9)
-        return np.asarray(np.exp(np.interp((low - low.min()) / height, (0.1, 0.5, 1.0), (0.0, BORDER, EXTREME))))
+        """Return the degree to which each thing stands on the surface.
+
+        On a surface with a box, the centre of the thing is within the box, and its underside is at the top of the box,
+        or below it, as in a tray with a rim. Without such a box, the underside is the lowest of the scene.
+        """
+        low, height = self.boxes[:, 0, 2], max(float(np.median(_extents(self.boxes)[:, 2])), 1e-9)
+        above = low - low.min() if self.surface is None else np.maximum(low - self.boxes[self.surface, 1, 2], 0.0)
+        degree = np.exp(np.interp(above / height, (0.1, 0.5, 1.0), (0.0, BORDER, EXTREME)))
+        return np.asarray(degree if self.surface is None else np.where(self.over_surface, degree, np.exp(EXTREME)))
+
+    @cached_property
+    def over_surface(self) -> NDArray[np.bool_]:
+        """Mask (n,) of the things whose centre is within the outline of the surface and that are not below it."""
+        assert self.surface is not None
+        low, high = self.boxes[self.surface]
+        within = ((self.centres >= low[:2]) & (self.centres <= high[:2])).all(axis=1)
+        others = np.arange(len(self.boxes)) != self.surface
+        return np.asarray(within & others & (self.boxes[:, 0, 2] >= low[2]))
 
     def _along(self, value: str) -> Array | None:
         """Return the degree to which the long axis of each thing is parallel to an edge of the surface."""
@@ -369,7 +397,7 @@ class ClaimDegrees:
             sign = -1 if term == "nearest" else 1
             gaps = sign * self.distances
             np.fill_diagonal(gaps, -np.inf)
-            return np.stack([_extreme(column) for column in gaps.T], axis=1)
+            return np.stack([_extreme(column) for column in self._without_surface(gaps).T], axis=1)
         if term in MEASURES:
             measure, sign = MEASURES[term]
             return _more(sign * measure(self.boxes))
@@ -378,7 +406,7 @@ class ClaimDegrees:
             edges, centres = (distance_degree(term, known, claim.metres) for known in (self.gaps, self.distances))
             return np.asarray((edges + centres) / 2)
         if term in ("closer", "farther") and value is not None:  # to the edge
-            lean = lean_on_surface(self.boxes)
+            lean = lean_on_surface(self.boxes, self.surface)
             place = place_degree("edge", value.removesuffix("edge").strip() or None, lean)
             return None if place is None else _more(place if term == "closer" else -place)
         return None

@@ -188,6 +188,9 @@ class Evidence:
         Claims of the description; only graded words in scenes with boxes take them into account.
     metric
         Whether the boxes are in metres; otherwise they are in pixels.
+    surface
+        Name of the thing that is the surface which the objects stand on, so that no object is matched to it; None if
+        the scene does not have it.
     """
 
     description: RelationGraph
@@ -205,6 +208,7 @@ class Evidence:
     whole: Whole | None = None
     claims: tuple[Claim, ...] = ()
     metric: bool = True
+    surface: str | None = None
 
     def __post_init__(self) -> None:
         shape = (len(self.description.nodes), len(self.scene.nodes))
@@ -231,7 +235,28 @@ class Evidence:
             return None
         alone = np.where(self.allowed, self._of_things, MIN_LOG_ODDS_OF_THIRD)
         known, models = self.description, self.meaning.models or shipped_models()
-        return claim_tables(self.claims, known.nodes, self.scene.boxes, known.vocabulary, models, alone, self.metric)
+        surface = None if self.surface is None else self.scene.index(self.surface)
+        return claim_tables(
+            self.claims, known.nodes, self.scene.boxes, known.vocabulary, models, alone, self.metric, surface
+        )
+
+    def with_surface(self, thing: str | None) -> Evidence:
+        """Return a copy in which a thing is the surface, and no object is matched to it.
+
+        Parameters
+        ----------
+        thing
+            Name of the thing; None, or a thing that is not on the shortlist, changes nothing.
+
+        Returns
+        -------
+        Evidence
+            The evidence with the surface.
+        """
+        if thing is None or thing not in self.scene.nodes:
+            return self
+        others = np.array([node != thing for node in self.scene.nodes])
+        return replace(self, allowed=self.allowed & others[None, :], surface=thing)
 
     def _with_claims(self, facts: FactTables) -> Problem:
         """Return the matching problem of the tables of the facts, followed by those of the claims."""

@@ -69,16 +69,17 @@ def supporting_box(boxes: Array) -> int | None:
     return best if held >= MIN_SUPPORTED and held >= MIN_SUPPORTED_SHARE * (len(boxes) - 1) else None
 
 
-def lean_on_surface(boxes: Array) -> Array:
+def lean_on_surface(boxes: Array, surface: int | None = None) -> Array:
     """Return the lean of boxes on the surface that holds them.
 
-    The surface is the box that most others stand on. Without one, it is their common bounding box with a margin of half
-    of their mean spacing on every side.
+    Without a surface, it is their common bounding box with a margin of half of their mean spacing on every side.
 
     Parameters
     ----------
     boxes
         Boxes of n things, shape (n, 2, d).
+    surface
+        Index of the box that is the surface; None takes the box that most others stand on, if there is one.
 
     Returns
     -------
@@ -86,7 +87,7 @@ def lean_on_surface(boxes: Array) -> Array:
         Lean of each box, shape (n, 2), from 0 to 1: from left to right, and from near to far.
     """
     low, high = boxes[:, 0, :2], boxes[:, 1, :2]
-    support = supporting_box(boxes)
+    support = supporting_box(boxes) if surface is None else surface
     if support is not None:
         before, after = np.maximum(low - low[support], 0.0), np.maximum(high[support] - high, 0.0)
         held: Array = np.clip(before / np.maximum(before + after, 1e-9), 0.0, 1.0)

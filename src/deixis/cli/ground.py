@@ -131,6 +131,6 @@ def _dialogue(oracle: Path | None, out: TextIO) -> Ask:
 
 def _verdict(found: Grounding) -> int:
     """Return the exit code: NO without any match, UNDECIDED where the time limit cut the search short."""
-    if not found.matches:
+    if not found.object_matches:
         return NO
     return 0 if found.finished else UNDECIDED

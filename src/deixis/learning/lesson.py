@@ -114,7 +114,7 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
         layout=layout_concept(script, id, found.interchangeable),
         scene=scene,
         relations=tuple(_seen_relations(scene, script.ontology.relations, found)),
-        matches=tuple(found.matches.values()),
+        matches=tuple(found.object_matches.values()),
         engine=found.engine,
         proved_best=found.proved_best,
         started=occasion.started,

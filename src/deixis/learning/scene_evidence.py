@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.ontology.claims import Claim
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kinds
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.labels import Label, naming
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.places import supporting_box
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR
 from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 
@@ -186,6 +190,39 @@ def named_by_candidates(thing: PerceivedObject) -> bool:
         True if it has candidates and no certain label.
     """
     return bool(thing.candidates) and (thing.label is None or thing.confidence < 1)
+
+
+def surface_thing(surface: str | None, description: RelationGraph, scene: Scene, kinds: Kinds) -> str | None:
+    """Find the thing of a scene that is the surface which the objects of a description stand on.
+
+    It is the only thing whose label fits the name of the surface, or else the thing that most others stand on, unless
+    its label fits an object of the description.
+
+    Parameters
+    ----------
+    surface
+        Name of the surface; None if the description has none.
+    description
+        The relation graph of the description.
+    scene
+        The scene.
+    kinds
+        The known kinds, which labels are compared by.
+
+    Returns
+    -------
+    str or None
+        Id of the thing; None if the surface has no name, is an object of the description, or is not in the scene.
+    """
+    if surface is None or surface in description.nodes:
+        return None
+    labels = list(scene_labels(scene).values())
+    named = naming(RelationGraph.from_facts(description.vocabulary, [surface], ()), labels, kinds).fitted[0]
+    described = np.asarray(naming(description, labels, kinds).fitted.any(axis=0))
+    if named.sum() == 1 and not described[named].any():
+        return scene.ids[int(named.argmax())]
+    support = None if scene.unit == "px" else supporting_box(scene.boxes)
+    return None if support is None or described[support] else scene.ids[support]
 
 
 def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:

@@ -39,7 +39,11 @@ def grounding_lines(found: Grounding) -> list[str]:
     """
     from deixis.reasoning.grounding.answer import Outcome
 
-    lines = [line for match in found.matches.values() for line in match_lines(match)] or ["No object was found."]
+    objects = found.object_matches
+    lines = [line for match in objects.values() for line in match_lines(match)] or ["No object was found."]
+    if found.surface is not None:
+        thing = found.matches[found.surface].perceived
+        lines.append(f"{found.surface:<24} {thing:<10} the surface that the objects stand on")
     lines += sureness_lines(found)
     elsewhere = [
         match.object
@@ -96,15 +100,16 @@ def sureness_lines(found: Grounding) -> list[str]:
     """
     from deixis.reasoning.grounding.options import DECIDED
 
-    if not found.matches:
+    matches = found.object_matches
+    if not matches:
         return []
     left_out = len(found.unmatched_objects)
-    total = len(found.matches) + left_out
-    settled = sum(match.decided for match in found.matches.values())
-    known = [match for match in found.matches.values() if match.probability is not None]
+    total = len(matches) + left_out
+    settled = sum(match.decided for match in matches.values())
+    known = [match for match in matches.values() if match.probability is not None]
     rest = f"; {left_out} left out" if left_out else ""
     if not known:
-        line = f"{share(settled, total, 'name')} settled{rest}; this engine gives no probabilities."
+        line = f"{share(settled, total, 'name')} decided{rest}; this engine gives no probabilities."
         return ["", doubt(f"{line[0].upper()}{line[1:]}", settled < total)]
     if settled == total:
         what = "its match" if total == 1 else "each match"
@@ -114,7 +119,7 @@ def sureness_lines(found: Grounding) -> list[str]:
     if total == 1:
         return ["", doubt(f"Not sure: {least.object} has a probability of {probability}.")]
     line = f"Sure of {share(settled, total, 'name')} (probability {DECIDED:g} or more)"
-    if settled < len(found.matches):
+    if settled < len(matches):
         line += f"; the least certain is {least.object} ({probability})"
     return ["", doubt(f"{line}{rest}.")]
 
@@ -247,9 +252,9 @@ def _pivotal_line(pivotal: Pivotal, found: Grounding) -> str:
     place = f" ({pivotal.fact.source})" if pivotal.fact.source else ""
     would = [f"{name} would be {thing or 'left out'}" for name, thing in changes.items()]
     if pivotal.unsettled:
-        would.append(f"{', '.join(pivotal.unsettled)} would not be settled")
+        would.append(f"{', '.join(pivotal.unsettled)} would not be decided")
     if pivotal.settled:
-        would.append(f"{', '.join(pivotal.settled)} would be settled")
+        would.append(f"{', '.join(pivotal.settled)} would be decided")
     return f"Without {pivotal.fact}{place}: {'; '.join(would)}." if would else ""
 
 

@@ -207,6 +207,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
     return {
         "engine": found.engine,
         "matches": [match_to_dict(match) for match in found.matches.values()],
+        **({} if found.surface is None else {"surface": found.surface}),
         "unmatched_objects": [left.name for left in found.unmatched_objects],
         "unmatched_perceived": [left.name for left in found.unmatched_perceived],
         "might_be": {

@@ -195,7 +195,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         lines.append("The same view as before, kept once: " + ", ".join(again))
     lines += [f"{word}." for word in learned.kept_names]
     if learned.doubtful:
-        lines.append("Recorded as not settled, so no view was learned: " + ", ".join(learned.doubtful))
+        lines.append("Recorded as not decided, so no view was learned: " + ", ".join(learned.doubtful))
     lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]
     return lines
 

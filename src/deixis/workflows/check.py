@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.scene_evidence import conflict_notes, graph_evidence, scene_labels, viewpoint_notes
+from deixis.learning.scene_evidence import (
+    conflict_notes,
+    graph_evidence,
+    scene_labels,
+    surface_thing,
+    viewpoint_notes,
+)
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.claims import violated
@@ -113,6 +119,7 @@ def check(
     implied = Implications(graph)
     # a check takes labels as identities
     evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0, claims=concept.claims)
+    evidence = evidence.with_surface(surface_thing(concept.surface, graph, scene, known.kinds))
     evidence = replace(evidence, consistent=implied.consistent)
     notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
     labels, engine = scene_labels(scene), engine_named("exact", sides=AS_IT_STANDS)

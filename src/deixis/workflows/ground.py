@@ -15,11 +15,15 @@ from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.learning.scene_evidence import conflict_notes, graph_evidence, shortlisted_evidence, viewpoint_notes
+from deixis.learning.scene_evidence import (
+    conflict_notes,
+    graph_evidence,
+    shortlisted_evidence,
+    surface_thing,
+    viewpoint_notes,
+)
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
@@ -30,7 +34,6 @@ from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
-from deixis.reasoning.grounding.evidence.places import supporting_box
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.memory_budget import (
     DEFAULT_MEMORY_LIMIT,
@@ -164,12 +167,10 @@ class GroundingRequest:
 
     @cached_property
     def surface(self) -> tuple[str, str] | None:
-        """Word of a text for what its things stand on, and the perceived thing that this is; None without one."""
-        name = self.script.reading.surface if self.script.reading is not None else None
-        if name is None or name in self.graph.nodes or self.scene.unit == "px":
-            return None
-        support = supporting_box(self.scene.boxes)
-        return None if support is None else (name, self.scene.ids[support])
+        """Word of the script for what its objects stand on, and the perceived thing that this is; None without one."""
+        name = self.script.surface
+        thing = surface_thing(name, self.graph, self.scene, self.script.ontology.kinds)
+        return None if name is None or thing is None else (name, thing)
 
     @cached_property
     def conflict(self) -> Conflict | None:
@@ -237,8 +238,7 @@ class GroundingRequest:
             claims=self.script.claims,
         )
         if self.surface is not None and keep_surface_free:
-            others = np.array([thing != self.surface[1] for thing in known.scene.nodes])
-            known = replace(known, allowed=known.allowed & others[None, :])
+            known = known.with_surface(self.surface[1])
         return replace(known, memory_limited=memory_limited, consistent=self._consistent)
 
     @cached_property
@@ -389,12 +389,14 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     if request.surface is not None:
         name, thing = request.surface
         others = {one: match for one, match in found.matches.items() if match.perceived != thing}
-        found = replace(found, matches=others | {name: _surface_match(name, thing)})
+        left = tuple(one for one in found.unmatched_perceived if one.name != thing)
+        matches = others | {name: _surface_match(name, thing)}
+        found = replace(found, matches=matches, unmatched_perceived=left, surface=name)
     return replace(found, scene=request.scene)
 
 
 def _surface_match(name: str, thing: str) -> Match:
-    """Return the match of the surface: it is the only thing that the others stand on."""
+    """Return the match of the surface; its thing is found by its label or by what stands on it, not by a search."""
     return Match(
         object=name, perceived=thing, score=1.0, similarity=1.0, decided=True, alternatives=(), probability=None
     )

@@ -16,7 +16,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kind, Kinds, with_article
 from deixis.ontology.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.comparison.claims import ClaimOutcome
+from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
 from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -256,7 +256,8 @@ def _table(
         if task.firm(picture.boxes):
             arranged = arrange(task, picture.boxes, rng, Deadline.after(time_limit))
             picture = replace(picture, boxes=arranged)
-        claims = task.outcomes(picture.boxes)
+        upper = {graph.nodes[pair[0]] for pair in task.together}
+        claims = tuple(_on_table(entry, upper) for entry in task.outcomes(picture.boxes))
     things = tuple(
         PerceivedObject(f"o{number}", tuple(box[0]), tuple(box[1]), label=name)
         for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
@@ -281,6 +282,18 @@ def _table(
         finished=picture.finished,
         claims=claims,
     )
+
+
+def _on_table(entry: ClaimOutcome, upper: set[str]) -> ClaimOutcome:
+    """Return a claim that something stands on the surface as satisfied, except of what lies on or in another thing.
+
+    The table that is imagined is the surface, and a plan has no heights to measure.
+    """
+    claim = entry.claim
+    on_surface = claim.relation == "on" and not claim.arguments and claim.positive
+    if not on_surface or upper & set(claim.subjects):
+        return entry
+    return replace(entry, verdict=ClaimVerdict.SATISFIED, degree=1.0, measured="it stands on the table")
 
 
 def _not_shown(graph: RelationGraph, boxes: NDArray[np.float64]) -> set[int]:

@@ -128,11 +128,11 @@ def _lesson(
         raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
     started = datetime.now(UTC)
     found = answer(request)
-    if not found.matches:
+    if not found.object_matches:
         where = f"the script {script.file} names was found in the scene {scene.file}"
         raise NothingFoundError(f"nothing that {where}, so nothing was learned")
     knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
     lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
     taken.add(lesson_id)
     lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION))
-    return Learned(lesson, found), views_of_matches(scene, found.matches.values())
+    return Learned(lesson, found), views_of_matches(scene, lesson.matches)

@@ -50,7 +50,8 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
         if entry.verdict not in (ClaimVerdict.UNDECIDABLE, ClaimVerdict.OPEN)
     }
     held = {position: decided[claim] for position, claim in enumerate(layout.claims, 1) if claim in decided}
-    data = scene_data(layout, scene.ids, fills, related, coloured, held)
+    things = tuple(id for id in scene.ids if id != check.surface)
+    data = scene_data(layout, things, fills, related, coloured, held)
     graphs = []
     for triples in (data, layout_shapes(layout)):
         graph = rdflib.Graph()
