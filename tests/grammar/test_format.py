@@ -43,7 +43,7 @@ def test_canonical_form(text: str, expected: str) -> None:
     assert canonical(expected) == expected
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=80)
 @given(scripts(claims=True))
 def test_reading_the_canonical_form_changes_nothing(script: Script) -> None:
     text = format_script(script)

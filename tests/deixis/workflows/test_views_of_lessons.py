@@ -22,7 +22,7 @@ from deixis.session import Session
 DECISIVE = {"update", "update_in_bulk", "write", "replace"}
 """The steps before and after which the outcome differs."""
 
-KILLS = 3  # of each write; benchmarks/bench_kills.py kills at every step
+KILLS = 2  # of each write; benchmarks/bench_kills.py kills at every step
 
 
 @pytest.fixture(scope="module")

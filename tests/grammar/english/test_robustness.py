@@ -133,7 +133,7 @@ def test_any_text(text: str) -> None:
 
 
 @given(SENTENCES)
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=125, deadline=None)
 def test_any_words(text: str) -> None:
     check(text)
 

@@ -83,7 +83,7 @@ def read_damaged(file: Path, content: bytes, read: Callable[[Path], object]) -> 
 
 
 @given(data=st.data())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_a_damaged_file_is_a_cloud_or_refused(
     data: st.DataObject, files: dict[str, bytes], tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -97,7 +97,7 @@ def test_a_damaged_file_is_a_cloud_or_refused(
 
 
 @given(data=st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_a_damaged_file_is_a_mesh_or_refused(
     data: st.DataObject, files: dict[str, bytes], tmp_path_factory: pytest.TempPathFactory
 ) -> None:

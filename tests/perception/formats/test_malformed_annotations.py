@@ -213,7 +213,7 @@ def paths(data: Any, *above: Any) -> list[tuple[Any, ...]]:
     return [path for key, value in children for path in ((*above, key), *paths(value, *above, key))]
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(data=st.data(), original=st.sampled_from([COCO, LABELME]), value=values, image=st.none() | st.just(1))
 def test_a_changed_file_gives_a_scene_or_a_scene_error(
     data: st.DataObject, original: Json, value: Any, image: int | None
@@ -242,7 +242,7 @@ def refused_or_read(data: Json, image: int | None) -> None:
         assert (scene.boxes[:, 0] <= scene.boxes[:, 1]).all()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(data=st.data(), original=st.sampled_from([COCO, LABELME]))
 def test_a_damaged_file_gives_a_scene_or_a_scene_error(
     data: st.DataObject, original: Json, tmp_path_factory: pytest.TempPathFactory

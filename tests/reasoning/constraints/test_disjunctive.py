@@ -38,7 +38,7 @@ def satisfiable(clauses: list[Clause]) -> bool:
     return bool(choices)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.lists(CLAUSE, max_size=6))
 def test_the_search_succeeds_exactly_if_a_choice_exists(clauses: list[Clause]) -> None:
     found = solve(POINTS, AXES, clauses, in_time())

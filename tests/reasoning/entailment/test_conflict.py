@@ -47,7 +47,7 @@ def cyclic(stated: list[Triple]) -> bool:
     return False
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.lists(directions, max_size=6))
 def test_facts_conflict_exactly_if_an_order_is_cyclic(stated: list[Triple]) -> None:
     found = among([Fact(s, (R[r],), o) for r, s, o in stated])
@@ -65,7 +65,7 @@ anything = st.builds(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.lists(anything, min_size=2, max_size=8))
 def test_a_conflict_is_minimal_and_made_of_firm_stated_facts(stated: list[Fact]) -> None:
     found = among(stated)

@@ -43,7 +43,7 @@ def relation(a: Interval, b: Interval, tolerance: float = 0.0) -> Allen:
     return Allen(int(allen_relations(ends[0], ends[1], ends[2], ends[3], tolerance)[0]))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(intervals, intervals)
 def test_the_only_relation_that_holds_is_the_defined_one(a: Interval, b: Interval) -> None:
     assert definitions(a, b) == [relation(a, b)]

@@ -69,7 +69,7 @@ def reference(a: Boxes, b: Boxes, a_is_later: bool) -> str:
 
 
 @pytest.mark.parametrize("axes", [2, 3])
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(data=st.data())
 def test_every_pair_has_the_relation_of_the_reference(
     data: st.DataObject, axes: int, random_boxes: MakeBoxes, relations: Relations
@@ -82,7 +82,7 @@ def test_every_pair_has_the_relation_of_the_reference(
 
 
 @pytest.mark.parametrize("axes", [2, 3])
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(data=st.data())
 def test_one_exact_relation_holds_and_its_inverse_in_reverse(
     data: st.DataObject, axes: int, random_boxes: MakeBoxes, relations: Relations

@@ -66,7 +66,7 @@ def orbits(graph: RelationGraph, colours: list[int]) -> list[tuple[str, ...]]:
     return [tuple(graph.nodes[i] for i in group) for group in sorted(groups)]
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(graphs())
 def test_the_groups_are_the_orbits_of_all_renamings(problem: tuple[RelationGraph, list[int]]) -> None:
     assert interchangeable(*problem) == orbits(*problem)
@@ -132,7 +132,7 @@ def test_many_parts_that_are_alike_are_told_quickly() -> None:
     assert sorted(map(len, interchangeable(graph, [0] * len(names)))) == [300, 300]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(graphs())
 def test_the_first_colouring_is_that_of_plain_colour_refinement(case: tuple[RelationGraph, list[int]]) -> None:
     graph, colours = case

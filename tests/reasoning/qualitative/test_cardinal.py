@@ -40,7 +40,7 @@ def test_the_converse_is_the_opposite_direction(centres: list[tuple[int, int]]) 
             assert found[i][j] == OPPOSITE[found[j][i]]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.integers(-20, 20), st.integers(-20, 20))
 def test_the_cone_with_the_nearest_axis_is_chosen(east: int, north: int) -> None:
     if east == north == 0:

@@ -235,7 +235,7 @@ PIECES = [
 ]  # fmt: skip
 
 
-@settings(max_examples=1500, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=500, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(pieces=st.lists(st.sampled_from(PIECES), max_size=14), silent=st.booleans())
 def test_no_accepted_query_opens_a_connection(listener: socket.socket, pieces: list[str], silent: bool) -> None:
     """Confusing text: no accepted query opens a connection, as a listening socket shows."""

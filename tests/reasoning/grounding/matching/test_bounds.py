@@ -14,7 +14,7 @@ from deixis.reasoning.grounding.matching.branch_and_bound import new_stack, node
 from deixis.reasoning.grounding.matching.problem import Problem, compile_problem
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.integers(0, 6), st.integers(0, 6), st.integers(0, 2**32 - 1), st.booleans())
 def test_assignment_equals_scipy_with_prices_as_proof(rows: int, columns: int, seed: int, ties: bool) -> None:
     rng = np.random.default_rng(seed)

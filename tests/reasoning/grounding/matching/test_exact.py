@@ -28,7 +28,7 @@ def knotty(n: int, facts: int) -> Problem:
     return Problem(ends, np.arange(facts), tables, np.zeros((n, n)), np.zeros(n))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(problems())
 def test_the_optimum_is_the_best_of_all_maps_and_proved(problem: Problem) -> None:
     found = exact(problem)
@@ -39,7 +39,7 @@ def test_the_optimum_is_the_best_of_all_maps_and_proved(problem: Problem) -> Non
     assert found.value == problem.value(found.assignment)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(problems(), st.sampled_from([0.0, 0.5, 1.7, 50.0]))
 def test_all_maps_within_the_margin_are_listed_once_best_first(problem: Problem, margin: float) -> None:
     found = maps_within(problem, margin)

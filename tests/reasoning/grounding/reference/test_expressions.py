@@ -41,7 +41,7 @@ def fits(said: Description, other: int, known: Attributes, among: range) -> bool
 
 
 @given(st.integers(0, 100_000))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_a_description_without_rivals_fits_one_object(seed: int) -> None:
     known = attributes(seed)
     everything = range(len(known.sizes))

@@ -60,7 +60,7 @@ def test_the_default_table_by_hand() -> None:
         assert distance.compose(s, r) == distance.compose(r, s)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.integers(-40, 40), st.integers(-40, 40)), min_size=3, max_size=3))
 def test_points_of_the_plane_show_only_listed_compositions(points: list[tuple[int, int]]) -> None:
     distance = distance_calculus()

@@ -20,7 +20,7 @@ from deixis.reasoning.qualitative.networks.search import Verdict, scenario, solv
 
 ALLEN, RCC8, RA = calculus("allen"), calculus("rcc8"), calculus("ra")
 PAIRS = list(combinations(range(4), 2))
-MANY = settings(max_examples=150, deadline=None)
+MANY = settings(max_examples=80, deadline=None)
 
 
 def four(relations: tuple[int, ...]) -> Network:
