@@ -48,6 +48,7 @@ def full(*_: object, **__: object) -> None:
 WRITES = tuple(Example(Path()).writes())
 
 
+@pytest.mark.kills
 @pytest.mark.slow
 @pytest.mark.parametrize("write", WRITES)
 def test_a_killed_write_has_happened_or_has_not(
