@@ -28,6 +28,7 @@ from deixis.experiments.generated_tables import generate
 from deixis.experiments.photographs import Photograph, photographs
 from deixis.experiments.scoreboard.bayes_limit import bayes_limit
 from deixis.ontology.tbox import default_ontology
+from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.facts import FactTables, crisp_tables, fact_tables
 from deixis.reasoning.grounding.evidence.labels import classes
@@ -126,10 +127,12 @@ def on_tables(count: int, first: int) -> None:
 
 def calibrated(probability: NDArray[np.float64], hits: NDArray[np.bool_]) -> tuple[float, int, float]:
     """Return the calibration error in ten bins, the number of matches at 0.95 or more, and their share right."""
-    bins = np.minimum((10 * probability).astype(int), 9)
-    off = sum(abs(probability[bins == b].sum() - hits[bins == b].sum()) for b in range(10))
     sure = probability >= 0.95
-    return off / probability.size, int(sure.sum()), float(hits[sure].mean()) if sure.any() else float("nan")
+    return (
+        expected_calibration_error(probability, hits),
+        int(sure.sum()),
+        float(hits[sure].mean()) if sure.any() else float("nan"),
+    )
 
 
 def on_photographs(options: argparse.Namespace) -> None:

@@ -10,13 +10,13 @@ are published figures on all 96 scenarios (Wu and others 2023), of which ``DEIXI
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 
 import numpy as np
 import yaml
 from common import data_folder
 from records import command_line, figure, recorded, share
 
+from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.habits.habits import Habits
 
 PUBLISHED = {
@@ -25,16 +25,6 @@ PUBLISHED = {
     "large language model, people's summaries": 0.975,
 }
 """Shares of the unseen things that were placed right, on 96 scenarios."""
-
-BINS = (0.3, 0.5, 0.7, 0.85, 0.95)
-"""Limits of the probabilities that are compared with the shares of right answers."""
-
-
-def calibration_error(probable: Sequence[float], right: Sequence[bool]) -> float:
-    """Return the mean distance of the probabilities from the shares of right answers, over bins."""
-    values, hits = np.array(probable), np.array(right)
-    bins = np.digitize(values, BINS)
-    return float(sum(abs((values - hits)[bins == number].sum()) for number in np.unique(bins)) / len(values))
 
 
 def main() -> None:
@@ -59,7 +49,7 @@ def main() -> None:
                 if found.place != place:
                     print(f"{found.thing}: {found.place}, not {place}; because of {found.because}")
         spent = time.process_time() - started
-        error = calibration_error(probable, right)
+        error = expected_calibration_error(np.array(probable), np.array(right))
         share("placed right", sum(right), len(right))
         figure("mean share of a scenario", float(np.mean(by_scenario)), "share")
         share("known to the lexicon", sum(known), len(known))

@@ -35,6 +35,7 @@ from records import command_line, figure, recorded, share
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import LAYOUTS, SETTING, generate, lay_boxes
 from deixis.ontology.tbox import default_ontology
+from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
 from deixis.reasoning.grounding.matching import ladders
@@ -172,14 +173,14 @@ def _calibration(
     what = (
         f"{layout}, {'kinds' if kinds else 'words alone'}, {objects} objects, {facts:g} facts each, {missing:g} missing"
     )
-    figure(f"{what}: calibration error", calibration_error(p, r), "share")
+    figure(f"{what}: calibration error", expected_calibration_error(p, r), "share")
     share(f"{what}: decided", int(d.sum()), len(d))
     share(f"{what}: decided matches that are right", int((d & r).sum()), int(d.sum()))
     far_off = "" if far is None else f"{far.mean():.3f}, {far.max():.3f}"
     print(
         f"{layout:8}  {'yes' if kinds else 'no':5}  {objects:7}  {facts:5}  {missing:7}  "
-        f"{r.mean():.3f}  {p.mean():.3f}  {calibration_error(p, r):11.3f}  "
-        f"{r[t].mean():.3f}  {p[t].mean():.3f}  {calibration_error(p[t], r[t]):11.3f}  {d.mean():7.3f}  "
+        f"{r.mean():.3f}  {p.mean():.3f}  {expected_calibration_error(p, r):11.3f}  "
+        f"{r[t].mean():.3f}  {p[t].mean():.3f}  {expected_calibration_error(p[t], r[t]):11.3f}  {d.mean():7.3f}  "
         f"{interval(int((d & r).sum()), int(d.sum())):>27}  {far_off:>18}  "
         f"{max(clock):5.1f}   {max(worked):5.1f}",
         flush=True,
@@ -194,15 +195,6 @@ def _reference(problem: Problem) -> NDArray[np.float64]:
         return sampled_marginals(problem.compiled, exchangeable(problem), Deadline.never(), seed=1)[0]
     finally:
         ladders.PROPOSALS, ladders.TOLERANCE = before
-
-
-def calibration_error(probability: NDArray[np.float64], right: NDArray[np.bool_]) -> float:
-    """Return the mean difference of probability and share right over ten bins, weighted by their counts."""
-    bins = np.clip((probability * 10).astype(int), 0, 9)
-    return sum(
-        float((bins == b).mean() * abs(probability[bins == b].mean() - right[bins == b].mean()))
-        for b in np.unique(bins)
-    )
 
 
 def _short(rare: int, things: int, seconds: float) -> None:

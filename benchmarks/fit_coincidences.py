@@ -13,11 +13,12 @@ from collections.abc import Iterator
 
 import numpy as np
 from bench_faults import interval
-from bench_large import calibration_error, case
+from bench_large import case
 from records import command_line, recorded
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import LAYOUTS
+from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.grounding.fitting.coincidences import JudgedTable, fit_coincidences
 from deixis.reasoning.grounding.matching.coincidences import SHIPPED_WEIGHTS, CoincidenceWeights, coincidences
 from deixis.reasoning.grounding.matching.posterior import posterior
@@ -93,7 +94,7 @@ def effect(tables: list[JudgedTable], weights: CoincidenceWeights) -> str:
         right.append(np.where(absent > present, table.missing, table.right))
         decided.append(is_decided(present, table.errors) & (present > absent))
     p, r, d = (np.concatenate(part) for part in (probabilities, right, decided))
-    return f"{interval(int((d & r).sum()), int(d.sum()))} ({d.mean():.2f} decided), error {calibration_error(p, r):.3f}"
+    return f"{interval(int((d & r).sum()), int(d.sum()))} ({d.mean():.2f} decided), error {expected_calibration_error(p, r):.3f}"
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ class Case(NamedTuple):
 
     regions: int
     first_to_hull: int
-    """Of the first region to the hull of the second."""
+    """Relation of the first region to the hull of the second."""
     hull_to_second: int
     hulls: int
 

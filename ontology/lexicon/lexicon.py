@@ -7,6 +7,7 @@ noun: a trash can is a bin, a rice bowl is a bowl.
 from __future__ import annotations
 
 from enum import StrEnum
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from deixis.ontology.inflection import singulars
@@ -15,6 +16,7 @@ from deixis.ontology.lexicon.adjectives import Description, adjectives
 
 if TYPE_CHECKING:
     from deixis.ontology.colours import Colours
+    from deixis.ontology.lexicon.groups import Groups
     from deixis.ontology.sizes import SizeRange, Sizes
 
 SYNONYMS = 0.97
@@ -56,6 +58,13 @@ class Lexicon:
         self._kinds = kinds
         self._sizes = sizes
         self._colours = colours
+
+    @cached_property
+    def groups(self) -> Groups:
+        """The groups that people sort household things into."""
+        from deixis.ontology.lexicon.groups import Groups
+
+        return Groups(self._kinds)
 
     def knows(self, noun: str) -> bool:
         """Say whether a whole noun, in the singular or the plural, is one of the lexicon.

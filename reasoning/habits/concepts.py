@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import cached_property
 
 import numpy as np
 
@@ -91,10 +90,10 @@ class Concepts:
         self._ontology = ontology
         self._cache: dict[str, frozenset[Concept]] = {}
 
-    @cached_property
+    @property
     def groups(self) -> Groups:
         """The groups of household things."""
-        return Groups(self._ontology.kinds)
+        return self._ontology.lexicon.groups
 
     def of(self, thing: str) -> frozenset[Concept]:
         """Return the concepts of a thing; a number after its name distinguishes things of one name and is left out.

@@ -83,7 +83,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """Where a thing goes.
+    """Place of a thing, with the probabilities of all places.
 
     Attributes
     ----------
@@ -232,9 +232,7 @@ class Habits:
             place = self.examples[thing]
             return Placement(thing, place, 1.0, ((place, 1.0),), "example", known)
         fits = np.array([meant.fit(concepts) for meant in self._classes])
-        fixed = np.full(len(self.places), BY_CHANCE)
-        for concept, stated_place in self._stated:
-            fixed[stated_place] += _stated_fit(concept) if concept in concepts else 0.0
+        fixed = BY_CHANCE + self._stated_fits(concepts)
         similar, total = self._similar(fits), sum(self._descriptions.values())
         found, reasons = np.zeros(len(self.places)), np.zeros(len(self._classes))
         for chosen, weight in self._descriptions.items():
@@ -263,9 +261,15 @@ class Habits:
 
     def _stated_scores(self) -> Array:
         """Return the scores of the examples by the stated rules, shape (places, examples)."""
-        scores = np.zeros((len(self.places), len(self._labels)))
+        fits = [self._stated_fits(concepts) for concepts in self._known.values()]
+        return np.array(fits).reshape(len(fits), len(self.places)).T
+
+    def _stated_fits(self, concepts: frozenset[Concept]) -> Array:
+        """Return the scores of the places for a thing by the stated rules, shape (places,)."""
+        scores = np.zeros(len(self.places))
         for concept, place in self._stated:
-            scores[place] += [_stated_fit(concept) if concept in known else 0.0 for known in self._known.values()]
+            if concept in concepts:
+                scores[place] += STATED_EXAMPLES / (concept.size + SMALLEST) + 1.0
         return scores
 
     def _covered_scores(self, number: int) -> Array:
@@ -341,10 +345,6 @@ class Habits:
                 inside = np.bincount(self._labels[meant.covered], minlength=len(self.places))
                 scores += fit * inside / inside.sum()
         return _normalised(scores, EXCEPTION)
-
-
-def _stated_fit(concept: Concept) -> float:
-    return STATED_EXAMPLES / (concept.size + SMALLEST) + 1.0
 
 
 def _normalised(scores: Array, exception: float) -> Array:
