@@ -94,7 +94,8 @@ def effect(tables: list[JudgedTable], weights: CoincidenceWeights) -> str:
         right.append(np.where(absent > present, table.missing, table.right))
         decided.append(is_decided(present, table.errors) & (present > absent))
     p, r, d = (np.concatenate(part) for part in (probabilities, right, decided))
-    return f"{interval(int((d & r).sum()), int(d.sum()))} ({d.mean():.2f} decided), error {expected_calibration_error(p, r):.3f}"
+    error = expected_calibration_error(p, r)
+    return f"{interval(int((d & r).sum()), int(d.sum()))} ({d.mean():.2f} decided), error {error:.3f}"
 
 
 if __name__ == "__main__":
