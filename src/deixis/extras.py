@@ -28,6 +28,7 @@ OPTIONAL = {
     "PIL": OptionalPackage("pillow", "perception"),
     "pandas": OptionalPackage("pandas", None),
     "pygls": OptionalPackage("pygls", "lsp"),
+    "zenoh": OptionalPackage("eclipse-zenoh", "robot"),
     "sklearn": OptionalPackage("scikit-learn", "experiments"),
 }
 """Optional packages by the names under which they are imported."""
