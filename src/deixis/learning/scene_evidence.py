@@ -13,6 +13,7 @@ from deixis.ontology.claims import Claim
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.vocabulary import DX
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
@@ -21,6 +22,9 @@ from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.evidence.places import supporting_box
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR
 from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
+
+ODD_SCALE = 10.0
+"""Ratio of seen to usual lengths from which the unit of a scene is doubted; units differ by 10 or more."""
 
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
@@ -245,6 +249,38 @@ def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     return (
         f"the viewpoint of the script is '{viewpoint}' and that of the scene is '{scene.viewpoint}': "
         "left and right were compared without conversion",
+    )
+
+
+def unit_notes(script: Script, scene: Scene) -> tuple[str, ...]:
+    """Return a note if the things of a scene in metres are far larger or smaller than the described kinds usually are.
+
+    Parameters
+    ----------
+    script
+        The script, whose names tell the kinds.
+    scene
+        The scene.
+
+    Returns
+    -------
+    tuple of str
+        At most one note.
+    """
+    sizes = script.ontology.sizes
+    kinds = [script.ontology.of_name(name)[0] for name in script.objects]
+    usual = [sizes.of(kind.iri) for kind in kinds if kind is not None]
+    lengths = [size.length.typical for size in usual if size.stated_of != DX.THING]
+    if scene.unit != "m" or len(lengths) < 2 or not scene.objects:
+        return ()
+    seen = float(np.median(np.ptp(scene.boxes[:, :, :2], axis=1).max(axis=1)))
+    ratio = seen / float(np.median(lengths))
+    if 1 / ODD_SCALE < ratio < ODD_SCALE:
+        return ()
+    times = float(f"{ratio:.1g}")
+    return (
+        f"half of the things are {'longer' if ratio > 1 else 'shorter'} than {seen:.2g} m, about {times:g} times the "
+        'usual length of what is described: check the "unit" of the scene (m, cm or mm; metres where none is given)',
     )
 
 

@@ -29,7 +29,7 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
 
     Two objects that changed places belong in each other's. Every other place is taken from an example table that
     satisfies the layout: the object keeps its distances there to the objects that the layout relates it to, as far as
-    these are in place, and the median over them is taken.
+    these are in place or their own places are known, and the median over them is taken.
 
     Parameters
     ----------
@@ -60,11 +60,12 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
         if occupant is not None and own is not None:
             found[name] = _moved(boxes[own], boxes[occupant].mean(axis=0))
     rest = [name for name in wanted if name not in found]
-    example = _example(checked, time_limit) if rest and in_place else {}
-    shared = [name for name in in_place if name in example]
+    anchors = in_place | found
+    example = _example(checked, time_limit) if rest and anchors else {}
+    shared = [name for name in anchors if name in example]
     if not shared:
         return found
-    scale = float(np.median([_size(in_place[name]) / _size(example[name]) for name in shared]))
+    scale = float(np.median([_size(anchors[name]) / _size(example[name]) for name in shared]))
     related = _related(checked)
     for name in rest:
         if name not in example:
@@ -72,7 +73,7 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
         neighbours = [other for other in shared if other in related.get(name, ())] or shared
         own = roles[name].perceived
         size = np.ptp(boxes[own], axis=0) if own is not None else scale * np.ptp(example[name], axis=0)
-        centres = [_beside(in_place[other], example[other], example[name], size, scale) for other in neighbours]
+        centres = [_beside(anchors[other], example[other], example[name], size, scale) for other in neighbours]
         centre = np.median(centres, axis=0)
         found[name] = np.stack([centre - size / 2, centre + size / 2])
     return found

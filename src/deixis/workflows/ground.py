@@ -22,6 +22,7 @@ from deixis.learning.scene_evidence import (
     graph_evidence,
     shortlisted_evidence,
     surface_thing,
+    unit_notes,
     viewpoint_notes,
 )
 from deixis.ontology.graph import RelationGraph
@@ -362,7 +363,8 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     from deixis.workflows.viewpoint import ground_from_sides, recover_scene
 
     deadline, contradiction = request.due, _contradiction(request)
-    side, notes = None, viewpoint_notes(request.script.viewpoint, request.scene)
+    notes = viewpoint_notes(request.script.viewpoint, request.scene) + unit_notes(request.script, request.scene)
+    side = None
     if request.viewpoint != ViewpointName.STATED:
         any_angle = request.viewpoint == ViewpointName.UNKNOWN
         with stage("looking from other sides"):

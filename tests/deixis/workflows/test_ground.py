@@ -180,3 +180,11 @@ def test_graph_closure_and_relations_are_computed_once(monkeypatch: pytest.Monke
     assert len(scenes) == len(STATED_SIDES)  # once as seen from each side
     answer(GroundingRequest(script, Scene(scene.objects[:5])))
     assert len(scenes) == 2 * len(STATED_SIDES)
+
+
+def test_a_scene_in_centimetres_without_its_unit_is_noted() -> None:
+    script = package.read_script(text="plate left of cup; fork left of plate")
+    boxes = {"o1": [30, 0, 57, 27], "o2": [0, 0, 3, 20], "o3": [70, 0, 80, 10]}
+    objects = [{"id": name, "min": box[:2], "max": box[2:]} for name, box in boxes.items()]
+    assert any('check the "unit"' in note for note in package.ground(script, {"objects": objects}).notes)
+    assert not any("unit" in note for note in package.ground(script, {"objects": objects, "unit": "cm"}).notes)
