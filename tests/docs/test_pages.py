@@ -21,6 +21,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/annotations",
     "guides/words",
     "guides/descriptor_and_engine",
+    "guides/check",
     "guides/refer",
     "guides/tell",
     "guides/habits",

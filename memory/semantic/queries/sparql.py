@@ -403,7 +403,22 @@ def _syntax_error(text: _Text, told: str) -> QueryError:
     if not found:
         return QueryError(f"query: {told}")
     line, column, what = int(found.group(1)), int(found.group(2)), found.group(3)
-    return text.error(text.offset(line, column), f"syntax error{_expected(what)}")
+    offset = text.offset(line, column)
+    opened = None if text.text[offset:].strip() else _unclosed(text.text)
+    if opened is not None:
+        return text.error(opened.start, f"syntax error: the query ends before this '{opened.text}' is closed")
+    return text.error(offset, f"syntax error{_expected(what)}")
+
+
+def _unclosed(text: str) -> Token | None:
+    """Return the last bracket that a query opens and does not close."""
+    opened: list[Token] = []
+    for token in tokens(text):
+        if token.text in ("{", "(", "["):
+            opened.append(token)
+        elif token.text in ("}", ")", "]") and opened:
+            opened.pop()
+    return opened[-1] if opened else None
 
 
 def _expected(what: str) -> str:

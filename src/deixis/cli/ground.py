@@ -45,7 +45,7 @@ def ground(
     ] = Select.FACTS,
     literal: Annotated[bool, typer.Option("--literal", help="Take words literally, not by degrees.")] = False,
     no_sizes: Annotated[bool, typer.Option("--no-sizes", help="Ignore the usual sizes of things.")] = False,
-    ask: Annotated[bool, typer.Option("--ask", help="Ask questions that settle open names.")] = False,
+    ask: Annotated[bool, typer.Option("--ask", help="Ask questions that decide open names.")] = False,
     oracle: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Take the answers from a JSON file of names and ids; null: absent."),

@@ -85,7 +85,7 @@ def grounding_lines(found: Grounding) -> list[str]:
 
 
 def sureness_lines(found: Grounding) -> list[str]:
-    """Return how sure the answer is, in plain words: how many names are settled, and which is the least certain.
+    """Return how sure the answer is, in plain words: how many names are decided, and which is the least certain.
 
     Parameters
     ----------
@@ -95,8 +95,8 @@ def sureness_lines(found: Grounding) -> list[str]:
     Returns
     -------
     list of str
-        An empty line and one sentence, marked as doubt unless all names of the description are settled; empty without
-        matches. A name that was left out counts as not settled.
+        An empty line and one sentence, marked as doubt unless all names of the description are decided; empty without
+        matches. A name that was left out counts as not decided.
     """
     from deixis.reasoning.grounding.options import DECIDED
 
@@ -105,21 +105,21 @@ def sureness_lines(found: Grounding) -> list[str]:
         return []
     left_out = len(found.unmatched_objects)
     total = len(matches) + left_out
-    settled = sum(match.decided for match in matches.values())
+    decided = sum(match.decided for match in matches.values())
     known = [match for match in matches.values() if match.probability is not None]
     rest = f"; {left_out} left out" if left_out else ""
     if not known:
-        line = f"{share(settled, total, 'name')} decided{rest}; this engine gives no probabilities."
-        return ["", doubt(f"{line[0].upper()}{line[1:]}", settled < total)]
-    if settled == total:
+        line = f"{share(decided, total, 'name')} decided{rest}; this engine gives no probabilities."
+        return ["", doubt(f"{line[0].upper()}{line[1:]}", decided < total)]
+    if decided == total:
         what = "its match" if total == 1 else "each match"
         return ["", f"Sure of {share(total, total, 'name')}: {what} has a probability of at least {DECIDED:g}."]
     least = min(known, key=lambda match: match.probability or 0.0)
     probability = _probability(least.probability or 0.0).strip()
     if total == 1:
         return ["", doubt(f"Not sure: {least.object} has a probability of {probability}.")]
-    line = f"Sure of {share(settled, total, 'name')} (probability {DECIDED:g} or more)"
-    if settled < len(matches):
+    line = f"Sure of {share(decided, total, 'name')} (probability {DECIDED:g} or more)"
+    if decided < len(matches):
         line += f"; the least certain is {least.object} ({probability})"
     return ["", doubt(f"{line}{rest}.")]
 

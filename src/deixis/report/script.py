@@ -178,7 +178,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     Returns
     -------
     list of str
-        The lesson, its settled categories and new views, and the objects that are not settled or left out.
+        The lesson, its decided categories and new views, and the objects that are not decided or left out.
     """
     layout = learned.lesson.layout
     claims = f", {_count(layout.claims, 'claim')}" if layout.claims else ""
@@ -187,7 +187,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
         f"{_count(layout.facts, 'fact')}{claims}; in {memory}"
     ]
     if learned.categories:
-        lines.append("Settled, each an example of its category: " + ", ".join(learned.categories))
+        lines.append("Decided, each an example of its category: " + ", ".join(learned.categories))
     new, again = ([taught.category for taught in learned.seen if taught.again == same] for same in (False, True))
     if new:
         lines.append("Categories with a new view: " + ", ".join(new))
@@ -265,7 +265,7 @@ def _known_by(entry: RoleCheck) -> str:
         return "by its place alone"
     if entry.confidence < SURE_CONFIDENCE:
         return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE_CONFIDENCE:g}"
-    return f"labelled '{entry.label}', which does not settle it"
+    return f"labelled '{entry.label}', which does not decide it"
 
 
 def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:

@@ -42,7 +42,7 @@ class Learned:
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """The objects that it recorded as not settled."""
+        """The objects that it recorded as not decided."""
         return tuple(match.object for match in self.lesson.matches if not match.decided)
 
 

@@ -204,7 +204,8 @@ PLACES = [
     ("SELECT * {?s foo:a ?o}", 1, 14, "unknown prefix 'foo:'"),
     ("SELECT *\n{ ?s skoz:altLabel ?o }", 2, 6, "did you mean 'skos:'"),
     ("SELECT * {?s ?p ?o} LIMIT x", 1, 27, "syntax error"),
-    ("SELECT * {\n  ?s ?p ?o\n", 3, 1, "syntax error"),
+    ("SELECT * {\n  ?s ?p ?o\n", 1, 10, "the query ends before this '{' is closed"),
+    ("SELECT * {?s ?p ?o FILTER(?o > 1 ", 1, 26, "the query ends before this"),
     ("S\\u0045LECT * { ?s SERVICE ?o }", 1, 20, "SERVICE is refused"),
     ("\tASK { ?s foo:a ?o }", 1, 11, "foo"),
 ]
