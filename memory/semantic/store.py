@@ -257,6 +257,11 @@ class SemanticMemory(Closing):
         opened.require_writable()
         return opened
 
+    @property
+    def read_only(self) -> bool:
+        """True if the memory is in a folder that cannot be written."""
+        return self._open.read_only is not None
+
     def require_writable(self) -> None:
         """Raise ReadOnlyMemoryError if the memory is in a folder that cannot be written."""
         self._open.require_writable()
@@ -541,6 +546,29 @@ class SemanticMemory(Closing):
                 self._union = default_graph(self.store)
             found = run_query(self._answer, sparql, self._union, QueryLimits(time_limit, memory_limit))
             return replace(found, notes=notes_on(self.store, sparql))
+
+    def incomplete_layouts(self, sparql: str) -> tuple[str, ...]:
+        """Return the layouts whose implications a query asks for, and of which not all are stored.
+
+        Parameters
+        ----------
+        sparql
+            The query.
+
+        Returns
+        -------
+        tuple of str
+            Names of layouts, in order.
+
+        Raises
+        ------
+        QueryError
+            The query is refused or malformed.
+        """
+        from deixis.memory.semantic.queries.sparql import incomplete_layouts
+
+        with reading(self.path):
+            return incomplete_layouts(self.store, sparql)
 
     def dataset(self) -> rdflib.Dataset:
         """Return a live, read-only view of the six canonical graphs for rdflib.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
     from deixis.reasoning.description_logic.object_view import ObjectView
     from deixis.reasoning.grounding.evidence.meaning import Meaning
+
+COMPLETION_SHARE = 0.5
+"""Share of a query's time limit in which the implications of layouts are computed."""
 
 
 class KnowledgeStore(Closing):
@@ -320,6 +324,8 @@ class KnowledgeStore(Closing):
     ) -> QueryResult:
         """Run a SPARQL query over the memory.
 
+        The first query about what layouts imply stores it for the layouts that implied too much when they were learned.
+
         Parameters
         ----------
         sparql
@@ -341,7 +347,14 @@ class KnowledgeStore(Closing):
         QueryTimeoutError, QueryMemoryError
             If a limit is reached.
         """
-        return self.memory().query(sparql, time_limit, memory_limit)
+        memory, started = self.memory(), time.monotonic()
+        if time_limit > 0 and not memory.read_only and memory.incomplete_layouts(sparql):
+            from deixis.deadline import Deadline
+            from deixis.learning.update import complete_implications
+
+            complete_implications(memory, self.ontology, Deadline.after(COMPLETION_SHARE * time_limit))
+            time_limit = max(time_limit - (time.monotonic() - started), time_limit * (1 - COMPLETION_SHARE) / 2)
+        return memory.query(sparql, time_limit, memory_limit)
 
     def owl(self) -> ObjectView:
         """Return the ontology with everything learned as objects of owlready2.

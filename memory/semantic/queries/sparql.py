@@ -304,11 +304,32 @@ def require_terms(store: ox.Store, sparql: str) -> None:
         raise _Text(sparql).error(place, f"the vocabulary has no term 'dx:{name}'{hint}")
 
 
+def incomplete_layouts(store: ox.Store, sparql: str) -> tuple[str, ...]:
+    """Return the layouts whose implications a query asks for, and for which the memory does not store all of them.
+
+    Parameters
+    ----------
+    store
+        The memory.
+    sparql
+        An admitted query.
+
+    Returns
+    -------
+    tuple of str
+        Names of layouts in order; empty for a query that is not about relations or implied statements.
+    """
+    reading, about = ox.NamedNode(DX.READING), {DX.IMPLIED_STATEMENT, DX.RULE}
+    asked = (ox.NamedNode(term) for term, _ in _admitted(sparql).terms)
+    if not any(term.value in about or any(store.quads_for_pattern(term, reading, None)) for term in asked):
+        return ()
+    not_stored = store.quads_for_pattern(None, ox.NamedNode(DX.IMPLICATIONS_STORED), typed(False))
+    layouts = {quad.subject for quad in not_stored}
+    return tuple(sorted(layout.value.rpartition("/")[2] for layout in layouts if isinstance(layout, ox.NamedNode)))
+
+
 def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
     """Return notes on what an answer may lack.
-
-    A query about relations or implied statements finds no implications of layouts for which the memory does not store
-    all of them.
 
     Parameters
     ----------
@@ -322,13 +343,7 @@ def notes_on(store: ox.Store, sparql: str) -> tuple[str, ...]:
     tuple of str
         Sentences without a full stop; empty if the answer lacks nothing.
     """
-    reading, about = ox.NamedNode(DX.READING), {DX.IMPLIED_STATEMENT, DX.RULE}
-    asked = (ox.NamedNode(term) for term, _ in _admitted(sparql).terms)
-    if not any(term.value in about or any(store.quads_for_pattern(term, reading, None)) for term in asked):
-        return ()
-    not_stored = store.quads_for_pattern(None, ox.NamedNode(DX.IMPLICATIONS_STORED), typed(False))
-    layouts = {quad.subject for quad in not_stored}
-    names = sorted(layout.value.rpartition("/")[2] for layout in layouts if isinstance(layout, ox.NamedNode))
+    names = incomplete_layouts(store, sparql)
     if not names:
         return ()
     listed = ", ".join(names[:MAX_NAMED]) + (f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else "")

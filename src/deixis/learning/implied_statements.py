@@ -3,17 +3,22 @@
 A layout's firm facts, and what follows from them, relate its roles directly (``role dx:left role``), so that a query
 needs no rules. Each relation that is not stated is also a ``dx:ImpliedStatement`` with the last rule of its shortest
 derivation (``dx:rule``) and the stated facts that it rests on (``prov:wasDerivedFrom``). These triples are part of the
-inferred graph. They depend on one layout only, so the cost of a lesson does not depend on the other lessons.
+inferred graph. They depend on one layout only, so the cost of a lesson does not depend on the other lessons. A layout
+that implies much is left out when it is learned; the first query about implications adds what it implies
+(:func:`completion`).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
 import pyoxigraph as ox
 
+from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.memory.semantic.rdf.after import After
+from deixis.memory.semantic.rdf.change import Change, reconcluding
 from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.ontology.lessons.read import layouts
 from deixis.ontology.lessons.types import LayoutConcept
@@ -25,7 +30,10 @@ from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.implications import Implications
 
 MAX_IMPLIED = 1000
-"""Maximum number of implied statements of a layout that are stored; of a layout with more, none is."""
+"""Maximum number of implied statements of a layout that are stored when it is learned; of more, none is."""
+
+MAX_ON_DEMAND = 250_000
+"""Maximum number of triples about one layout that a query adds."""
 
 RULES = {
     Rule.INVERSE: iri(BASE + "inversion"),
@@ -43,7 +51,7 @@ SUBJECT, RELATION, OBJECT, RULE = iri(DX.SUBJECT), iri(DX.RELATION), iri(DX.OBJE
 DERIVED, STORED = iri(PROV.WAS_DERIVED_FROM), iri(DX.IMPLICATIONS_STORED)
 
 
-def implied_triples(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
+def implied_triples(layout: LayoutConcept, relations: Relations, most: float | None = None) -> Iterator[ox.Triple]:
     """Yield the relations between the roles of a layout that it states or implies, and the implied statements.
 
     What follows only by cases, from facts with alternatives or from denials, takes a search, and is left out.
@@ -54,6 +62,8 @@ def implied_triples(layout: LayoutConcept, relations: Relations) -> Iterator[ox.
         The layout.
     relations
         Relations of the ontology.
+    most
+        Number of implied statements above which none is yielded; default: :data:`MAX_IMPLIED`.
 
     Yields
     ------
@@ -64,7 +74,7 @@ def implied_triples(layout: LayoutConcept, relations: Relations) -> Iterator[ox.
         implications = Implications(layout.graph(relations), cases=False)
     except DeixisError:  # an imported layout whose facts are not about its roles
         return
-    few = implications.unstated() <= MAX_IMPLIED
+    few = implications.unstated() <= (MAX_IMPLIED if most is None else most)
     yield ox.Triple(iri(layout_iri(layout.lesson)), STORED, typed(few and not implications.demands.choices))
     if not few:
         return
@@ -107,9 +117,50 @@ def of_layouts(after: After, nodes: Iterable[object], relations: Relations) -> s
         assert isinstance(node, ox.NamedNode)
         parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
         said = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
+        whole = any(after.triples(GraphName.INFERRED, node, STORED, typed(True)))  # a query may have completed it
         for layout in layouts(said, relations):
-            found.update(implied_triples(layout, relations))
+            found.update(implied_triples(layout, relations, math.inf if whole else None))
     return found
+
+
+def completion(after: After, relations: Relations, deadline: Deadline) -> Change:
+    """Return the change that adds the implications of the layouts that were left out when they were learned.
+
+    Layouts with more than :data:`MAX_ON_DEMAND` triples, those with alternatives or denials, and those for which no
+    time is left stay as they are.
+
+    Parameters
+    ----------
+    after
+        The store.
+    relations
+        Relations of the ontology.
+    deadline
+        Time limit.
+
+    Returns
+    -------
+    Change
+        Change of the inferred graph; empty if there is nothing to add.
+    """
+    gone: set[ox.Triple] = set()
+    come: set[ox.Triple] = set()
+    for marked in list(after.triples(GraphName.INFERRED, None, STORED, typed(False))):
+        node = marked.subject
+        parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
+        said = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
+        for layout in layouts(said, relations):
+            added: list[ox.Triple] = []
+            for triple in implied_triples(layout, relations, math.inf):
+                added.append(triple)
+                if triple.predicate == STORED and triple == marked:  # alternatives or denials
+                    break
+                if len(added) > MAX_ON_DEMAND or deadline.passed:
+                    break
+            else:
+                gone.add(marked)
+                come.update(added)
+    return reconcluding(gone, come)
 
 
 def of_all_layouts(after: After, relations: Relations) -> set[ox.Triple]:

@@ -16,6 +16,8 @@ from urllib.parse import quote, unquote
 
 import pyoxigraph as ox
 
+from deixis.deadline import Deadline
+from deixis.learning.implied_statements import completion
 from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
 from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
 from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
@@ -432,6 +434,23 @@ def _share_graphs(store: ox.Store) -> list[ox.NamedNode]:
 def _kept_rows(store: ox.Store) -> set[ox.Triple]:
     """Return the stored counts, without what the graph says about itself."""
     return {quad.triple for quad in store.quads_for_pattern(None, None, None, COUNTED) if quad.subject != COUNTED}
+
+
+def complete_implications(memory: SemanticMemory, ontology: Ontology, deadline: Deadline) -> None:
+    """Store what the layouts imply that implied too much to store it when they were learned.
+
+    Parameters
+    ----------
+    memory
+        The open memory, which can be written.
+    ontology
+        The ontology.
+    deadline
+        Time limit; layouts whose implications are not computed in time stay as they are.
+    """
+    change = completion(After(memory.store), ontology.relations, deadline)
+    if change.operations:
+        memory.commit(change, memory.kept_up())
 
 
 def stale(store: ox.Store, ontology: Ontology) -> Iterator[str]:

@@ -1,1 +1,1 @@
-"""The robot: one memory and one blackboard over time, on which it sees, is told and shown, learns and checks."""
+"""The robot: one memory and one blackboard over time. It sees, hears, learns and checks tables."""

@@ -92,6 +92,7 @@ def test_answers_note_layouts_whose_implications_are_not_stored(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(implied_statements, "MAX_IMPLIED", 3)
+    monkeypatch.setattr(implied_statements, "MAX_ON_DEMAND", 10)
     with Session(tmp_path / "memory") as session:
         session.learn(example("formal_dinner.layout"), example("place_setting.scene.json"))
         found = session.query(FORKS)
@@ -100,6 +101,20 @@ def test_answers_note_layouts_whose_implications_are_not_stored(
         assert json.loads(found.to_json())["notes"] == [note]
         assert json.loads(session.query("ASK { ?s a dx:ImpliedStatement }").to_json())["notes"] == [note]
         assert session.query("SELECT ?l { ?l rdfs:subClassOf dx:Layout }").notes == ()
+
+
+def test_a_query_completes_a_layout_that_implies_much(session: Session, tmp_path: Path) -> None:
+    with pytest.MonkeyPatch.context() as patch, Session(tmp_path / "memory") as late:
+        patch.setattr(implied_statements, "MAX_IMPLIED", 3)
+        for script in ("formal_dinner.layout", "script1.layout"):
+            late.learn(example(script), example("place_setting.scene.json"))
+        found = late.query(FORKS)
+        assert not found.notes
+        assert sorted(map(str, found.rows)) == sorted(map(str, session.query(FORKS).rows))
+        assert not list(stale(late.memory().store, default_ontology()))
+        late.forget("formal_dinner-1")
+        assert not list(stale(late.memory().store, default_ontology()))
+        assert late.query("SELECT ?s { ?s a dx:ImpliedStatement }").rows
 
 
 def test_complete_answers_have_no_notes(session: Session) -> None:
