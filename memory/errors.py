@@ -91,3 +91,11 @@ class UnknownViewError(DeixisError, KeyError):
 
 class UnknownCategoryError(DeixisError, KeyError):
     """A category that the memory does not hold."""
+
+
+class EpisodeError(DeixisError, ValueError):
+    """A fluent or a change that the blackboard cannot hold."""
+
+
+class UnknownFluentError(DeixisError, KeyError):
+    """A fluent that the blackboard does not hold."""

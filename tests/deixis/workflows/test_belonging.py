@@ -47,7 +47,7 @@ def test_objects_that_changed_places_belong_in_each_others() -> None:
     assert found["knife"].mean(axis=0)[0] == pytest.approx(0.34, abs=0.005)
 
 
-def test_a_missing_object_belongs_beside_where_its_neighbour_should_be() -> None:
+def test_a_missing_object_belongs_beside_its_neighbours_place() -> None:
     laid = table(fork=(0.33, 0.0), knife=(-0.33, 0.0), spoon=None)
     found = places_of(deixis.check(deixis.read_script(text=SCRIPT), laid))
     assert found["spoon"][0, 0] > 0.35

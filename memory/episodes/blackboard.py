@@ -1,0 +1,543 @@
+"""The blackboard: fluents with a log of all changes, what holds now, what held when, and subscriptions.
+
+>>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> seen = Source(Origin.SEEN, "tracker")
+>>> with Blackboard.transient() as board:
+...     board.add(episodic("f1", ("cup", "on", "table"), start=2.0, source=seen), by="tracker")
+...     board.finish("f1", 5.0, by="tracker")
+...     [str(found.fluent) for found in board.holding(Pattern("cup"), 3.0, 4.0)], board.now()
+1
+2
+(['f1: on(cup, table) from [2, 2] to [5, 5]'], ())
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from datetime import UTC, datetime, timedelta
+from typing import Self
+
+from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
+from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, encode_logged
+from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
+from deixis.memory.episodes.intervals import endings_meeting, interval_keys
+from deixis.memory.episodes.keys import Keys, TransientKeys
+from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription, to_pattern
+from deixis.memory.errors import EpisodeError
+from deixis.memory.owner import Closing, ThreadLock
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
+
+FLUENT, LOG, SUBJECT, COUNTER, HEAD = b"f", b"l", b"s", b"n", b"#"
+"""First bytes of the keys: fluents by id, log entries by sequence number, ids by subject, counters, and the head."""
+
+_PAGE = 256  # log entries read at once
+
+
+class Blackboard(Closing):
+    """Fluents that one process owns, and its threads share.
+
+    Writes are atomic and have sequence numbers; readers see all of a write or nothing of it. Times are seconds since
+    ``origin``.
+    """
+
+    def __init__(self, keys: Keys, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> None:
+        self._keys = keys
+        self._lock = ThreadLock()
+        self._closed = False
+        self._report = report
+        self._troubles: list[str] = []
+        self._subscriptions: dict[str, Subscription] = {}
+        self._origin = self._begin(origin or datetime.now(UTC))
+        self._sequence = self._last_sequence()
+        endings = endings_meeting(keys, math.inf, math.inf)
+        self._open = {found.id: found for found in map(self._fluent, endings) if found is not None and found.is_open}
+
+    @classmethod
+    def transient(cls, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> Self:
+        """Return an empty blackboard in memory, which ends with the process.
+
+        Parameters
+        ----------
+        origin
+            Time from which seconds are counted; the present time by default.
+        report
+            Called with one line for each trouble of a subscriber, from its thread.
+
+        Returns
+        -------
+        Self
+            The blackboard; close it after use, which ends its subscriptions.
+        """
+        return cls(TransientKeys(), origin, report)
+
+    def close(self) -> None:
+        """End the subscriptions and release the store."""
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            subscriptions, self._subscriptions = list(self._subscriptions.values()), {}
+        for subscription in subscriptions:
+            subscription.cancel()
+        with self._lock:
+            self._keys.close()
+
+    @property
+    def origin(self) -> datetime:
+        """Time from which seconds are counted, in UTC."""
+        return self._origin
+
+    @property
+    def sequence(self) -> int:
+        """Sequence number of the last change; 0 if nothing was ever written."""
+        return self._sequence
+
+    def seconds(self, moment: datetime | None = None) -> float:
+        """Return a moment as seconds since the origin.
+
+        Parameters
+        ----------
+        moment
+            A moment with a time zone; the present by default.
+
+        Returns
+        -------
+        float
+            Seconds.
+        """
+        return ((moment or datetime.now(UTC)) - self._origin).total_seconds()
+
+    def moment(self, seconds: float) -> datetime:
+        """Return seconds since the origin as a moment in UTC.
+
+        Parameters
+        ----------
+        seconds
+            Seconds since the origin.
+
+        Returns
+        -------
+        datetime
+            The moment.
+        """
+        return self._origin + timedelta(seconds=seconds)
+
+    def new_id(self, prefix: str) -> str:
+        """Return an id that this memory has never given before: the prefix and a number from 1.
+
+        Parameters
+        ----------
+        prefix
+            Beginning of the id, such as ``t`` for tracked things.
+
+        Returns
+        -------
+        str
+            The id, such as ``t1``.
+
+        Raises
+        ------
+        EpisodeError
+            If the prefix is not printable text.
+        """
+        key = COUNTER + check_text(prefix, "the prefix of ids").encode()
+        with self._lock:
+            self._check_open()
+            number = int(self._keys.get(key) or b"0") + 1
+            self._keys.write({key: b"%d" % number})
+        return f"{prefix}{number}"
+
+    def write(self, *changes: Change, by: str) -> int:
+        """Write changes as one: all of them or, if one is refused, nothing.
+
+        Parameters
+        ----------
+        changes
+            Additions, ends, updates and deletions, which apply in order.
+        by
+            Name of the writer: a module or a person.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change. The changes are durable when the method returns.
+
+        Raises
+        ------
+        EpisodeError
+            If a change does not fit the blackboard.
+        UnknownFluentError
+            If a change concerns a fluent that is not there.
+        RejectedWriteError
+            If a shape is violated; the error names the shape and the reason.
+        """
+        check_text(by, "the writer")
+        with self._lock:
+            self._check_open()
+            if not changes:
+                return self._sequence
+            made = self._made(changes, by)
+            self._keys.write(self._pairs(made))
+            self._sequence = made[-1].sequence
+            for each in made:
+                if each.after is not None and each.after.is_open:
+                    self._open[each.id] = each.after
+                else:
+                    self._open.pop(each.id, None)
+            subscriptions = list(self._subscriptions.values())
+        for subscription in subscriptions:
+            subscription.notify()
+            subscription.check()
+        return made[-1].sequence
+
+    def add(self, fluent: EpisodicFluent, by: str) -> int:
+        """Add one fluent.
+
+        Parameters
+        ----------
+        fluent
+            The fluent, whose id must be new.
+        by
+            Name of the writer.
+
+        Returns
+        -------
+        int
+            Sequence number of the change.
+        """
+        return self.write(Add(fluent), by=by)
+
+    def finish(self, id: str, at: float | Bounds, by: str) -> int:
+        """State when a fluent ceased to hold.
+
+        Parameters
+        ----------
+        id
+            Id of the fluent.
+        at
+            Seconds since the origin, or bounds.
+        by
+            Name of the writer.
+
+        Returns
+        -------
+        int
+            Sequence number of the change.
+        """
+        return self.write(Finish(id, at), by=by)
+
+    def update(
+        self,
+        id: str,
+        *,
+        by: str,
+        statement: Statement | None = None,
+        start: float | Bounds | None = None,
+        finish: float | Bounds | None = None,
+        certainty: float | None = None,
+        source: Source | None = None,
+    ) -> int:
+        """Give a fluent new values.
+
+        Parameters
+        ----------
+        id
+            Id of the fluent.
+        by
+            Name of the writer.
+        statement, start, finish, certainty, source
+            New values; None leaves a value as it is.
+
+        Returns
+        -------
+        int
+            Sequence number of the change.
+        """
+        return self.write(Update(id, statement, start, finish, certainty, source), by=by)
+
+    def delete(self, id: str, by: str) -> int:
+        """Remove a fluent, as if it had never been stated; the log keeps it.
+
+        Parameters
+        ----------
+        id
+            Id of the fluent.
+        by
+            Name of the writer.
+
+        Returns
+        -------
+        int
+            Sequence number of the change.
+        """
+        return self.write(Delete(id), by=by)
+
+    def fluent(self, id: str) -> EpisodicFluent | None:
+        """Return one fluent.
+
+        Parameters
+        ----------
+        id
+            Its id.
+
+        Returns
+        -------
+        EpisodicFluent or None
+            The fluent; None if it is not on the blackboard.
+        """
+        with self._lock:
+            self._check_open()
+            return self._fluent(id.encode())
+
+    def holding(
+        self,
+        pattern: Pattern = ANYTHING,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        certainly: bool = False,
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what held in a window of time, found by an index of times.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        start, end
+            Ends of the window in seconds, which belong to it; by default it has no end on that side.
+        certainly
+            True for only those that held at some time of the window whatever their true ends are; by default, all that
+            may have held.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts and then ids.
+
+        Raises
+        ------
+        EpisodeError
+            If the window ends before it starts, or an end is not a number.
+        """
+        first, last = -math.inf if start is None else start, math.inf if end is None else end
+        if not first <= last:
+            raise EpisodeError(f"a window must not end before it starts, got {first:g} to {last:g} s")
+        with self._lock:
+            self._check_open()
+            endings: Iterator[bytes]
+            if pattern.subject is not None:
+                endings = self._of_subject(pattern.subject)
+            elif math.isinf(first) and math.isinf(last):
+                endings = (key[1:] for key in self._keys.between(FLUENT, _end(FLUENT)))
+            else:
+                endings = endings_meeting(self._keys, first, last)
+            data = [self._keys.get(FLUENT + ending) for ending in endings]
+        fluents = (decode_fluent(each) for each in data if each is not None)
+        return _in_order(
+            found
+            for found in fluents
+            if pattern.matches(found.statement)
+            and found.may_hold(first, last)
+            and (not certainly or found.must_hold(first, last))
+        )
+
+    def now(self, pattern: Pattern = ANYTHING) -> tuple[EpisodicFluent, ...]:
+        """Return the current situation: the fluents that have not finished.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts and then ids.
+        """
+        with self._lock:
+            self._check_open()
+            found = list(self._open.values())
+        return _in_order(each for each in found if pattern.matches(each.statement))
+
+    def changes(self, since: int = 0, pattern: Pattern = ANYTHING) -> Iterator[Logged]:
+        """Iterate over the log.
+
+        Parameters
+        ----------
+        since
+            Sequence number after which to begin.
+        pattern
+            Only changes of fluents that match it before or after the change.
+
+        Yields
+        ------
+        Logged
+            The changes in the order of their sequence numbers, including those written meanwhile.
+        """
+        for change in self._read_log(since):
+            if change.concerns(pattern):
+                yield change
+
+    def subscribe(self, name: str, pattern: Pattern, callback: Callback, since: int | None = None) -> Subscription:
+        """Call a function with each change that concerns a pattern, in order, in a thread of its own.
+
+        Parameters
+        ----------
+        name
+            Name of the subscriber, which no other may have.
+        pattern
+            Subject, predicate and object; None matches everything.
+        callback
+            Function that is called with each change. If it raises, it is called again with the same change later.
+        since
+            Sequence number after which to begin; by default, after the last change so far.
+
+        Returns
+        -------
+        Subscription
+            The subscription; cancel it to end it.
+
+        Raises
+        ------
+        EpisodeError
+            If another subscriber has the name.
+        """
+        check_text(name, "the name of a subscriber")
+        with self._lock:
+            self._check_open()
+            if name in self._subscriptions:
+                raise EpisodeError(f"a subscriber named '{name}' is there already; cancel it, or choose another name")
+            position = self._sequence if since is None else since
+            subscription = Subscription(
+                name, to_pattern(pattern), callback, position, self._read_log, lambda: self._sequence, self._trouble
+            )
+            self._subscriptions[name] = subscription
+        subscription.begin()
+        subscription.notify()
+        return subscription
+
+    def unsubscribe(self, name: str) -> None:
+        """End a subscription after its present call.
+
+        Parameters
+        ----------
+        name
+            Name of the subscriber; an unknown name does nothing.
+        """
+        with self._lock:
+            subscription = self._subscriptions.pop(name, None)
+        if subscription is not None:
+            subscription.cancel()
+
+    def subscribers(self) -> tuple[SubscriberState, ...]:
+        """Return the state of each subscriber.
+
+        Returns
+        -------
+        tuple of SubscriberState
+            Position, backlog and trouble, in the order of subscription.
+        """
+        with self._lock:
+            subscriptions = list(self._subscriptions.values())
+        for each in subscriptions:
+            each.check()
+        return tuple(each.state for each in subscriptions)
+
+    @property
+    def troubles(self) -> tuple[str, ...]:
+        """One line for each time that a subscriber was slow or raised, oldest first."""
+        return tuple(self._troubles)
+
+    def _trouble(self, line: str) -> None:
+        self._troubles.append(line)
+        if self._report is not None:
+            self._report(line)
+
+    def _begin(self, origin: datetime) -> datetime:
+        if origin.tzinfo is None:
+            raise EpisodeError(f"the origin of times must have a time zone, got {origin.isoformat()}")
+        stored = self._keys.get(HEAD)
+        if stored is not None:
+            return datetime.fromisoformat(stored.decode())
+        self._keys.write({HEAD: origin.astimezone(UTC).isoformat().encode()})
+        return origin.astimezone(UTC)
+
+    def _last_sequence(self) -> int:
+        known = int.from_bytes(self._keys.get(HEAD + b"sequence") or b"", "big")
+        return known
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise EpisodeError("the blackboard is closed")
+
+    def _fluent(self, ending: bytes) -> EpisodicFluent | None:
+        data = self._keys.get(FLUENT + ending)
+        return None if data is None else decode_fluent(data)
+
+    def _of_subject(self, subject: str) -> Iterator[bytes]:
+        first = _subject_key(subject, b"")
+        for key in self._keys.between(first, _end(first)):
+            yield key[len(first) :]
+
+    def _read_log(self, since: int) -> Iterator[Logged]:
+        while True:
+            with self._lock:
+                if self._closed or since >= self._sequence:
+                    return
+                last = min(since + _PAGE, self._sequence)
+                page = list(self._keys.items(_log_key(since + 1), _log_key(last + 1)))
+            for key, data in page:
+                yield decode_logged(int.from_bytes(key[1:], "big"), data)
+            since = last
+
+    def _made(self, changes: Sequence[Change], by: str) -> list[Logged]:
+        """Return the log entries of changes, which are not written yet."""
+        staged: dict[str, EpisodicFluent | None] = {}
+        last, written = self._sequence + len(changes), time.time()
+        made = []
+        for sequence, change in enumerate(changes, self._sequence + 1):
+            id = change.id
+            before = staged[id] if id in staged else self._fluent(id.encode())
+            staged[id] = after = change.applied(before)
+            made.append(Logged(sequence, last, by, written, KINDS[type(change)], before, after))
+        return made
+
+    def _pairs(self, made: Sequence[Logged]) -> dict[bytes, bytes | None]:
+        """Return the keys and values that record changes in the log, the fluents and the indexes."""
+        pairs: dict[bytes, bytes | None] = {HEAD + b"sequence": made[-1].sequence.to_bytes(8, "big")}
+        for each in made:
+            ending = each.id.encode()
+            before = None if each.before is None else encode_fluent(each.before)
+            after = None if each.after is None else encode_fluent(each.after)
+            if each.before is not None:
+                pairs.update(dict.fromkeys(_index_keys(each.before, ending)))
+            if each.after is not None:
+                pairs.update(dict.fromkeys(_index_keys(each.after, ending), b""))
+            pairs[FLUENT + ending] = after
+            pairs[_log_key(each.sequence)] = encode_logged(each.last, each.by, each.written, each.kind, before, after)
+        return pairs
+
+
+def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:
+    ends = interval_keys(fluent.start.lower, fluent.finish.upper, ending)
+    return *ends, _subject_key(fluent.statement.subject, ending)
+
+
+def _subject_key(subject: str, ending: bytes) -> bytes:
+    return SUBJECT + subject.encode() + b"\0" + ending
+
+
+def _log_key(sequence: int) -> bytes:
+    return LOG + sequence.to_bytes(8, "big")
+
+
+def _end(prefix: bytes) -> bytes:
+    """Return the smallest key above all that begin with a prefix, whose last byte is below 255."""
+    return prefix[:-1] + bytes([prefix[-1] + 1])
+
+
+def _in_order(fluents: Iterator[EpisodicFluent]) -> tuple[EpisodicFluent, ...]:
+    return tuple(sorted(fluents, key=lambda each: (each.start.lower, each.id)))

@@ -1,0 +1,122 @@
+"""Encode fluents and log entries as bytes, and decode them.
+
+>>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
+>>> decode_fluent(encode_fluent(cup)) == cup
+True
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from deixis.memory.episodes.changes import Kind, Logged
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source
+from deixis.reasoning.temporal.bounds import UNKNOWN, Bounds
+from deixis.reasoning.temporal.fluent import Fluent, Statement
+
+_write = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), check_circular=False).encode
+_ORIGINS = {origin.value: origin for origin in Origin}
+
+
+def encode_fluent(fluent: EpisodicFluent) -> bytes:
+    """Return a fluent as bytes.
+
+    Parameters
+    ----------
+    fluent
+        The fluent.
+
+    Returns
+    -------
+    bytes
+        A JSON array.
+    """
+    said, source = fluent.fluent.statement, fluent.source
+    ends = [_bounds(fluent.fluent.start), _bounds(fluent.fluent.finish)]
+    where = [source.origin.value, source.by, source.event]
+    values = [fluent.fluent.id, said.subject, said.predicate, said.object, *ends, fluent.certainty, *where]
+    return _write(values).encode()
+
+
+def decode_fluent(data: bytes) -> EpisodicFluent:
+    """Return the fluent that bytes stand for.
+
+    Parameters
+    ----------
+    data
+        Bytes that :func:`encode_fluent` returned.
+
+    Returns
+    -------
+    EpisodicFluent
+        The fluent.
+    """
+    return _fluent(json.loads(data))
+
+
+def encode_logged(last: int, by: str, written: float, kind: Kind, before: bytes | None, after: bytes | None) -> bytes:
+    """Return a log entry as bytes; its sequence number is its key.
+
+    Parameters
+    ----------
+    last
+        Sequence number of the last change of the same write.
+    by
+        Name of the writer.
+    written
+        Time of the write in seconds since 1970.
+    kind
+        Kind of the change.
+    before, after
+        The encoded fluent before and after the change.
+
+    Returns
+    -------
+    bytes
+        A JSON array.
+    """
+    head = _write([last, by, written, kind]).encode()
+    return b"%b,%b,%b]" % (head[:-1], before or b"null", after or b"null")
+
+
+def decode_logged(sequence: int, data: bytes) -> Logged:
+    """Return the log entry that bytes stand for.
+
+    Parameters
+    ----------
+    sequence
+        Sequence number of the change.
+    data
+        Bytes that :func:`encode_logged` returned.
+
+    Returns
+    -------
+    Logged
+        The log entry.
+    """
+    last, by, written, kind, before, after = json.loads(data)
+    fluents = (None if each is None else _fluent(each) for each in (before, after))
+    return Logged(sequence, last, by, written, kind, *fluents)
+
+
+def _fluent(values: list[Any]) -> EpisodicFluent:
+    id, subject, predicate, object, start, finish, certainty, origin, by, event = values
+    fluent = Fluent(id, Statement(subject, predicate, object), _read(start), _read(finish))
+    return EpisodicFluent(fluent, certainty, Source(_ORIGINS[origin], by, event))
+
+
+def _bounds(bounds: Bounds) -> list[Any] | float | None:
+    """Return null for an unknown time, a number for a known one, or else both bounds and what is open."""
+    if bounds.lower == bounds.upper:
+        return bounds.lower
+    if bounds == UNKNOWN:
+        return None
+    return [bounds.lower, bounds.upper, bounds.lower_open, bounds.upper_open]
+
+
+def _read(values: Any) -> Bounds:
+    if values is None:
+        return UNKNOWN
+    return Bounds(*values) if isinstance(values, list) else Bounds(values, values)
