@@ -33,6 +33,9 @@ SNAPSHOT = "semantic.snapshot"
 PERCEPTUAL = "perceptual"
 """Folder of the perceptual memory, which may exist before the semantic store."""
 
+EPISODES = "episodes"
+"""Folder of the blackboard, which may exist before the semantic store."""
+
 Migration = Callable[[ox.Store, ox.Store], None]
 """A function that fills a new store from one of an older format."""
 
@@ -79,7 +82,7 @@ def inspect(folder: Path) -> FolderState:
         return FolderState.MEMORY
     if STORE in names and NEW_MARK in names:
         return FolderState.UNFINISHED
-    if names <= {LOCK_FILE, NEW, NEW_MARK, SNAPSHOT, PERCEPTUAL}:
+    if names <= {LOCK_FILE, NEW, NEW_MARK, SNAPSHOT, PERCEPTUAL, EPISODES}:
         return FolderState.EMPTY
     if STORE in names and (folder / STORE / "CURRENT").is_file():
         raise MemoryFormatError(

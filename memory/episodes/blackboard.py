@@ -14,18 +14,23 @@
 from __future__ import annotations
 
 import math
+import os
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from typing import Self
 
 from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, encode_logged
+from deixis.memory.episodes.disk import DiskKeys
 from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
 from deixis.memory.episodes.intervals import endings_meeting, interval_keys
 from deixis.memory.episodes.keys import Keys, TransientKeys
 from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription, to_pattern
 from deixis.memory.errors import EpisodeError
+from deixis.memory.folder import EPISODES, inspect
 from deixis.memory.owner import Closing, ThreadLock
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
@@ -34,6 +39,9 @@ FLUENT, LOG, SUBJECT, COUNTER, HEAD = b"f", b"l", b"s", b"n", b"#"
 """First bytes of the keys: fluents by id, log entries by sequence number, ids by subject, counters, and the head."""
 
 _PAGE = 256  # log entries read at once
+
+_shared: dict[Path, Blackboard] = {}
+_sharing = threading.Lock()
 
 
 class Blackboard(Closing):
@@ -47,13 +55,13 @@ class Blackboard(Closing):
         self._keys = keys
         self._lock = ThreadLock()
         self._closed = False
+        self._users = 1
         self._report = report
         self._troubles: list[str] = []
         self._subscriptions: dict[str, Subscription] = {}
         self._origin = self._begin(origin or datetime.now(UTC))
         self._sequence = self._last_sequence()
-        endings = endings_meeting(keys, math.inf, math.inf)
-        self._open = {found.id: found for found in map(self._fluent, endings) if found is not None and found.is_open}
+        self._open = self._unfinished()
 
     @classmethod
     def transient(cls, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> Self:
@@ -73,10 +81,68 @@ class Blackboard(Closing):
         """
         return cls(TransientKeys(), origin, report)
 
+    @classmethod
+    def open(
+        cls,
+        path: str | Path,
+        create: bool = False,
+        origin: datetime | None = None,
+        report: Callable[[str], None] | None = None,
+        sync: bool = False,
+    ) -> Blackboard:
+        """Open the blackboard of a memory, or make one; all who open one folder in this process share it.
+
+        Parameters
+        ----------
+        path
+            Folder of the memory.
+        create
+            True to make a blackboard where there is none.
+        origin
+            Time from which a new blackboard counts seconds; the present time by default.
+        report
+            Called with one line for each trouble of a subscriber, from its thread.
+        sync
+            True to make each write survive a power cut too, not only the end of the process.
+
+        Returns
+        -------
+        Blackboard
+            The blackboard, which this process owns until its last user closes it.
+
+        Raises
+        ------
+        MemoryBusyError
+            If another process has it open.
+        MemoryFormatError
+            If there is no blackboard, or the folder is not that of a memory.
+        MemoryWriteError
+            If the folder cannot be written.
+        """
+        inspect(Path(path))
+        real = Path(os.path.realpath(path)) / EPISODES
+        with _sharing:
+            if real in _shared and not _shared[real]._closed:
+                board = _shared[real]
+                board._users += 1
+                return board
+            keys = DiskKeys.open(real, create, sync)
+            try:
+                board = _shared[real] = cls(keys, origin, report)
+            except BaseException:
+                keys.close()
+                raise
+            if keys.lost:
+                board._trouble(
+                    f"{keys.lost} acknowledged writes to the episodes at {real} are missing: its log is damaged"
+                )
+            return board
+
     def close(self) -> None:
-        """End the subscriptions and release the store."""
-        with self._lock:
-            if self._closed:
+        """End the subscriptions and release the store, if there is no other user of it in this process."""
+        with _sharing, self._lock:
+            self._users -= 1
+            if self._closed or self._users > 0:
                 return
             self._closed = True
             subscriptions, self._subscriptions = list(self._subscriptions.values()), {}
@@ -145,7 +211,7 @@ class Blackboard(Closing):
         """
         key = COUNTER + check_text(prefix, "the prefix of ids").encode()
         with self._lock:
-            self._check_open()
+            self._begin_write()
             number = int(self._keys.get(key) or b"0") + 1
             self._keys.write({key: b"%d" % number})
         return f"{prefix}{number}"
@@ -176,7 +242,7 @@ class Blackboard(Closing):
         """
         check_text(by, "the writer")
         with self._lock:
-            self._check_open()
+            self._begin_write()
             if not changes:
                 return self._sequence
             made = self._made(changes, by)
@@ -466,8 +532,17 @@ class Blackboard(Closing):
         return origin.astimezone(UTC)
 
     def _last_sequence(self) -> int:
-        known = int.from_bytes(self._keys.get(HEAD + b"sequence") or b"", "big")
-        return known
+        return int.from_bytes(self._keys.get(HEAD + b"sequence") or b"", "big")
+
+    def _unfinished(self) -> dict[str, EpisodicFluent]:
+        endings = endings_meeting(self._keys, math.inf, math.inf)
+        return {found.id: found for found in map(self._fluent, endings) if found is not None and found.is_open}
+
+    def _begin_write(self) -> None:
+        """Check that the blackboard can be written, and read its state again if an earlier write failed."""
+        self._check_open()
+        if self._keys.restored():
+            self._sequence, self._open = self._last_sequence(), self._unfinished()
 
     def _check_open(self) -> None:
         if self._closed:

@@ -164,8 +164,8 @@ class Logged:
     """One change in the log.
 
     Sequence numbers count from 1 without gaps. ``last`` is the sequence number of the last change of the same write,
-    and ``written`` the time of the write in seconds since 1970. ``before`` is None if the fluent was added, ``after`` is
-    None if it was deleted.
+    and ``written`` the time of the write in seconds since 1970. ``before`` is None if the fluent was added, ``after``
+    is None if it was deleted.
     """
 
     sequence: int
@@ -194,7 +194,7 @@ class Logged:
         Returns
         -------
         bool
-            True if a subscriber to the pattern is told of the change.
+            True if subscribers to the pattern get the change.
         """
         return any(fluent is not None and pattern.matches(fluent.statement) for fluent in (self.before, self.after))
 

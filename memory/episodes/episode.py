@@ -20,7 +20,7 @@ MAX_TEXT = 100_000
 
 
 class Origin(Enum):
-    """How a fluent became known."""
+    """Ways in which a fluent can become known."""
 
     SEEN = "seen"
     SHOWN = "shown"

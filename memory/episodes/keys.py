@@ -28,6 +28,10 @@ class Keys(Protocol):
         """Iterate over keys and values from ``first`` up to ``stop``, without ``stop``, in order."""
         ...
 
+    def restored(self) -> bool:
+        """Open the store again if a write failed; return whether its content may differ from what was read before."""
+        ...
+
     def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
         """Write keys with their values, and delete those with None, all or nothing."""
         ...
@@ -111,6 +115,16 @@ class TransientKeys:
                 if key not in self._values:
                     self._new.append(key)
                 self._values[key] = value
+
+    def restored(self) -> bool:
+        """Return False: a write in memory does not fail.
+
+        Returns
+        -------
+        bool
+            False.
+        """
+        return False
 
     def close(self) -> None:
         """Do nothing: the content ends with the object."""

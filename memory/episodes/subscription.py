@@ -22,7 +22,7 @@ MAX_PAUSE = 5.0
 
 
 class Condition(Enum):
-    """What a subscriber is doing."""
+    """State of a subscriber: waiting, in a call, in a long call, raising, or ended."""
 
     WAITING = "waiting"
     WORKING = "working"
@@ -147,15 +147,19 @@ class Subscription:
         while not self._ended.is_set():
             self._wake.wait()
             self._wake.clear()
-            while self._position < self._last() and not self._ended.is_set():
+            while self._position < (last := self._last()) and not self._ended.is_set():
                 for change in self._read(self._position):
-                    if self._ended.is_set() or not self._told(change):
+                    if self._ended.is_set() or not self._accepted(change):
                         return
-                    with self._moved:
-                        self._position = change.sequence
-                        self._moved.notify_all()
+                    self._move(change.sequence)
+                self._move(last)  # past changes that a damaged log has lost
 
-    def _told(self, change: Logged) -> bool:
+    def _move(self, position: int) -> None:
+        with self._moved:
+            self._position = max(self._position, position)
+            self._moved.notify_all()
+
+    def _accepted(self, change: Logged) -> bool:
         """Call the callback until it returns; return False if the subscription ended before."""
         pause = 0.05
         while not self._ended.is_set():
