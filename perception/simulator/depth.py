@@ -9,17 +9,19 @@ shadow of the projector, and the effect of glass on infrared light.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.depth import back_projected
+from deixis.perception.clouds.depth import Intrinsics, back_projected
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.camera import Camera
 from deixis.perception.simulator.laying import LaidTable
-from deixis.perception.simulator.rays import RayCaster
+from deixis.perception.simulator.rays import Hits, RayCaster
+from deixis.perception.simulator.tableware import Colour
 
 NOISE = 1.425e-3
 """Standard deviation in metres of the depth at 1 m; it grows with the square of the depth."""
@@ -156,17 +158,41 @@ def look(caster: RayCaster, camera: Camera, sensor: DepthSensor, rng: np.random.
     Look
         Points in the camera's frame, with the mesh and the shade of each pixel.
     """
-    rays = camera.directions()
-    turned = rays @ camera.pose[:3, :3].T
-    hits = caster.cast(camera.eye, turned)
+    turned = camera.directions() @ camera.pose[:3, :3].T
+    return measured_look(caster.cast(camera.eye, turned), turned, camera.lens, sensor, rng)
+
+
+def measured_look(
+    hits: Hits, rays: NDArray[np.float64], lens: Intrinsics, sensor: DepthSensor, rng: np.random.Generator
+) -> Look:
+    """Return the image that a sensor measures, from the first hits of the rays of all pixels.
+
+    Parameters
+    ----------
+    hits
+        First hits of r rays, one for each pixel, row by row.
+    rays
+        Directions of the rays in the table's frame, shape (r, 3), of length 1 along the optical axis.
+    lens
+        Intrinsics of the camera.
+    sensor
+        Errors of the depths.
+    rng
+        Source of these errors.
+
+    Returns
+    -------
+    Look
+        Points in the camera's frame, with the mesh and the shade of each pixel.
+    """
     seen = np.flatnonzero(hits.mesh >= 0)
-    length = np.linalg.norm(turned[seen], axis=1)
-    cosine = -np.einsum("ij,ij->i", turned[seen], hits.normals[seen]) / length
+    length = np.linalg.norm(rays[seen], axis=1)
+    cosine = -np.einsum("ij,ij->i", rays[seen], hits.normals[seen]) / length
     depth = sensor.measured(hits.distance[seen].astype(np.float64), rng)
     kept = ~sensor.lost(cosine, rng) & (depth > 0)
     image = np.full(len(rays), np.nan)
     image[seen[kept]] = depth[kept]
-    points = back_projected(image.reshape(camera.lens.height, camera.lens.width), camera.lens)
+    points = back_projected(image.reshape(lens.height, lens.width), lens)
     mesh = np.full(len(rays), NOTHING, dtype=np.int32)
     mesh[seen[kept]] = hits.mesh[seen[kept]]
     shade = np.zeros(len(rays))
@@ -203,14 +229,40 @@ def see(table: LaidTable, camera: Camera, sensor: DepthSensor | None = None, see
     rng = np.random.default_rng(seed)
     sensor = sensor or DepthSensor()
     found = look(RayCaster([table.top.mesh, *(thing.mesh for thing in table.things)]), camera, sensor, rng)
-    palette = np.array([table.top.colour, *(thing.colour for thing in table.things), (0, 0, 0)], dtype=np.float64)
-    colours = palette[found.mesh] * found.shade[:, None] + rng.normal(0, sensor.colour_noise, found.points.shape)
+    return coloured(found, [table.top.colour, *(thing.colour for thing in table.things)], camera.lens, sensor, rng)
+
+
+def coloured(
+    found: Look, palette: Sequence[Colour], lens: Intrinsics, sensor: DepthSensor, rng: np.random.Generator
+) -> PointCloud:
+    """Return an image of meshes as an organised cloud with colours, whose labels are the numbers of the meshes.
+
+    Parameters
+    ----------
+    found
+        Image of meshes.
+    palette
+        Colour of each mesh.
+    lens
+        Intrinsics of the camera.
+    sensor
+        Errors of the colours.
+    rng
+        Source of these errors.
+
+    Returns
+    -------
+    PointCloud
+        Cloud in the camera's frame, in metres.
+    """
+    colours = np.array([*palette, (0, 0, 0)], dtype=np.float64)[found.mesh] * found.shade[:, None]
+    colours += rng.normal(0, sensor.colour_noise, found.points.shape)
     colours[found.mesh < 0] = 0.0
     return PointCloud(
         found.points,
         colours=np.clip(colours, 0, 255).astype(np.uint8),
         labels=found.mesh,
-        organised=(camera.lens.height, camera.lens.width),
+        organised=(lens.height, lens.width),
     )
 
 

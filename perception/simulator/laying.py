@@ -255,19 +255,50 @@ def lay(placements: Iterable[Placement], top: TableTop | None = None, ontology: 
     things: list[LaidThing] = []
     boxes: list[PlanBox] = []
     for placement in placements:
-        if any(thing.name == placement.name for thing in things):
-            raise SimulationError(f"'{placement.name}' is placed twice; give every thing its own name")
-        if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
-            raise SimulationError(
-                f"the place of '{placement.name}' must be finite, got {placement.x}, {placement.y}, yaw {placement.yaw}"
-            )
-        laid, soft = _upright(placement, ontology)
-        mesh = moved(laid.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
-        own = plan_box(mesh)
-        below = [other.mesh for other, box in zip(things, boxes, strict=True) if overlap_in_plan(own, box)]
-        things.append(replace(laid, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below)))
+        things.append(_set_down(placement, things, boxes, ontology))
         boxes.append(plan_box(things[-1].mesh))
     return LaidTable(top or top_under(things), tuple(things))
+
+
+def set_down(placement: Placement, things: Sequence[LaidThing], ontology: Ontology | None = None) -> LaidThing:
+    """Return a thing set down on the table or on the things that lie there already.
+
+    Parameters
+    ----------
+    placement
+        Thing to set down.
+    things
+        Things that lie there already.
+    ontology
+        Kinds and their sizes; by default :func:`default_ontology`.
+
+    Returns
+    -------
+    LaidThing
+        The thing with its mesh in the table's frame, in metres.
+
+    Raises
+    ------
+    SimulationError
+        If its name is used already, its kind is not known, or its position is not finite.
+    """
+    return _set_down(placement, things, [plan_box(thing.mesh) for thing in things], ontology or default_ontology())
+
+
+def _set_down(
+    placement: Placement, things: Sequence[LaidThing], boxes: Sequence[PlanBox], ontology: Ontology
+) -> LaidThing:
+    if any(thing.name == placement.name for thing in things):
+        raise SimulationError(f"'{placement.name}' is placed twice; give every thing its own name")
+    if not np.isfinite([placement.x, placement.y, placement.yaw]).all():
+        raise SimulationError(
+            f"the place of '{placement.name}' must be finite, got {placement.x}, {placement.y}, yaw {placement.yaw}"
+        )
+    laid, soft = _upright(placement, ontology)
+    mesh = moved(laid.mesh, placement.yaw, by=(placement.x, placement.y, 0.0))
+    own = plan_box(mesh)
+    below = [other.mesh for other, box in zip(things, boxes, strict=True) if overlap_in_plan(own, box)]
+    return replace(laid, mesh=draped(mesh, below, CLOTH_CELL) if soft else lowered(mesh, below))
 
 
 def _upright(placement: Placement, ontology: Ontology) -> tuple[LaidThing, bool]:

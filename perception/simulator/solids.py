@@ -83,7 +83,7 @@ def ringed(rings: NDArray[np.float64], first: ArrayLike | None = None, last: Arr
     return Mesh(vertices, np.concatenate([skin, below, above]).astype(np.int32))
 
 
-def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16) -> Mesh:
+def tube(path: NDArray[np.float64], width: ArrayLike, depth: ArrayLike, sides: int = 16) -> Mesh:
     """Return a bar of elliptic section along a path in the plane x = 0.
 
     Parameters
@@ -91,9 +91,9 @@ def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16)
     path
         Points of shape (s, 3), in metres.
     width
-        Diameter along x in metres.
+        Diameter along x in metres; one for all points or one for each, shape (s,).
     depth
-        Diameter across the path in the plane x = 0, in metres.
+        Diameter across the path in the plane x = 0, in metres; one for all points or one for each, shape (s,).
     sides
         Number of sides of each ring.
 
@@ -106,8 +106,9 @@ def tube(path: NDArray[np.float64], width: float, depth: float, sides: int = 16)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     across = np.stack([np.zeros(len(path)), along[:, 2], -along[:, 1]], axis=1)
     angles = 2 * np.pi * np.arange(sides) / sides
-    rings = path[:, None] + depth / 2 * np.sin(angles)[None, :, None] * across[:, None]
-    rings[..., 0] += width / 2 * np.cos(angles)
+    wide, deep = (np.broadcast_to(np.asarray(side, dtype=np.float64), len(path)) / 2 for side in (width, depth))
+    rings = path[:, None] + deep[:, None, None] * np.sin(angles)[None, :, None] * across[:, None]
+    rings[..., 0] += wide[:, None] * np.cos(angles)
     return ringed(rings)
 
 
