@@ -46,6 +46,7 @@ class Assembly:
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
+    is_lost: bool = False  # True if the clause before has an object and was not understood
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -128,6 +129,9 @@ class Assembly:
         if built.shape in ("fragment", "search", "other"):
             self._fragment(built, subject, said, link, span, mood)
             return
+        if built.shape == "said" and subject is None and self.is_lost and link == "," and not built.verbs:
+            misunderstood(span, "the clause that this belongs to is not understood")
+            return
         if built.shape == "said" and subject is None:
             self._said(built, said, link, span, mood)
             return
@@ -138,6 +142,7 @@ class Assembly:
             return
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
         person = subject.phrase.pronoun in _PEOPLE
+        known = len(self.clauses)
         for i, verb in enumerate(verbs):
             front = said if i == 0 else ()
             if verb.thing is not None and verb.group.lemma in _PLACING and not _UNDONE.isdisjoint(verb.group.adverbs):
@@ -157,6 +162,8 @@ class Assembly:
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
             self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
+        told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
+        self.is_lost = told and len(self.clauses) == known
 
     def finish(self) -> Found:
         """Return the clauses; a single noun phrase without a clause is the fragment of the sentence.

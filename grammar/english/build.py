@@ -232,6 +232,7 @@ class Builder(Transformer[Any, Built]):
 
     def top(self, nps: Noun, *joined: Any) -> Noun:
         """Return a noun phrase with what commas and *and* join to it."""
+        nps, joined = (whole := _with_own_parts((nps, *joined)))[0], whole[1:]
         phrase, extra = nps.phrase, nps.extra
         for joint, mods in zip(joined[::2], joined[1::2], strict=True):
             if joint.type == "OJ":
@@ -263,6 +264,10 @@ class Builder(Transformer[Any, Built]):
         if len(parts) == 1:
             only: Noun = parts[0]
             return only
+        parts = _with_own_parts(parts)
+        if len(parts) == 1:
+            single: Noun = parts[0]
+            return single
         members = [part.phrase for part in parts[::2]]
         joints = [part.value for part in parts[1::2]]
         first = members[0]
@@ -574,6 +579,24 @@ def flat(verb: Verb) -> list[Predicate]:
     if verb.group.adverbs:
         found = [replace(p, adverbs=(*verb.group.adverbs, *p.adverbs)) for p in found]
     return found
+
+
+def _with_own_parts(parts: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Join *its nozzle turned towards the viewer* to the thing before it, of which it is a part."""
+    kept: list[Any] = [parts[0]]
+    for joint, part in zip(parts[1::2], parts[2::2], strict=True):
+        phrase = part.phrase if isinstance(part, Noun) else None
+        before = kept[-1]
+        said = phrase.predicates if phrase is not None else ()
+        aims = bool(said) and all(p.relation in ("facing", "pointing", "state") for p in said)
+        owner = None if phrase is None or phrase.owner is None else phrase.owner.pronoun
+        if phrase is not None and aims and owner == "it" and before.phrase.head:
+            bare = replace(phrase, predicates=())
+            said = tuple(replace(p, subject_part=bare) for p in said)
+            kept[-1] = Noun(_restricted(before.phrase, said), (*before.extra, *part.extra))
+        else:
+            kept += [joint, part]
+    return tuple(kept)
 
 
 def _with_shared_place(phrase: NounPhrase) -> tuple[NounPhrase, ...]:
@@ -1009,8 +1032,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "inside"
     elif lemma in ("divide", "split", "separate", "cut", "break") and relation in ("inside", "near", "by"):
         relation = "through"
-    elif relation == "by" and lemma not in _PASSIVES and kind not in ("posture", "lean", "be", "face", "point"):
-        relation = "through"  # 'sorted by price' names no place
+    elif relation == "by" and lemma not in _PASSIVES and lemma not in _STAYING:
+        relation = "through"  # 'sorted by price', 'hidden by the lamp' name no place
     elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
         return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
     positive = following.positive if marker.positive else not following.positive
@@ -1034,6 +1057,11 @@ def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tupl
     return None
 
 
+_STAYING = word_set(
+    "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
+    " lean prop nestle perch find see go come wait live stop linger belong be"
+)
+"""Verbs after which *by* means *near*."""
 _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
 """Verbs after which *over* means *on*."""
 _PASSIVES = {

@@ -6,16 +6,17 @@ of ``english.lark``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
 from deixis.grammar.english.known_nouns import KnownNouns
 from deixis.grammar.english.phrases import NounChunker, is_known
 from deixis.grammar.english.tokens import Word
-from deixis.grammar.english.tree import Degree, NounPhrase, Span
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.words import (
     ADVERBS,
+    CHAT_WORDS,
     DEGREE_ADVERBS,
     DIRECTION_WORDS,
     FACE_VERBS,
@@ -30,6 +31,7 @@ from deixis.grammar.english.words import (
     PLACE_NOUNS,
     PRONOUNS,
     PUT_VERBS,
+    REPORTS,
     UNITS,
     Preposition,
     is_adjective,
@@ -83,86 +85,6 @@ class Relator:
     adverbs: tuple[str, ...] = ()
     rank: int | None = None
     positive: bool = True
-
-
-def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks with *on which* resolved.
-
-    *The chair on which the coat hangs* is read as *the chair that the coat hangs on*, and *a board on which there are
-    two onions* as two clauses, of which the second says *on the board there are two onions*.
-    """
-    found: list[Chunk] = []
-    waiting: Chunk | None = None
-    for i, chunk in enumerate(chunks):
-        following = chunks[i + 1] if i + 1 < len(chunks) else None
-        which = following is not None and following.type == "NP" and following.value.pronoun == "which"
-        if chunk.type == "PREP" and which and found and i + 2 < len(chunks):
-            if chunks[i + 2].type == "NP" and chunks[i + 2].value.pronoun not in ("me", "you", "we", "someone"):
-                found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
-                waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
-                continue
-            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
-            if before is not None:
-                found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
-        elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
-            if waiting is not None and chunks[i - 1].span == waiting.span:
-                continue
-            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
-            if before is not None:
-                value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
-                chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
-        found.append(chunk)
-        if waiting is not None and chunk.type in ("VERB", "BE"):
-            found.append(waiting)
-            waiting = None
-    return found
-
-
-def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks with the relative pronoun of *the book I am reading* put in."""
-    found: list[Chunk] = []
-    for i, chunk in enumerate(chunks):
-        contact = (
-            chunk.type == "NP"
-            and chunk.value.pronoun in ("me", "you", "we", "he", "she")
-            and found
-            and found[-1].type == "NP"
-            and bool(found[-1].value.head)
-            and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
-            and i + 1 < len(chunks)
-            and chunks[i + 1].type in FINITE
-        )
-        if contact:
-            found.append(Chunk("REL", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
-        found.append(chunk)
-    return found
-
-
-def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
-    """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
-    found: list[Chunk] = []
-    for i, chunk in enumerate(chunks):
-        ends = i + 1 == len(chunks) or chunks[i + 1].type in _JOINT_TYPES | {"OF"}
-        aside = (
-            len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
-            and i + 1 < len(chunks) and chunks[i + 1].type == "COMMA"
-        )  # fmt: skip
-        if (
-            chunk.type == "NP"
-            and ends
-            and found
-            and (found[-1].type in ("NP", "COLON") or (aside and chunk.value.adjectives))
-            and chunk.value.head in PLACE_NOUNS
-            and chunk.value.determiner is None
-            and chunk.value.owner is None
-            and not chunk.value.plural
-            and any(other.type == "NP" for other in found)
-            and not any(other.type in FINITE for other in found)
-        ):
-            at = Relator(Preposition("at", "at"))
-            found.append(Chunk("PREP", chunk.start, chunk.start, at, (chunk.span[0], chunk.span[0])))
-        found.append(chunk)
-    return found
 
 
 @dataclass(slots=True)
@@ -232,7 +154,7 @@ class Chunker:
             chunk.span = self.words[at].start, self.words[chunk.end - 1].end
             self.chunks.append(chunk)
             at = chunk.end
-        return _with_telegraphic_places(_with_contact_clauses(_with_relative_places(self.chunks)))
+        return self.chunks
 
     def _previous(self) -> str:
         return self.chunks[-1].type if self.chunks else ""
@@ -277,7 +199,7 @@ class Chunker:
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase and not (
-                (phrase == ("that", "is") and self.norms[at - 1] != ",")
+                (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
                 or (phrase == ("above", "all") and self.norms[end] != ",")
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
@@ -340,6 +262,10 @@ class Chunker:
             if wished is not None:
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 return Chunk("CUT" if alone else "ADVERB", at, wished, "you want")
+        if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "like" and self._previous() in ("BE", "TVERB") and self.nouns.number(at + 1) is not None:
+            return Chunk("ADVERB", at, at + 1, norm)  # 'there's like three hoodies'
         if (
             norm in GREETINGS
             and self._previous() in ("", "ADVERB")
@@ -529,6 +455,12 @@ class Chunker:
             return Chunk("SUB", at, at + 1 + (after == "that"), "if")
         if at == 0 and norm == "let" and "be" in self.norms:
             return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "cause" and (after in PRONOUNS or after in ("there", "theres")):
+            return Chunk("SUB", at, at + 1, "because")
+        if norm == "so" and previous in FINITE and (is_adjective(after) or self._match(at + 1) is not None):
+            return None  # 'stood so close to it'
+        if norm in _WHOEVER:
+            return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
             return Chunk("SUB", at, at + 1, norm)
         if norm in ("before", "after") and (after in ("you", "we", "i") or after.endswith("ing")):
@@ -786,7 +718,7 @@ class Chunker:
         if self._denied is not None and self._previous() in ("NP", "ADVERB"):
             return self._denied_verb(at)
         i, adverbs, modal, positive, past = at, [], None, True, False
-        while self.norms[i] in ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "never":
+        while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
             if self.norms[i] == "never":
                 positive = False
             else:
@@ -887,6 +819,8 @@ class Chunker:
         norm = self.norms[i]
         form = self._verbs.get(norm)
         helped = i > first
+        if norm in REPORTS and self.norms[i + 1] == "that" and self._previous() == "NP":
+            return Chunk("COMPLEMENT", at, i + 2, replace(_with(group, norm, "other", "s"), modal="might"))
         if helped and (form is None or form.form not in ("base",)) and group.modal is None and not group.past:
             form = form if form is not None and form.form in ("base", "past", "participle") else None
             if form is None:
@@ -922,6 +856,8 @@ class Chunker:
             return self._unknown_participle(at, i, group)
         found = _with(group, form.lemma, form.kind, form.form)
         end = i + 1
+        if form.kind == "posture" and self.norms[end] in _PARTICLES and self.nouns.is_determiner(end + 1):
+            end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
         phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
         if phrasal is not None:
             found, end = _with(group, *phrasal, form.form), end + 1
@@ -929,7 +865,7 @@ class Chunker:
         if not helped and self._inverts(form.form, i):
             return Chunk("ADVERB", at, end, norm)
         if helped:
-            if self.norms[first] == "do" and self._previous() in _JOINT_TYPES | {"", "ADVERB"}:
+            if self.norms[first] == "do" and self._previous() in JOINT_TYPES | {"", "ADVERB"}:
                 kind = "FIND" if norm in FIND_VERBS else "PUT" if norm in PUT_VERBS or form.kind == "posture" else "DO"
                 return Chunk(kind, at, end, found)
             return self._finite(at, end, found)
@@ -951,7 +887,7 @@ class Chunker:
         if (
             norm in _BEGINNING
             and self.norms[end] in ("with", "by")
-            and self._previous() in _JOINT_TYPES | {"", "ADVERB"}
+            and self._previous() in JOINT_TYPES | {"", "ADVERB"}
         ):
             return Chunk("DO", at, end + 1, found)
         if norm in PAST_ONLY:
@@ -962,6 +898,8 @@ class Chunker:
             subject = self.chunks[-1].value
             if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
                 return self._finite(at, end, found)  # 'I hung the mirror on the pole'
+        if form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS:
+            return self._finite(at, end, found)  # 'the cups you asked about'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
@@ -1027,7 +965,7 @@ class Chunker:
     def _only_places(self) -> bool:
         """Return True if only places stand before in the clause: *to the left of it put …*."""
         first = len(self.chunks)
-        while first > 0 and self.chunks[first - 1].type not in _JOINT_TYPES:
+        while first > 0 and self.chunks[first - 1].type not in JOINT_TYPES:
             first -= 1
         types = [chunk.type for chunk in self.chunks[first:]]
         places = types.count("PREP") + types.count("OF")
@@ -1040,7 +978,7 @@ class Chunker:
         if not (self.nouns.is_determiner(at + 1) or self.nouns.number(at + 1) is not None):
             return False
         first = len(self.chunks) - 1
-        while first > 0 and self.chunks[first - 1].type not in _JOINT_TYPES:
+        while first > 0 and self.chunks[first - 1].type not in JOINT_TYPES:
             first -= 1
         before = [chunk.type for chunk in self.chunks[first:-1]]
         return (
@@ -1134,6 +1072,7 @@ class Chunker:
         if form is None:
             return self.norms[i].endswith("ed") and not self.nouns.is_noun(i)
         if self.norms[i] in ("put", "set", "cut", "hit", "let") and self.norms[at] != "having":
+            i += self.norms[i + 1] in _PARTICLES
             return self.nouns.starts(i + 1) or self.norms[i + 1] in prepositions()
         if self.norms[i] == "left":
             return self.nouns.is_determiner(i + 1)
@@ -1177,6 +1116,9 @@ class Chunker:
             and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
         ):
             return Chunk("ADVERB", at, at + 1, "back")
+        if self.norms[at] == "half" and self.norms[at + 1] in _HALF_STATES | ADVERBS:
+            span = self.words[at].start, self.words[at + 1].end
+            return Chunk("ADJP", at, at + 2, (Adjective(f"half {self.norms[at + 1]}", "state", Degree.PLAIN, span),))
         found = self.nouns.phrase(at, self._previous())
         if found is None:
             return None
@@ -1192,7 +1134,8 @@ class Chunker:
             and not phrase.pronoun
             and phrase.determiner is None
             and (
-                self._previous() in ("NP", "BE")
+                (self._previous() in ("NP", "BE") or self.norms[end + 2] in DIRECTION_WORDS)
+                and self._previous() in ("NP", "BE", "COMMA")
                 and self.norms[end] == "from"
                 and phrase.adjectives
                 and phrase.count is None
@@ -1209,7 +1152,7 @@ class Chunker:
         return Chunk("NP", at, end, phrase)
 
 
-_JOINT_TYPES = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
+JOINT_TYPES = frozenset({"COMMA", "AND", "OR", "BUT", "THEN", "CUT", "COLON", "SUB"})
 _DENIALS = tuple(
     tuple(phrase.split())
     for phrase in (
@@ -1224,7 +1167,12 @@ _SUBORDINATING = {
     ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
+_SUBJECTS = word_set("i you we he she they")
+"""Pronouns before which no participle stands: the verb after them is finite."""
+_WHOEVER = word_set("whoever whatever whichever whomever")
+"""Words for any person or thing of which the clause holds: it is a condition."""
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
+_HALF_STATES = word_set("dead empty full open closed finished done eaten asleep")
 _ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
 _SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
 _LATERAL = frozenset({"left", "right"})

@@ -44,6 +44,7 @@ UNREAL = re.compile(
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather)\b"
     r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|planned|tried|tries|intends?|intended|"
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
+    r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
     r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b",
     re.IGNORECASE,
 )
@@ -118,6 +119,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 OF_SURFACES = PLACES | {"on", "inside", "at", "along", "across", "near", "around", "row", "circle", "part"} | DIRECTIONS
 """Relations of things to the surface that they stand on."""
+NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"})
+"""Relations of the parser that say nothing of where a thing is."""
 CONTAINING = frozenset({"contains", "contain", "containing"})
 HOLDING = frozenset({"holds", "hold", "holding"})
 SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
@@ -245,7 +248,7 @@ class Discourse:
             self._nothing(phrase, Clause(phrase, phrase.predicates, phrase.span))
             return
         subject: Entity | None = None
-        for part in listed:
+        for part in self._with_shared_places(listed):
             if part.pronoun == "one" and subject is not None and subject.members:
                 self._one_each(subject, part)
                 continue
@@ -256,6 +259,23 @@ class Discourse:
             whole = self.references.find(replace(phrase, predicates=()))
             if whole is not None:
                 self._say(whole, phrase.predicates, phrase)
+
+    def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
+        """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""
+        waiting: NounPhrase | None = None
+        for part, following in zip(listed, (*listed[1:], None), strict=True):
+            if waiting is not None:
+                members = (waiting, replace(part, predicates=()))
+                span = (waiting.span[0], part.span[1])
+                yield NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
+                waiting = None
+            elif (
+                following is not None and len(listed) > 2 and not part.predicates and following.predicates
+                and self.text[part.span[1] : following.span[0]].strip() in ("and", "&")
+            ):  # fmt: skip
+                waiting = part
+            else:
+                yield part
 
     def _ask_about(self, phrase: NounPhrase | None) -> None:
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
@@ -653,7 +673,7 @@ class Discourse:
         elif not predicate.arguments and relation == "on" and not predicate.part:
             if "top" in self.text[slice(*predicate.span)].casefold():
                 self._on_top(subject)
-        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far")):
+        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around")):
             self._bare_direction(subject, predicate)
         else:
             self._relate(subject, predicate, others)
@@ -692,6 +712,8 @@ class Discourse:
             self._pair(second, relation, first, False)
             return
         for phrase in predicate.arguments:
+            if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
+                phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
                 found.append(last)  # above the saucer and to the left of it
@@ -1028,6 +1050,8 @@ class Discourse:
             elif phrase.head:
                 phrase = self._placed_on(phrase, subject)
                 held = self._introduce(phrase, "with", subject)
+                if held is not None and held.role is Role.THING:
+                    others.append(held)
                 if held is not None and held.role is Role.THING and not phrase.predicates:
                     self._hold(subject, held, self._words_of_clause())
 
@@ -1131,7 +1155,7 @@ class Discourse:
         metres: float | None = None,
         how: Qualification | None = None,
     ) -> None:
-        if any(s.role is Role.SURFACE for s in subjects) or relation in ("other", "with", "outside", "from", "as"):
+        if any(s.role is Role.SURFACE for s in subjects) or relation in NO_FACTS:
             return
         if relation == "at":
             relation = "near"

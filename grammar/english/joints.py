@@ -126,6 +126,8 @@ def _cuts(chunks: list[Chunk], types: list[str], start: int, at: int, end: int, 
         return complete or "AND" in kinds
     if following == "NP":
         return _subject_follows(chunks, types, start, at, end, kinds, complete)
+    if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(types, end):
+        return True
     if (following in ("PREP", "ADV") and complete) or (
         following == "PREP" and types[start] == "PREP" and "AND" in kinds
     ):
@@ -142,7 +144,8 @@ def _subject_follows(
     while i < len(types):
         kind = types[i]
         if kind in FINITE:
-            return complete or _verbless_before(types, start, at)
+            note = {"COMMA", "AND"} <= kinds and _note_before(types, start, at) and i == end + 1
+            return complete or note or _verbless_before(types, start, at)
         if kind in ("REL", "WHOSE"):
             return complete and _main_verb_after_relative(types, i) and "OR" not in kinds
         if kind == "COMMA" and _verb_after_aside(types, i):
@@ -222,6 +225,11 @@ def _verbless_before(types: list[str], start: int, at: int) -> bool:
     return False
 
 
+def _note_before(types: list[str], start: int, at: int) -> bool:
+    """Return True if a thing and its place stand before the joint, as in a note: 'sign leaning on the oil, and …'."""
+    return types[start] == "NP" and types[start + 1 : start + 2] in (["PREP"], ["ADV"], ["PART"]) and at > start + 1
+
+
 def _main_verb_after_relative(types: list[str], at: int) -> bool:
     pending = 0
     for kind in types[at:]:
@@ -287,6 +295,14 @@ def _inversion_follows(types: list[str], at: int) -> bool:
             return False
         i += 1
     return False
+
+
+def _turned_clause_follows(types: list[str], at: int) -> bool:
+    """Return True for a place, a verb and a subject: 'to the right of the plate lay a knife'."""
+    i = at + 2
+    while types[i : i + 2] == ["OF", "NP"]:
+        i += 2
+    return types[at : at + 2] == ["PREP", "NP"] and types[i : i + 1] in (["VERB"], ["BE"]) and "NP" in types[i : i + 3]
 
 
 def _clause_of_with(types: list[str], at: int) -> bool:
@@ -423,7 +439,8 @@ def classify(segment: Segment) -> list[Chunk]:
                 and (not any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found))
             ):
                 kind = "OJ"  # a list after a colon
-            if kind == "PJ" and found[-1].type in FINITE:
+            placed = [chunk.type for chunk in found[-2:]] == ["TVERB", "NP"] and after == "WITH" and kinds == {"COMMA"}
+            if kind == "PJ" and (found[-1].type in FINITE or placed):
                 kind = None
             if kind is not None:
                 fronted = fronted or kind == "FJ"

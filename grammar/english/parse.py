@@ -14,6 +14,7 @@ from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
 from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
 from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.phrases import is_known
+from deixis.grammar.english.rewriting import rewritten
 from deixis.grammar.english.tokens import LITERAL, MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.words import APPROXIMATE, HEDGES
@@ -122,7 +123,7 @@ def _sentence(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            chunks = Chunker(words, nouns).run()
+            chunks = rewritten(Chunker(words, nouns).run())
             assembly.hedges = [
                 (chunk.span[0], chunk.value)
                 for chunk in chunks

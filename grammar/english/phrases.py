@@ -12,6 +12,7 @@ from deixis.grammar.english.words import (
     ADVERBS,
     APPROXIMATE,
     ARTICLES,
+    CHAT_WORDS,
     COLLECTIVES,
     COLOUR_SHADES,
     DETERMINERS,
@@ -28,6 +29,7 @@ from deixis.grammar.english.words import (
     POSSESSIVES,
     PRONOUNS,
     PUT_VERBS,
+    REPORTS,
     UNITS,
     adjectives,
     degree_of,
@@ -58,7 +60,7 @@ def _closed() -> frozenset[str]:
     """Return the words that are never nouns."""
     single = {phrase for phrase in (*prepositions(), *places_alone()) if " " not in phrase}
     return frozenset(
-        (_NEVER_NOUNS | single | IS_FORMS | NEGATIONS | ADVERBS | HEDGES | MODALS.keys() | DETERMINERS
+        (_NEVER_NOUNS | CHAT_WORDS | single | IS_FORMS | NEGATIONS | ADVERBS | HEDGES | MODALS.keys() | DETERMINERS
          | PRONOUNS.keys() | POSSESSIVES.keys())
         - _NOUN_OR_PREPOSITION - {"can", "will", "may", "need", "back", "flat", "well", "down", "over", "in"}
         | {"in", "over", "down"}
@@ -218,7 +220,7 @@ class NounChunker:
         after = self.norms[at + 1]
         if after in self._closed or after in ("", ",", "."):
             return False
-        if after in ("right", "left") and self.norms[at + 2] in ("next", "in", "on", "behind", "beside", "by", "at"):
+        if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
             return False
         form = self._verbs.get(after)
         if form is not None and form.form in ("ing", "past", "participle") and not self.is_noun(at + 1):
@@ -397,6 +399,13 @@ class NounChunker:
             and self._predicate_follows(at)
         ):  # 'the other two stand on the tray'
             return False
+        counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
+        if counted and form.form == "base" and after in prepositions():
+            return False  # 'three fibulae follow in a row'
+        if self._reports(at):
+            return False
+        if norm == "leave" and (self.number(at + 1) is not None or after in ("at", "about", "enough", "some")):
+            return False
         if at and self.number(at - 1) is not None and not (self.norms[at - 1] == "one" and form.form == "s"):
             return True
         if form.lemma in ("lie", "sit", "hang") and form.form in ("base", "s") and not after_determiner:
@@ -440,6 +449,15 @@ class NounChunker:
                 or (not imperative and not self.is_determiner(at + 1) and (after not in PRONOUNS))
             )
         return before in self._closed and before not in PRONOUNS and before not in ("to", "not", "which", "that", "who")
+
+    def _reports(self, at: int) -> bool:
+        """Return True for *states* and *claims* before what they report: *the owner states that the cup is …*."""
+        following = self.norms[at + 2]
+        return (
+            self.norms[at] in REPORTS
+            and self.norms[at + 1] == "that"
+            and (self.is_determiner(at + 2) or following in PRONOUNS or following in prepositions())
+        )
 
     def _predicate_follows(self, at: int) -> bool:
         """Return True if a place follows, as after a verb: *lies on*, *stands upright*."""
@@ -1134,9 +1152,9 @@ class NounChunker:
 
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
-        if self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
+        if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
-        if nouns and norm in ORDINALS:
+        if nouns and (norm in ORDINALS or (norm == "cause" and self.norms[at + 1] in PRONOUNS)):
             return False
         if norm[0].isdigit():
             return (
@@ -1192,6 +1210,9 @@ class NounChunker:
         return self.is_noun(at)
 
 
+_AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
+"""Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
+_LATIN_PLURALS = ("ae", "i", "a")
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
 _NAMED_LIKE_THINGS = word_set(
     "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape"

@@ -187,6 +187,9 @@ class References:
         earlier = self._earlier(phrase)
         if earlier is not None:
             return self._seen(earlier, phrase)
+        several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
+        if several and last in GENERAL and noun == last:
+            return None  # 'the following items'
         if phrase.owner is not None:
             self.find(phrase.owner, relation, besides)
         return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
@@ -280,8 +283,12 @@ class References:
         if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
             return several
         for entity in sorted(
-            latest_first, key=lambda entity: (entity.noun != phrase.head, -_agreement(entity, phrase))
-        ):
+            latest_first,
+            key=lambda entity: (
+                entity.noun != phrase.head, -_agreement(entity, phrase),
+                not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
+            ),
+        ):  # fmt: skip
             if not _can_name(phrase.head, entity) or _conflicting(entity, phrase):
                 continue
             if phrase.determiner == "other" and not entity.members:
@@ -425,7 +432,7 @@ class References:
                 return group
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("they", "both", "all", "each", "these", "those"):
-            return self._plural(relation, besides)
+            return self._plural(relation, besides, word == "both")
         if word in ("it", "itself") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
@@ -554,7 +561,10 @@ class References:
         if others and chosen.itself in [e.itself for e in named]:
             self.doubtful.append(PronounUse(phrase.span, phrase.pronoun or "", chosen, tuple(others)))
 
-    def _plural(self, relation: str | None, besides: Entity | None) -> Entity | None:
+    def _plural(self, relation: str | None, besides: Entity | None, both: bool = False) -> Entity | None:
+        last = self.recent[0] if self.recent else None
+        if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
+            return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
                 if entity is None or entity is besides or entity.role is not Role.THING:

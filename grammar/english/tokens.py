@@ -24,9 +24,17 @@ MAX_LABEL_WORDS = 5
 MAX_SENTENCE_WORDS = 400
 """Number of words after which a text without a full stop is cut."""
 
+MAX_ABBREVIATION = 4
+"""Number of letters of a word before a full stop and a number that is an abbreviation: *inv. 112*."""
+
 _PAIRED_DASHES = 2
 _DASHES = frozenset({"-", "\u2013", "\u2014"})
 _STRUCK = re.compile(r"~~[^~\n]+~~|(?<=[\s:;,])\((?:[A-Za-z]|[ivx]{1,4}|\d{1,2})\)(?=\s)")
+_CODES = re.compile(
+    r"\((?:[A-Za-z]{1,6}\.?\s*)?\d[\w./-]*\)"
+    r"|(?<=\w)\s\d+\s?[\u2013-]\s?\d+(?=[\s,;.])(?!\s*(?:cm|mm|m|inch|feet|ft)\b)"
+)
+"""Codes of things, which say nothing of places: *(inv. 112)*, *samples 1\u20136*."""
 _ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
 _RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
@@ -131,7 +139,8 @@ def _end_of_sentence(text: str, start: int) -> tuple[int, bool]:
             before = text[max(start, match.start() - 8) : match.start()].rsplit(None, 1)
             last = before[-1].casefold().lstrip("(") if before else ""
             following = text[match.end() : match.end() + 2].strip()
-            if last in _ABBREVIATIONS and not following[:1].isupper():
+            numbered = following[:1].isdigit() and last.isalpha() and 1 < len(last) <= MAX_ABBREVIATION
+            if (last in _ABBREVIATIONS and not following[:1].isupper()) or numbered:
                 continue
         return match.end(), False
     return len(text), _is_heading(text[start:])
@@ -231,7 +240,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     ['the', 'cup', 'is', 'not', 'on', 'the', 'left', 'side', '.']
     """
     found: list[Word] = []
-    struck = [match.span() for match in _STRUCK.finditer(text, *span)]
+    struck = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()

@@ -212,7 +212,11 @@ IDIOMS = tuple(
     )
 )
 """Fixed phrases that say nothing of places."""
-GREETINGS = word_set("hi hello hey oh ok okay well yes thanks sorry welcome dear love good hmm um uh alright")
+CHAT_WORDS = word_set("rn lol obvs tbh btw imo haha ugh omg idk lmao smh ikr yeah yep nope ah aha anyway")
+"""Interjections of short messages, which stand anywhere."""
+GREETINGS = CHAT_WORDS | word_set(
+    "hi hello hey oh ok okay well yes thanks sorry welcome dear love good hmm um uh alright"
+)
 ARTICLES = frozenset({"a", "an", "the"})
 
 DETERMINERS = word_set(
@@ -443,9 +447,10 @@ far: far from, far away from, away from, well away from, as far as possible from
 near: as close as possible to, as near as possible to
 far: apart from
 in_front: in front of, before, infront of, ahead of, in the front of, at the front of, in from of, in front
-behind: behind, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
+behind: behind, behind of, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
 above: above, over, up above
 below: below
+under: under of
 under: from under, out from under, from underneath, under, underneath, beneath, down under, in under, underneath of
 between: between, in between, inbetween, in-between, in the between of, betwen
 among: among, amongst, amid, in the midst of, amidst
@@ -465,7 +470,9 @@ aligned: aligned with, in line with, in alignment with, flush to
 level_with: level with, on a level with, at the same height as
 perpendicular: perpendicular to, at right angles to, at a right angle to
 leaning: leaning against, leaning on, leant against, propped against, propped up against, leaned against
+left: at left of, to the left from, left side from
 left: left of, left to, left from, leftward of, to left of, left side of, on left of, on left side of
+right: at right of, to the right from, right side from
 right: right of, right to, right from, rightward of, to right of, right side of, on right of, on right side of
 top: north of, to north of
 bottom: south of
@@ -795,6 +802,11 @@ posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings str
 transitive: encircle, straddle
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
 """
+REPORTS = word_set(
+    "states claims reports says insists maintains asserts swears testifies stated claimed reported said insisted"
+    " maintained asserted swore testified alleges alleged"
+)
+"""Verbs of persons who tell something that need not be so."""
 TRANSITIVE_RELATIONS = {
     "hold": ("with", False),
     "contain": ("inside", True),
@@ -974,6 +986,7 @@ TYPOS = {
     "youre": "you're", "midle": "middle", "conner": "corner", "cornor": "corner", "adn": "and", "nad": "and",
     "isto": "is\u00a0to", "ontop": "on\u00a0top", "ont": "on", "&": "and", "@": "at", "+": "and",
     "its'": "its", "nearset": "nearest", "closed-to": "close\u00a0to", "aother": "another", "ther": "there",
+    "cuz": "because", "coz": "because", "bc": "because", "cos": "because",
     "underneat": "underneath", "directy": "directly", "opposit": "opposite", 
     "ot": "to", "fo": "of", "fro": "from", "frm": "from", "onn": "on",
 }  # fmt: skip

@@ -1,0 +1,331 @@
+"""Rewrite the chunks of a sentence as plain clauses: fill in ellipses, undo inversions and drop asides."""
+
+from __future__ import annotations
+
+from deixis.grammar.english.chunks import FINITE, JOINT_TYPES, Chunk, Relator
+from deixis.grammar.english.nouns import PEOPLE, last_word
+from deixis.grammar.english.tree import Degree, NounPhrase
+from deixis.grammar.english.words import PLACE_NOUNS, Preposition, word_set
+
+_ENDS = frozenset({"COMMA", "CUT", ""})
+_PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
+_FOUND_OR_PUT = frozenset(
+    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick"}
+)
+"""Verbs whose object is somewhere: *the rest you will find on the shelf*."""
+
+
+def rewritten(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of a sentence in the order and with the words of plain clauses.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence in the order of the text.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks from which the clauses are cut. A chunk that was put in is empty and stands where its words would.
+    """
+    for rewrite in (
+        _without_vocatives, _without_times, _without_beneficiaries, _without_bare_superlatives, _without_free_places,
+        _without_asides, _without_counts_apart, _with_relative_places, _with_objects_after_verbs,
+        _with_contact_clauses, _with_telegraphic_places, _with_labels_apart, _with_places_before_verbs,
+        _with_pronouns_of_lists,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _type(chunks: list[Chunk], at: int) -> str:
+    return chunks[at].type if 0 <= at < len(chunks) else ""
+
+
+def _empty(chunk: Chunk, value: str = "") -> Chunk:
+    """Return a chunk as words that say nothing of places."""
+    return Chunk("ADVERB", chunk.start, chunk.end, value, chunk.span)
+
+
+def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out who is spoken to, and interjections: *My dear boy, the soup is …*, *No, look again*, *Right, …*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        starts = all(c.type == "ADVERB" or (c.type in _ENDS and k) for k, c in enumerate(found))
+        closed = _type(chunks, i + 1) in ("COMMA", "CUT") and (starts or _type(chunks, i - 1) == "COMMA")
+        spoken_to = chunk.type == "NP" and _names_listener(chunk.value) and (starts or _type(chunks, i + 2) in _ENDS)
+        exclamation = (
+            starts and not found and chunk.type in ("NP", "ADV", "PART") and _type(chunks, i + 1) == "COMMA"
+            and chunk.end == chunk.start + 1 and _is_exclamation(chunk)
+            and any(c.type in FINITE | {"COLON", "PUT", "FIND", "TPART"} for c in chunks[i + 2 :])
+        )  # fmt: skip
+        found.append(_empty(chunk) if closed and (spoken_to or exclamation) else chunk)
+    return found
+
+
+def _names_listener(phrase: NounPhrase) -> bool:
+    dear = any(adjective.word == "dear" for adjective in phrase.adjectives) or phrase.head.startswith("dear ")
+    own = phrase.owner is not None and phrase.owner.pronoun == "me"
+    if phrase.predicates or phrase.of is not None or phrase.members or phrase.count is not None:
+        return False
+    return (dear and (own or phrase.determiner is None)) or (
+        last_word(phrase.head) in PEOPLE | _ENDEARMENTS and phrase.determiner is None and phrase.owner is None
+        and not phrase.adjectives and " " not in phrase.head
+    )  # fmt: skip
+
+
+def _is_exclamation(chunk: Chunk) -> bool:
+    if chunk.type == "ADV":
+        return bool(chunk.value.preposition.phrase == "right")
+    if chunk.type == "NP":
+        return bool(chunk.value.determiner == "no" and not chunk.value.head)
+    return False
+
+
+def _without_times(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the time at the beginning of a sentence: *Before the run, check …*."""
+    start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if [_type(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
+        return chunks
+    phrase = chunks[start + 1].value
+    before = chunks[start].value.preposition.phrase == "before"
+    inverted = _type(chunks, start + 3) in FINITE | _PREDICATES
+    if not before or phrase.pronoun is not None or not phrase.head or inverted:
+        return chunks
+    return [*chunks[:start], _empty(chunks[start]), *chunks[start + 3 :]]
+
+
+def _without_beneficiaries(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        helped = (
+            chunk.type == "PREP" and chunk.value.preposition.phrase == "for" and _type(chunks, i + 1) == "NP"
+            and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she", "they", "everyone")
+            and _type(chunks, i + 2) in JOINT_TYPES | {""} and bool(found)
+        )  # fmt: skip
+        i += 2 if helped else 1
+        if not helped:
+            found.append(chunk)
+    return found
+
+
+def _without_bare_superlatives(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the member of an uncounted group that is told apart: *pipettes on the stand, largest on the left*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        apart = (
+            [_type(chunks, i + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
+            and _type(chunks, i + 4) in _ENDS and chunks[i + 1].value[-1].degree is Degree.SUPERLATIVE
+            and chunks[i + 3].value.head in PLACE_NOUNS
+        )  # fmt: skip
+        i += 4 if apart else 1
+        if not apart:
+            found.append(chunks[i - 1])
+    return found
+
+
+def _without_free_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out *where it always is* after *is*: what follows after the comma says where the thing is."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        free = (
+            chunks[i].type == "SUB" and chunks[i].value == "where" and _type(chunks, i - 1) == "BE"
+            and _type(chunks, i + 1) == "NP" and _type(chunks, i + 2) in FINITE
+        )  # fmt: skip
+        if free:
+            i += 3
+            while i < len(chunks) and chunks[i].type not in JOINT_TYPES:
+                i += 1
+            i += _type(chunks, i) == "COMMA"
+            continue
+        found.append(chunks[i])
+        i += 1
+    return found
+
+
+def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out a comparison between commas: *, as if someone had just put it down,*."""
+    for i, chunk in enumerate(chunks):
+        opens = chunk.type == "SUB" and chunk.value == "as" and _type(chunks, i - 1) == "COMMA"
+        if not opens or _type(chunks, i + 1) != "SUB":
+            continue
+        end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
+        if end is not None:
+            return _without_asides([*chunks[: i - 1], *chunks[end:]])
+    return chunks
+
+
+def _without_counts_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out a number that is given apart: *the mugs hang from the hooks, five of them, and …*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        counts = (
+            [_type(chunks, i + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
+            and _type(chunks, i + 4) in _ENDS and chunks[i + 3].value.pronoun in ("they", "these", "those")
+            and not chunks[i + 1].value.head and chunks[i + 1].value.count is not None
+            and any(chunk.type in FINITE for chunk in found)
+        )  # fmt: skip
+        if counts:
+            i += 4
+            continue
+        found.append(chunks[i])
+        i += 1
+    return found
+
+
+def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Put an object that stands first after its verb: *the rest you'll find on the shelf*, *the bread I put it …*."""
+    for i, chunk in enumerate(chunks):
+        before, verb = _type(chunks, i - 1), chunks[i + 2] if i + 2 < len(chunks) else None
+        first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
+        if not first or verb is None or verb.type not in ("VERB", "TVERB"):
+            continue
+        person = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she")
+        if not person or verb.value.lemma not in _FOUND_OR_PUT:
+            continue
+        again = verb.type == "TVERB" and _type(chunks, i + 3) == "NP" and chunks[i + 3].value.pronoun in ("it", "they")
+        place = i + 3 + again
+        end = next((k for k in range(place, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
+        goes_on = any(c.type in FINITE for c in chunks[place:end]) or (
+            "COMMA" in (c.type for c in chunks[end : end + 1]) and _type(chunks, end + 1) in FINITE
+        )
+        if goes_on or _type(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
+            continue
+        if not again and not before:
+            continue  # 'the chair you see on the left' describes one thing
+        moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
+        return [*chunks[:i], chunks[i + 1], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+    return chunks
+
+
+def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with *on which* resolved.
+
+    *The chair on which the coat hangs* is read as *the chair that the coat hangs on*, and *a board on which there are
+    two onions* as two clauses, of which the second says *on the board there are two onions*.
+    """
+    found: list[Chunk] = []
+    waiting: Chunk | None = None
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        which = following is not None and following.type == "NP" and following.value.pronoun == "which"
+        if chunk.type == "PREP" and which and found and i + 2 < len(chunks):
+            if chunks[i + 2].type == "NP" and chunks[i + 2].value.pronoun not in ("me", "you", "we", "someone"):
+                found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
+                waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
+                continue
+            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
+        elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
+            if waiting is not None and chunks[i - 1].span == waiting.span:
+                continue
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
+                chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
+        found.append(chunk)
+        if waiting is not None and chunk.type in ("VERB", "BE"):
+            found.append(waiting)
+            waiting = None
+    return found
+
+
+def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with the relative pronoun of *the book I am reading* put in."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        contact = (
+            chunk.type == "NP"
+            and chunk.value.pronoun in ("me", "you", "we", "he", "she")
+            and found
+            and found[-1].type == "NP"
+            and bool(found[-1].value.head)
+            and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
+            and i + 1 < len(chunks)
+            and chunks[i + 1].type in FINITE
+        )
+        if contact:
+            found.append(Chunk("REL", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
+        found.append(chunk)
+    return found
+
+
+def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        ends = i + 1 == len(chunks) or chunks[i + 1].type in JOINT_TYPES | {"OF"}
+        aside = (
+            len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
+            and i + 1 < len(chunks) and chunks[i + 1].type == "COMMA"
+        )  # fmt: skip
+        if (
+            chunk.type == "NP"
+            and ends
+            and found
+            and (found[-1].type in ("NP", "COLON") or (aside and chunk.value.adjectives))
+            and chunk.value.head in PLACE_NOUNS
+            and chunk.value.determiner is None
+            and chunk.value.owner is None
+            and not chunk.value.plural
+            and any(other.type == "NP" for other in found)
+            and not any(other.type in FINITE for other in found)
+        ):
+            at = Relator(Preposition("at", "at"))
+            found.append(Chunk("PREP", chunk.start, chunk.start, at, (chunk.span[0], chunk.span[0])))
+        found.append(chunk)
+    return found
+
+
+def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """End the clause of a label before what is said of a part: *centrifuge: rear left corner, lid closed*."""
+    types = [chunk.type for chunk in chunks]
+    labelled = types[:6] == ["NP", "COLON", "PREP", "NP", "COMMA", "NP"] and _type(chunks, 6) in ("PART", "ADJP")
+    if labelled and chunks[5].value.determiner is None:
+        chunks[4] = Chunk("CUT", chunks[4].start, chunks[4].end, None, chunks[4].span)
+    return chunks
+
+
+def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        lay = _type(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+        if chunk.type == "COMMA" and (_type(chunks, i + 1) in ("BE", "VERB") or lay) and _type(chunks, i + 2) == "NP":
+            first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+            clause = [c.type for c in found[first:] if c.type != "ADVERB"]
+            objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
+            places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
+            if places and not (FINITE & set(clause)):
+                if lay:
+                    chunks[i + 1].type = "VERB"
+                continue
+        found.append(chunk)
+    return found
+
+
+def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *both to the right of the plate* after a comma as said of the things before, not of the subject."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")
+        after_list = _type(chunks, i - 1) == "COMMA" and _type(chunks, i - 2) == "NP" and _type(chunks, i - 3) == "AND"
+        if whole and after_list and _type(chunks, i + 1) in ("PREP", "ADV"):
+            phrase = NounPhrase(chunk.span, pronoun=chunk.value, plural=True)
+            chunk = Chunk("NP", chunk.start, chunk.end, phrase, chunk.span)
+        found.append(chunk)
+    return found
+
+
+_ENDEARMENTS = word_set(
+    "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
+    " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls"
+)
+"""Nouns by which a person is spoken to."""
