@@ -16,6 +16,9 @@ _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _FRAMES = frozenset({"facing", "from"})
 _PLACING = frozenset({"put", "place", "keep", "leave", "set", "lay", "store", "spread", "position"})
 _UNDONE = frozenset({"almost", "nearly"})
+_FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
+_LETTING = frozenset({"let", "make", "help", "watch"})
+"""Verbs whose object does something itself: *don't let the cat sleep in it*."""
 _OWNING = frozenset(
     {"have", "see", "find", "keep", "notice", "place", "put", "leave", "set", "lay", "stand", "hang", "store"}
 )
@@ -85,6 +88,9 @@ class Assembly:
             Verb of the main clause that the clause depends on (*it could be that*), or None.
         """
         span = (start, end)
+        if hedge is not None and hedge.modal == "might" and built.shape not in ("statement", "existential", "inverted"):
+            misunderstood(span, "this is only what a person says", "say where it is")
+            return
         frame = self._frame(built, link, span)
         if frame is not None:
             self.viewpoint = _joined(self.viewpoint, frame)
@@ -107,6 +113,8 @@ class Assembly:
             return
         if link == "if" and self._is_clock(built):
             return
+        if link == "until" and self.clauses and not self.clauses[-1].past:
+            return  # it holds now
         if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
             built.verbs or (built.shape == "fragment" and not built.said and link != "as")
         ):
@@ -120,10 +128,11 @@ class Assembly:
             self.condition = None  # 'when the guests arrive, the table looks like this: …'
         mood = self._mood(built)
         subject = built.subject
-        if built.shape == "other" and subject is not None and not subject.phrase.predicates:
+        letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
+        if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
-            if subject.phrase.head and built.shape == "other":
+            if subject.phrase.head and not letting:
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):
@@ -145,6 +154,13 @@ class Assembly:
         known = len(self.clauses)
         for i, verb in enumerate(verbs):
             front = said if i == 0 else ()
+            none = subject.phrase.pronoun == "nothing" or subject.phrase.determiner == "no"
+            if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
+                misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
+                continue
+            if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
+                misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
+                continue
             if verb.thing is not None and verb.group.lemma in _PLACING and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue

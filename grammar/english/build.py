@@ -432,8 +432,8 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         if noun.phrase.head in NOT_PLACES and noun.phrase.determiner in (None, "a") and not noun.phrase.adjectives:
-            misunderstood(span, f"'{noun.phrase.head}' is not a place")
-            return extra
+            misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
+            return (*noun.phrase.predicates, *extra)
         if relation == "-":
             misunderstood(span, f"'{relator.preposition.phrase}' does not say where something is")
             return extra
@@ -1066,7 +1066,7 @@ _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "
 """Verbs after which *over* means *on*."""
 _PASSIVES = {
     "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
-    "cover": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
+    "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
 }  # fmt: skip
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
 

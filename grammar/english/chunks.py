@@ -32,6 +32,7 @@ from deixis.grammar.english.words import (
     PRONOUNS,
     PUT_VERBS,
     REPORTS,
+    SAYING,
     UNITS,
     Preposition,
     is_adjective,
@@ -42,9 +43,9 @@ from deixis.grammar.english.words import (
 )
 
 FINITE = frozenset({"BE", "VERB", "TVERB"})
-PAST_ONLY = word_set("stood lay sat went came began ran wore saw was were did had took gave knew")
+PAST_ONLY = word_set("stood lay sat went came began ran wore saw was were did had took gave knew fell rose")
 SUBORDINATORS = word_set(
-    "if when while because since unless although though once so where whereas until whether whenever"
+    "wherever if when while because since unless although though once so where whereas until whether whenever"
 )
 _PUNCTUATION = {
     ",": "COMMA", ";": "CUT", ":": "COLON", ".": "CUT", "!": "CUT", "?": "CUT", "(": "COMMA", ")": "COMMA",
@@ -174,7 +175,7 @@ class Chunker:
             return Chunk("NOT", at, at + 1)
         if norm in ADVERBS or norm in HEDGES or norm.endswith("ly"):
             return Chunk("ADVERB", at, at + 1, norm)
-        return Chunk("UNKNOWN", at, at + 1)
+        return Chunk("UNKNOWN", at, at + 1, norm)
 
     def _denial(self, at: int) -> int | None:
         """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
@@ -209,6 +210,10 @@ class Chunker:
             order = self._order(at)
             if order is not None:
                 return order
+        if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
+            return Chunk("ADVERB", at, at + 2, "in first")
+        if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
+            return Chunk("ADVERB", at, at + 2, "set up")
         if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:
             return Chunk("ADVERB", at, min(at + 4, len(self.words)), "in order")
         if norm == "from" and self.norms[at + 1] == "where" and self.norms[at + 2] in ("i", "you", "we"):
@@ -432,6 +437,10 @@ class Chunker:
             return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
         if norm == "than":
             return Chunk("THAN", at, at + 1)
+        form = self._verbs.get(after)
+        told = form is not None and form.form in ("past", "participle") and previous in ("COMMA", "")
+        if norm == "as" and told and self.norms[at + 2] not in IS_FORMS:
+            return Chunk("ADVERB", at, at + 2, "as told")  # 'as left on Friday'
         if norm == "as" and after in ("you", "if", "seen", "viewed", "one", "i", "we"):
             return Chunk("SUB", at, at + 1, "as")
         excepting = previous == "NP" and self.chunks[-1].value.pronoun in _ALL
@@ -449,6 +458,8 @@ class Chunker:
             return Chunk(_CONJUNCTIONS[norm], at, at + 1, norm)
         if tuple(self.norms[at : at + 3]) in _SUBORDINATING:
             return Chunk("SUB", at, at + 3, "when")
+        if (norm, after) == ("except", "that"):
+            return Chunk("CUT", at, at + 2)
         if tuple(self.norms[at : at + 2]) in _SUBORDINATING:
             return Chunk("SUB", at, at + 2, "if")
         if at == 0 and norm in ("suppose", "assume", "imagine") and any(word in IS_FORMS for word in self.norms):
@@ -771,8 +782,10 @@ class Chunker:
             ]:
                 adverbs.append("apparently")
                 i += 1
-            elif norm == "to" and i > first and self.norms[i + 1] in ("be", "stand", "go"):
-                pass
+            elif norm == "to" and i > first and self.norms[i + 1] in ("be", "stand", "go", "have"):
+                modal = "should" if verb == "be" and modal is None else modal
+            elif norm == "to" and i > first and verb == "be" and self._is_base(i + 1):
+                modal, verb = "should", None  # 'it is to stand on the box'
             elif norm == "used" and self.norms[i + 1] == "to":
                 past = True
                 i += 1
@@ -819,10 +832,18 @@ class Chunker:
         norm = self.norms[i]
         form = self._verbs.get(norm)
         helped = i > first
-        if norm in REPORTS and self.norms[i + 1] == "that" and self._previous() == "NP":
-            return Chunk("COMPLEMENT", at, i + 2, replace(_with(group, norm, "other", "s"), modal="might"))
+        told = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
+        if norm in REPORTS | SAYING and told and self._previous() == "NP":
+            return Chunk(
+                "COMPLEMENT",
+                at,
+                i + 1 + (self.norms[i + 1] == "that"),
+                replace(_with(group, norm, "other", "s"), modal="might"),
+            )
         if helped and (form is None or form.form not in ("base",)) and group.modal is None and not group.past:
             form = form if form is not None and form.form in ("base", "past", "participle") else None
+            if form is None and self.norms[first] in ("has", "have", "had", "'ve", "having") and norm.endswith("ed"):
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past"))
             if form is None:
                 if self.norms[first] == "do" and not self._previous() and self.nouns.is_determiner(i + 1):
                     return Chunk("DO", at, i + 1, _with(group, norm, "unknown", "base"))  # 'do not tighten the screws'
@@ -851,6 +872,9 @@ class Chunker:
                 return Chunk(
                     "TVERB" if self.nouns.starts(i + 1) else "VERB", at, i + 1, _with(group, norm, "unknown", "s")
                 )
+            alone = self._previous() == "NP" and self.norms[self.chunks[-1].start : at] in _THIRD_PERSONS
+            if alone and i == at and norm.endswith("s") and len(norm) > 3 and norm.isalpha() and norm not in PRONOUNS:
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
                 return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
             return self._unknown_participle(at, i, group)
@@ -1167,6 +1191,8 @@ _SUBORDINATING = {
     ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
+_TOLD = word_set("it they he she there")
+_THIRD_PERSONS = (["it"], ["he"], ["she"])
 _SUBJECTS = word_set("i you we he she they")
 """Pronouns before which no participle stands: the verb after them is finite."""
 _WHOEVER = word_set("whoever whatever whichever whomever")

@@ -32,6 +32,11 @@ MIN_PAST_OF_STORY = 3
 PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
 """Beginning of a relative clause in the past."""
 
+UNSURE_RELATIVE = re.compile(
+    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
+)
+"""Beginning of a relative clause that tells what should be or might be."""
+
 OBLIGED = frozenset({"should", "ought", "shall"})
 REVOKED = re.compile(
     r"^,?\s*(?:but|though|although|yet)\s+(?:we|i|you|they|he|she|it)\s+"
@@ -196,6 +201,7 @@ class Discourse:
         self.how = Qualification((0, 0), 0)
         self.asked: tuple[int, Entity] | None = None  # sentence and thing of the last question
         self.introduced: dict[tuple[Span, str, int | None], Entity] = {}  # by their first mention
+        self.restricted: dict[Entity, tuple[Entity, int]] = {}  # the last thing of a relative clause and its end
         self.edge: str | None = None
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
@@ -305,7 +311,14 @@ class Discourse:
         positive = clause.positive and all(p.positive for p in clause.predicates)
         if modal in NOT_NEEDED and not positive:
             return
-        uncertain = (modal in UNCERTAIN and positive) or weight == 0.5 or not RARE.isdisjoint(clause.hedges)
+        forbids = clause.subject is not None and (
+            clause.subject.pronoun == "nothing" or clause.subject.determiner == "no"
+        )  # 'nothing may be stacked on it'
+        uncertain = (
+            (modal in UNCERTAIN and positive and not (forbids and modal == "may"))
+            or weight == 0.5
+            or not RARE.isdisjoint(clause.hedges)
+        )
         none = clause.subject is not None and clause.subject.pronoun == "none"
         self.how = Qualification(
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
@@ -369,6 +382,15 @@ class Discourse:
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
         if not predicates and clause.predicates and not clause.existential:
             return
+        aimed = bool(predicates) and all(p.relation in ("pointing", "facing") for p in predicates)
+        own = subject.determiner is None and subject.owner is None and bool(subject.head) and not subject.count
+        last = next((f for f in self.references.recent if f.subject is not None), None)
+        if (
+            aimed and own and clause.modal is None and last is not None and last.sentence == sentence
+            and self.references.earlier(replace(subject, determiner="the")) is None
+            and self._of_last(predicates, subject)
+        ):  # fmt: skip
+            return  # 'the forceps lie in the middle, beaks pointing away'
         if (
             subject.head in PARTS
             and subject.owner is None
@@ -501,8 +523,13 @@ class Discourse:
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
             if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
                 self.how = replace(self.how, past=True)
+            if UNSURE_RELATIVE.search(self.text[slice(*phrase.span)]):
+                self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
             self._say(entity, phrase.predicates, phrase, focus=False)
             self.how = outer
+            restriction = self.references.recent[-1]
+            if restriction.subject is entity and restriction.others:
+                self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
 
     def _describe(self, entity: Entity, phrase: NounPhrase, new: bool) -> None:
@@ -651,6 +678,8 @@ class Discourse:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
                 self._add("pointing", (subject.whole,), (), value=relation)
                 return
+            if relation == "upside_down":
+                return  # the label, and not the bottle
             subject = subject.whole
         if subject.role in (Role.VIEWER, Role.PERSON):
             return
@@ -670,6 +699,8 @@ class Discourse:
             self._property(subject, predicate)
         elif relation in PLACES:
             self._place(subject, predicate, others)
+        elif not predicate.arguments and relation == "inside" and predicate.span[0] == self.how.span[0]:
+            self._bare_direction(subject, predicate)  # 'inside are my earrings'
         elif not predicate.arguments and relation == "on" and not predicate.part:
             if "top" in self.text[slice(*predicate.span)].casefold():
                 self._on_top(subject)
@@ -695,6 +726,7 @@ class Discourse:
         if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
             relation = "near"
         found: list[Entity | Region] = []
+        restricted, end = self.restricted.get(subject, (None, 0))
         options = [a for a in predicate.arguments if a.joined_by == "or"]
         if options and relation != "between" and not self.how.alternative:
             self.alternatives += 1
@@ -715,6 +747,9 @@ class Discourse:
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
                 phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
+            if phrase.pronoun == "it" and restricted is not None and not others and predicate.span[0] >= end:
+                last = restricted  # 'the comb, which was in front of the mirror, is behind it'
+
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
                 found.append(last)  # above the saucer and to the left of it
                 continue

@@ -144,6 +144,8 @@ def _subject_follows(
     while i < len(types):
         kind = types[i]
         if kind in FINITE:
+            if i == end + 1 and chunks[end].value.pronoun in ("it", "they", "he", "she") and "COMMA" in kinds:
+                return complete or at > start + 1
             note = {"COMMA", "AND"} <= kinds and _note_before(types, start, at) and i == end + 1
             return complete or note or _verbless_before(types, start, at)
         if kind in ("REL", "WHOSE"):
@@ -517,7 +519,7 @@ def _kind(
         if (
             found[-1].type == "NP"
             and found[-1].value.pronoun in ("it", "they")
-            and types[end + 1 : end + 2] == ["PREP"]
+            and types[end + 1 : end + 2] in (["PREP"], ["ADV"])
             and ("TVERB" in before or "WITH" in before or "THERE" in before)
         ):
             return "OJ"

@@ -30,6 +30,7 @@ from deixis.grammar.english.words import (
     PRONOUNS,
     PUT_VERBS,
     REPORTS,
+    SAYING,
     UNITS,
     adjectives,
     degree_of,
@@ -48,8 +49,8 @@ _BEFORE_ADJECTIVE = word_set(
 )
 _NEVER_NOUNS = word_set(
     "and or but nor than not of to from with without at by for as if when while because that which who whom whose where"
-    " there then so too also is are was were be been being am do does did has have had having n't please let lets"
-    " upside into onto upon toward towards against among amongst between beside beneath underneath behind until"
+    " there then so too wherever also is are was were be been being am do does did has have had having n't please let"
+    " lets upside into onto upon toward towards against among amongst between beside beneath underneath behind until"
     " during such whether whenever via per through 's 're 'm 'll 've 'd it's although though since unless"
 )
 _NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
@@ -222,6 +223,8 @@ class NounChunker:
             return False
         if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
             return False
+        if after in ("right", "left") and self.norms[at + 2] in PLACE_NOUNS:
+            return True
         form = self._verbs.get(after)
         if form is not None and form.form in ("ing", "past", "participle") and not self.is_noun(at + 1):
             return False
@@ -402,7 +405,12 @@ class NounChunker:
         counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
         if counted and form.form == "base" and after in prepositions():
             return False  # 'three fibulae follow in a row'
-        if self._reports(at):
+        together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
+        if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
+            return False  # 'Ann and Tom kneel beside it'
+        if self._reports(at) or (
+            form.form == "base" and norm in _STAYING and self.number(at - 1) is not None and at > 1
+        ):
             return False
         if norm == "leave" and (self.number(at + 1) is not None or after in ("at", "about", "enough", "some")):
             return False
@@ -436,6 +444,8 @@ class NounChunker:
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
                 beyond = self.norms[at + 2]
                 return beyond in prepositions() or beyond in places_alone()  # 'the glue sticks go into the box'
+            if form.form == "s" and after.endswith(("ing", "ed")) and self.norms[at + 2] in prepositions():
+                return True  # 'foam blocks soaking in the sink'
             if form.form == "s":
                 return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
             return not plural and not (after in DETERMINERS or after in NUMBERS or after in POSSESSIVES)
@@ -453,7 +463,7 @@ class NounChunker:
     def _reports(self, at: int) -> bool:
         """Return True for *states* and *claims* before what they report: *the owner states that the cup is …*."""
         following = self.norms[at + 2]
-        return (
+        return (self.norms[at] in SAYING and self.norms[at + 1] in ("it", "they", "he", "she", "there")) or (
             self.norms[at] in REPORTS
             and self.norms[at + 1] == "that"
             and (self.is_determiner(at + 2) or following in PRONOUNS or following in prepositions())
@@ -684,6 +694,9 @@ class NounChunker:
         norms = self.norms
         while i < len(self.words) and self._nouns.compound(norms, i) is None:
             norm = norms[i]
+            if norm == "still" and norms[i - 1] in ("of", "with") and self.is_noun(i + 1):
+                i += 1  # 'a bottle of still water'
+                continue
             rank = ORDINALS.get(norm)
             if norm in ("second", "third", "quarter") and not determined and not self._nounish(i + 1) and i > at:
                 break
@@ -1210,6 +1223,7 @@ class NounChunker:
         return self.is_noun(at)
 
 
+_STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
 _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
 _LATIN_PLURALS = ("ae", "i", "a")

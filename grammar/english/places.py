@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deixis.grammar.english.chunks import Relator
+from deixis.grammar.english.nouns import PEOPLE, last_word
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Predicate, Span, Viewpoint
 from deixis.grammar.english.words import PLACE_NOUNS
 
@@ -138,6 +139,8 @@ def _sided(
     if kind == "side" and not sides and phrase.owner is not None and phrase.owner.pronoun == "it":
         lying = Adjective("sideways", "state", Degree.PLAIN, phrase.span)
         return _made(relator, "state", (), span, value=lying)
+    if kind == "side" and not sides and phrase.owner is not None and last_word(phrase.owner.head) in PEOPLE:
+        return _made(relator, "side", (), span)
     if kind == "side" and not sides:
         return _made(
             relator,

@@ -162,7 +162,7 @@ class References:
             return self._pronoun(phrase, relation, besides)
         if phrase.head:
             return self._noun(phrase, relation, besides)
-        return self._ellipsis(phrase, besides)
+        return self._ellipsis(phrase, besides, relation)
 
     def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         noun, last = phrase.head, last_word(phrase.head)
@@ -173,7 +173,8 @@ class References:
             if self.surface is None:
                 self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
             return self.surface
-        if last in PARTS and noun == last and (phrase.owner is not None or phrase.of is not None):
+        worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
+        if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
             whole = self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
             return None if whole is None else Entity(noun, Role.PART, whole=whole)
         if last in PARTS - REMOVABLE and noun != last and phrase.determiner != "a":
@@ -446,7 +447,7 @@ class References:
             pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
         if word in ("one", "other"):
-            return self._ellipsis(phrase, besides)
+            return self._ellipsis(phrase, besides, relation)
         return None
 
     def _left_out(self, phrase: NounPhrase) -> Entity | None:
@@ -465,7 +466,7 @@ class References:
             return None
         return self.find(NounPhrase(phrase.span, head=nouns[-1].casefold(), determiner="the"))
 
-    def _ellipsis(self, phrase: NounPhrase, besides: Entity | None) -> Entity | None:
+    def _ellipsis(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
         group = self.find(phrase.of, None, besides) if phrase.of is not None else None
         if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
             contrasted = self._contrasted(phrase)
@@ -486,8 +487,11 @@ class References:
         if group is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
         group = group or self.last_group(besides)
+        further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
+        if further and group is not None and group.noun and phrase.of is None:
+            return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
         if group is None or not group.members:
-            return self._another_one(phrase, besides)
+            return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
         if found is None and phrase.pronoun == "one":
             free = [leaf for leaf in group.leaves() if not any(pair[0] == "picked" for pair in leaf.adjectives)]
@@ -510,10 +514,19 @@ class References:
                 return self._new(replace(phrase, head=entity.noun, pronoun=None), entity.role)
         return None
 
-    def _another_one(self, phrase: NounPhrase, besides: Entity | None) -> Entity | None:
-        """Return a new thing with the noun of the subject for *the one leaning against the wall*."""
+    def _another_one(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
+        """Return a new thing with the noun of the subject for *the one leaning against the wall*.
+
+        After *in* and *on* it has the noun of the thing that the one before is in or on: *onions in the bowl, garlic in
+        the one behind it*.
+        """
         if phrase.pronoun != "one" or not phrase.predicates:
             return None
+        if besides is not None and relation in ("inside", "on", "under"):
+            parallel = next((f.others[0] for f in self.recent[:2] if f.relation == relation and f.others), None)
+            return (
+                None if parallel is None else self._new(replace(phrase, head=parallel.noun, pronoun=None), Role.THING)
+            )
         last = besides or next((f.subject for f in self.recent if f.subject is not None), None)
         if last is None or last.role is not Role.THING or not last.noun:
             return None
@@ -565,6 +578,8 @@ class References:
         last = self.recent[0] if self.recent else None
         if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
             return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
+        if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
+            return two
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
                 if entity is None or entity is besides or entity.role is not Role.THING:
@@ -575,6 +590,14 @@ class References:
             if len(pair) == 2 and besides not in pair:
                 return Entity("", members=pair)
         return None
+
+    def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
+        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
+        last = [f for f in self.recent[:2] if f.subject is not None and f.subject is not besides]
+        if len(last) < 2 or last[0].sentence != last[1].sentence or last[0].others:
+            return None
+        pair = [f.subject.itself for f in reversed(last) if f.subject is not None and f.subject.role is Role.THING]
+        return Entity("", members=pair) if len(set(pair)) == 2 and not any(e.members for e in pair) else None
 
 
 def _same_noun(first: str, second: str) -> bool:

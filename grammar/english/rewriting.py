@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deixis.grammar.english.chunks import FINITE, JOINT_TYPES, Chunk, Relator
-from deixis.grammar.english.nouns import PEOPLE, last_word
+from deixis.grammar.english.nouns import HOLDERS, PEOPLE, SURFACES, VESSELS, last_word
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.words import PLACE_NOUNS, Preposition, word_set
 
@@ -30,9 +30,9 @@ def rewritten(chunks: list[Chunk]) -> list[Chunk]:
     """
     for rewrite in (
         _without_vocatives, _without_times, _without_beneficiaries, _without_bare_superlatives, _without_free_places,
-        _without_asides, _without_counts_apart, _with_relative_places, _with_objects_after_verbs,
-        _with_contact_clauses, _with_telegraphic_places, _with_labels_apart, _with_places_before_verbs,
-        _with_pronouns_of_lists,
+        _without_asides, _without_infinitives, _without_counts_apart, _with_relative_places, _with_objects_after_verbs,
+        _with_contact_clauses, _with_label_nouns, _with_telegraphic_places, _with_labels_apart,
+        _with_places_before_verbs, _with_pronouns_of_lists,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -149,15 +149,37 @@ def _without_free_places(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out a comparison between commas: *, as if someone had just put it down,*."""
+    """Leave out a comparison between commas: *as if someone had just put it down*, *as is often seen*."""
     for i, chunk in enumerate(chunks):
-        opens = chunk.type == "SUB" and chunk.value == "as" and _type(chunks, i - 1) == "COMMA"
-        if not opens or _type(chunks, i + 1) != "SUB":
+        after = _type(chunks, i + 1)
+        told = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
+        compared = chunk.type == "SUB" and chunk.value == "as" and after == "SUB"
+        if _type(chunks, i - 1) != "COMMA" or not (told or compared):
             continue
         end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
+        if end is not None and told and _type(chunks, i - 2) == "NOT":
+            return _without_asides([*chunks[: i - 1], *chunks[end + 1 :]])
         if end is not None:
             return _without_asides([*chunks[: i - 1], *chunks[end:]])
     return chunks
+
+
+def _without_infinitives(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        if chunk.type == "UNKNOWN" and chunk.value == "to" and _type(chunks, i + 1) in ("UNKNOWN", "VERB", "TVERB"):
+            end = next((k for k in range(i, len(chunks)) if chunks[k].type in JOINT_TYPES | {"REL"}), len(chunks))
+            found.append(
+                Chunk("UNKNOWN", chunk.start, chunks[end - 1].end, None, (chunk.span[0], chunks[end - 1].span[1]))
+            )
+            i = end
+            continue
+        found.append(chunk)
+        i += 1
+    return found
 
 
 def _without_counts_apart(chunks: list[Chunk]) -> list[Chunk]:
@@ -250,6 +272,7 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
             and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
             and i + 1 < len(chunks)
             and chunks[i + 1].type in FINITE
+            and not (chunks[i + 1].type == "TVERB" and _type(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head))
         )
         if contact:
             found.append(Chunk("REL", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0])))
@@ -266,6 +289,15 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
             and i + 1 < len(chunks) and chunks[i + 1].type == "COMMA"
         )  # fmt: skip
+        kept_in = (
+            i == 2 and ends and [c.type for c in chunks[:3]] == ["NP", "COLON", "NP"] and not chunk.value.plural
+            and last_word(chunk.value.head) in VESSELS | HOLDERS and chunk.value.determiner in (None, "the")
+            and last_word(chunks[0].value.head) not in VESSELS | HOLDERS | SURFACES and bool(chunks[0].value.head)
+            and not any(other.type in FINITE for other in chunks)
+        )  # fmt: skip
+        if kept_in:  # 'gloves: left-hand pocket'
+            inside = Relator(Preposition("in", "inside"))
+            found.append(Chunk("PREP", chunk.start, chunk.start, inside, (chunk.span[0], chunk.span[0])))
         if (
             chunk.type == "NP"
             and ends
@@ -285,11 +317,23 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
 
 
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """End the clause of a label before what is said of a part: *centrifuge: rear left corner, lid closed*."""
-    types = [chunk.type for chunk in chunks]
-    labelled = types[:6] == ["NP", "COLON", "PREP", "NP", "COMMA", "NP"] and _type(chunks, 6) in ("PART", "ADJP")
-    if labelled and chunks[5].value.determiner is None:
-        chunks[4] = Chunk("CUT", chunks[4].start, chunks[4].end, None, chunks[4].span)
+    """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "COMMA" or [_type(chunks, i + k) for k in (-2, -1, 1)] != ["PREP", "NP", "NP"]:
+            continue
+        part = chunks[i + 1].value
+        told = _type(chunks, i + 2) in ("PART", "ADJP") and _type(chunks, i + 3) in _ENDS
+        verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
+        if told and verbless and part.determiner is None and part.owner is None and not part.adjectives:
+            chunks[i] = Chunk("CUT", chunk.start, chunk.end, None, chunk.span)
+    return chunks
+
+
+def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
+    """Return a label that is a colour too as a noun: *cream: side pocket*."""
+    if _type(chunks, 0) == "ADJP" and _type(chunks, 1) == "COLON" and len(chunks[0].value) == 1:
+        word = chunks[0].value[0].word
+        chunks[0] = Chunk("NP", chunks[0].start, chunks[0].end, NounPhrase(chunks[0].span, word), chunks[0].span)
     return chunks
 
 

@@ -168,6 +168,10 @@ def _join_asides(text: str, words: list[Word]) -> None:
         if word.norm in _DASHES and (word.norm != "-" or text[word.start - 1 : word.start].isspace())
     ]  # fmt: skip
     if len(places) == _PAIRED_DASHES:
+        aside = [word.norm for word in words[places[0] + 1 : places[1]]]
+        if "," in aside and not IS_FORMS.isdisjoint(aside):
+            del words[places[0] : places[1] + 1]  # '– careful, it's hot –'
+            return
         for i in places:
             words[i].norm = ","
     elif len(places) == 1 and places[0] <= MAX_LABEL_WORDS:

@@ -140,6 +140,7 @@ IDIOMS = tuple(
         "in the first place",
         "in the long run",
         "in the meantime",
+        "in place",
         "in any case",
         "in other words",
         "in no time",
@@ -396,6 +397,7 @@ NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
     " holiday"
+    " reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
@@ -411,7 +413,8 @@ APPROXIMATE = word_set("about around roughly approximately approx almost nearly"
 ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much well also still already now currently actually again only even both either simply closely"
-    " yesterday today tomorrow tonight halfway midway partway mostly completely fully partially partly"
+    " yesterday today tomorrow tonight later earlier afterwards recently meanwhile"
+    " halfway midway partway mostly completely fully partially partly"
     " totally barely clearly diagonally vertically horizontally upright flat"
     " neatly carefully gently loosely tightly firmly evenly centrally all up down back out off along there here"
     " together apart away nearby itself else instead please kindly basically kinda sorta obviously however therefore"
@@ -797,6 +800,8 @@ other: choose chooses chose chosen choosing, find, select, pick, locate, identif
 other: spot, hit hits hit hit hitting, search, situate
 other: balance, wrap, slide slides slid slid sliding, bring brings brought brought bringing
 posture: sleep sleeps slept slept sleeping, poke, peek, peep, dangle, sprawl, curl, coil, snake, loom, tower, doze
+posture: kneel kneels knelt knelt kneeling, crouch, squat, recline, droop, sag, teeter, soak, dry, cool, gather
+posture: gleam, glow, glint, glitter, sparkle, shimmer, spill, stretch, hunch, cluster, bob, totter
 posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range, reside, protrude, balance
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
 transitive: encircle, straddle
@@ -807,6 +812,8 @@ REPORTS = word_set(
     " maintained asserted swore testified alleges alleged"
 )
 """Verbs of persons who tell something that need not be so."""
+SAYING = word_set("swore swears says said claims claimed insists insisted believes thinks thought")
+"""Such verbs after which *that* can be left out: *the butler swore it hung there*."""
 TRANSITIVE_RELATIONS = {
     "hold": ("with", False),
     "contain": ("inside", True),
@@ -903,7 +910,7 @@ def verb_forms() -> dict[str, VerbForm]:
     return found
 
 
-_ONLY_PARTICIPLES = word_set("clip clamp ring tower string range coil slip lower fill wait stow")
+_ONLY_PARTICIPLES = word_set("clip clamp ring tower string range coil slip lower fill stow")
 """Verbs whose plain forms are nouns or adjectives more often."""
 
 
@@ -920,7 +927,8 @@ def _regular(lemma: str) -> dict[str, str]:
 
 
 _DOUBLED = frozenset({"set", "put", "sit", "run", "stop", "jut", "plug", "prop", "pin", "slot", "jam", "cram", "hug",
-                      "fit", "tip", "drop", "step", "get", "overlap", "abut", "begin"})  # fmt: skip
+                      "fit", "tip", "drop", "step", "get", "overlap", "abut", "begin", "slip", "clip", "wrap", "sag",
+                      "bob", "strap", "drag"})  # fmt: skip
 
 PLACE_NOUNS = {
     "corner": "corner",
