@@ -24,8 +24,9 @@ from typing import Self
 
 from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, encode_logged
-from deixis.memory.episodes.disk import DiskKeys
+from deixis.memory.episodes.disk import STORE, DiskKeys
 from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
+from deixis.memory.episodes.guard import Guard, shipped_guard
 from deixis.memory.episodes.intervals import endings_meeting, interval_keys
 from deixis.memory.episodes.keys import Keys, TransientKeys
 from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription, to_pattern
@@ -62,6 +63,7 @@ class Blackboard(Closing):
         self._origin = self._begin(origin or datetime.now(UTC))
         self._sequence = self._last_sequence()
         self._open = self._unfinished()
+        self._guards = [shipped_guard()]
 
     @classmethod
     def transient(cls, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> Self:
@@ -216,6 +218,24 @@ class Blackboard(Closing):
             self._keys.write({key: b"%d" % number})
         return f"{prefix}{number}"
 
+    def guard(self, shapes: str | Path) -> None:
+        """Check all later writes by more SHACL shapes, as long as the blackboard is open.
+
+        Parameters
+        ----------
+        shapes
+            Turtle file of the shapes. Their data is the description of each changed fluent and its statement as a
+            plain triple.
+
+        Raises
+        ------
+        ShapesError
+            If the file cannot be read.
+        """
+        guard = Guard(Path(shapes))
+        with self._lock:
+            self._guards.append(guard)
+
     def write(self, *changes: Change, by: str) -> int:
         """Write changes as one: all of them or, if one is refused, nothing.
 
@@ -246,6 +266,8 @@ class Blackboard(Closing):
             if not changes:
                 return self._sequence
             made = self._made(changes, by)
+            for guard in self._guards:
+                guard.check(each.after for each in made if each.after is not None)
             self._keys.write(self._pairs(made))
             self._sequence = made[-1].sequence
             for each in made:
@@ -594,6 +616,22 @@ class Blackboard(Closing):
             pairs[FLUENT + ending] = after
             pairs[_log_key(each.sequence)] = encode_logged(each.last, each.by, each.written, each.kind, before, after)
         return pairs
+
+
+def has_episodes(memory: Path) -> bool:
+    """Return whether a memory has a blackboard, without opening it.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+
+    Returns
+    -------
+    bool
+        True if it has.
+    """
+    return (memory / EPISODES / STORE).is_dir()
 
 
 def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:

@@ -6,7 +6,7 @@ keys per interval hold the node with the lower end, and the node with the upper 
 node lies in the window, or if its node lies on the path from the root to one end of the window and its own end reaches
 into it. So a query reads one range of keys per node of the two paths, at most 107, and one range for the window itself.
 
-Times are whole microseconds, shifted so that they are at least 0.
+Times are whole microseconds, shifted so that they are at least 1.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ def tick(seconds: float) -> int:
     Returns
     -------
     int
-        Microseconds, shifted and limited to [0, 2 ** BITS).
+        Microseconds, shifted and limited to [1, 2 ** BITS).
     """
     if math.isinf(seconds):
-        return 0 if seconds < 0 else _LAST
-    return min(max(round(seconds * TICKS) + _OFFSET, 0), _LAST)
+        return 1 if seconds < 0 else _LAST
+    return min(max(round(seconds * TICKS) + _OFFSET, 1), _LAST)
 
 
 def fork(lower: int, upper: int) -> int:
@@ -48,22 +48,19 @@ def fork(lower: int, upper: int) -> int:
     Parameters
     ----------
     lower, upper
-        Ends of the interval, which belong to it.
+        Ends of the interval, at least 1, which belong to it.
 
     Returns
     -------
     int
-        The node: the number in the interval that is divisible by the highest power of 2, where the interval is longer
-        than one tick.
+        The node: the number in the interval that is divisible by the highest power of 2.
 
     Examples
     --------
-    >>> fork(5, 11), fork(3, 3), fork(0, 7)
-    (8, 3, 4)
+    >>> fork(5, 11), fork(3, 3), fork(1, 7), fork(4, 7)
+    (8, 3, 4, 4)
     """
-    if lower == upper:
-        return lower
-    low_bits = (lower ^ upper).bit_length() - 1
+    low_bits = ((lower - 1) ^ upper).bit_length() - 1
     return upper >> low_bits << low_bits
 
 

@@ -634,6 +634,24 @@ class SemanticMemory(Closing):
             ledger.update(self.store, operations, building(self.store, change.added, change.removed))
             self.store.flush()
 
+    def update_copy(self, is_current: Callable[[ox.Store], bool], follow: Callable[[ox.Store], None]) -> None:
+        """Bring a copy of data that another store holds up to date; lessons and shapes do not concern it.
+
+        Parameters
+        ----------
+        is_current
+            Function that says whether the copy is up to date.
+        follow
+            Function that writes what is missing; a crash during it must not damage the copy.
+        """
+        with reading(self.path):
+            if is_current(self.store):
+                return
+        self.require_writable()
+        with self._writing(), committed(self.path):
+            follow(self.store)
+            self.store.flush()
+
     def commit_in_bulk(self, write: Callable[[SemanticMemory], None]) -> None:
         """Commit many changes at once, to a copy of this memory, which then replaces it.
 

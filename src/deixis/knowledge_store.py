@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
 COMPLETION_SHARE = 0.5
 """Share of a query's time limit in which the implications of layouts are computed."""
+
+
+_GRAPHS = re.compile(r"\b(graph|from)\b", re.IGNORECASE)  # a query without these reads no graph of the blackboard
 
 
 class KnowledgeStore(Closing):
@@ -347,6 +351,8 @@ class KnowledgeStore(Closing):
         QueryTimeoutError, QueryMemoryError
             If a limit is reached.
         """
+        if _GRAPHS.search(sparql):
+            self._follow_episodes()
         memory, started = self.memory(), time.monotonic()
         if time_limit > 0 and not memory.read_only and memory.incomplete_layouts(sparql):
             from deixis.deadline import Deadline
@@ -355,6 +361,15 @@ class KnowledgeStore(Closing):
             complete_implications(memory, self.ontology, Deadline.after(COMPLETION_SHARE * time_limit))
             time_limit = max(time_limit - (time.monotonic() - started), time_limit * (1 - COMPLETION_SHARE) / 2)
         return memory.query(sparql, time_limit, memory_limit)
+
+    def _follow_episodes(self) -> None:
+        """Bring the graphs of the blackboard up to date, if the memory has episodes."""
+        from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+        from deixis.memory.episodes.projection import follow, is_current
+
+        if has_episodes(self.path):
+            with Blackboard.open(self.path) as board:
+                self.memory(create=True).update_copy(partial(is_current, board), partial(follow, board))
 
     def owl(self) -> ObjectView:
         """Return the ontology with everything learned as objects of owlready2.

@@ -25,7 +25,7 @@ from deixis.memory.semantic.queries.tokens import (
     too_deep,
 )
 from deixis.memory.semantic.rdf.files import PREFIXES
-from deixis.memory.semantic.rdf.graphs import CANONICAL, GraphName, graph_iri
+from deixis.memory.semantic.rdf.graphs import GRAPHS, READABLE, GraphName, graph_iri
 from deixis.ontology.relation import nearest
 from deixis.ontology.triples import typed
 from deixis.ontology.vocabulary import BASE, DX
@@ -107,7 +107,7 @@ def run_query(answering: Answering, sparql: str, union: Sequence[ox.NamedNode], 
     """
     checked = _admitted(sparql)
     default = None if checked.names_graphs else [graph.value for graph in union]
-    named = [graph.value for graph in CANONICAL] if checked.asks_graphs and default else None
+    named = [graph.value for graph in READABLE] if checked.asks_graphs and default else None
     found = answer(answering, sparql, checked, checked.prefixes, default, named, None, limits)
     return QueryResult.of(checked.kind, found, checked.ordered, limits)
 
@@ -378,14 +378,14 @@ def _body(found: list[Token]) -> list[Token]:
 
 def _check_from(text: _Text, found: list[Token], known: dict[str, str]) -> bool:
     """Return whether the query names graphs with FROM; raise QueryError for graphs that the memory does not have."""
-    own, named = {iri.value for iri in CANONICAL}, False
+    own, named = {iri.value for iri in READABLE}, False
     for position, token in enumerate(found):
         if token.kind is not TokenKind.WORD or token.upper != "FROM":
             continue
         rest = found[position + 1 : position + 3]
         graph = rest[1] if rest and rest[0].upper == "NAMED" and len(rest) > 1 else rest[0] if rest else token
         if _iri(graph, known) not in own:
-            listed = ", ".join(f"dxg:{name}" for name in CANONICAL.values())
+            listed = ", ".join(f"dxg:{iri.value.removeprefix(GRAPHS)}" for iri in READABLE)
             raise text.error(
                 graph.start, f"the memory does not have this graph, and graphs are not fetched; it has {listed}"
             )

@@ -199,6 +199,12 @@ def lesson_of_graph(iri: str) -> tuple[str, GraphName] | None:
     return unquote(lesson), GraphName(name)
 
 
+FLUENTS, NOW = ox.NamedNode(GRAPHS + "fluents"), ox.NamedNode(GRAPHS + "now")
+"""Graphs of the blackboard: descriptions of all fluents, and the statements that hold now; copies of its log."""
+
+READABLE = (*CANONICAL, FLUENTS, NOW)
+"""Graphs that a query can name."""
+
 COUNTED = ox.NamedNode(STATISTICS + "counted")
 """Graph of the counts of all lessons together."""
 

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
@@ -20,16 +21,29 @@ if TYPE_CHECKING:
     import rdflib.term
 
 
-@lru_cache(maxsize=1)
-def shapes_graph() -> rdflib.Graph:
-    """Return the packaged shapes, parsed once."""
+@lru_cache(maxsize=4)
+def shapes_graph(file: Path = SHAPES_FILE) -> rdflib.Graph:
+    """Return shapes, parsed once.
+
+    Parameters
+    ----------
+    file
+        Turtle file of the shapes; the packaged shapes by default.
+
+    Returns
+    -------
+    Graph
+        The shapes.
+    """
     import rdflib
 
-    return rdflib.Graph().parse(SHAPES_FILE, format="turtle")
+    return rdflib.Graph().parse(file, format="turtle")
 
 
-def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
-    """Return the violations of the packaged shapes by some focus nodes or by all, sorted and without warnings.
+def violations(
+    triples: Iterable[ox.Triple], focus: Collection[str] | None = None, file: Path = SHAPES_FILE
+) -> list[ShapeResult]:
+    """Return the violations of shapes by some focus nodes or by all, sorted and without warnings.
 
     Parameters
     ----------
@@ -37,6 +51,8 @@ def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = Non
         Triples to check.
     focus
         Texts of the focus nodes; all nodes by default.
+    file
+        Turtle file of the shapes; the packaged shapes by default.
 
     Returns
     -------
@@ -45,12 +61,12 @@ def violations(triples: Iterable[ox.Triple], focus: Collection[str] | None = Non
     """
     triples = list(triples)
     try:
-        results = validate(triples, focus)
+        results = validate(triples, focus, file)
     except (TypeError, ValueError, ArithmeticError, RuntimeError):
         # pyshacl fails for values that cannot be compared, such as a time with a zone and one without
         if focus is None or len(focus) == 1:
             return [_incomparable(*(focus or ()))]
-        results = [result for node in focus for result in violations(triples, {node})]
+        results = [result for node in focus for result in violations(triples, {node}, file)]
     return sorted({result for result in results if result.severity == "Violation"}, key=str)
 
 
@@ -59,7 +75,9 @@ def _incomparable(node: str = "somewhere") -> ShapeResult:
     return ShapeResult(short(node), None, told, "Violation", "comparable values")
 
 
-def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None) -> list[ShapeResult]:
+def validate(
+    triples: Iterable[ox.Triple], focus: Collection[str] | None = None, file: Path = SHAPES_FILE
+) -> list[ShapeResult]:
     """Return all results of validating triples, of any severity, for some focus nodes or for all.
 
     Parameters
@@ -68,6 +86,8 @@ def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None)
         Triples to check.
     focus
         Texts of the focus nodes; all nodes by default.
+    file
+        Turtle file of the shapes; the packaged shapes by default.
 
     Returns
     -------
@@ -87,7 +107,7 @@ def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None)
         data.parse(data=(ox.serialize(triples, format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8"), format="nt")
         _, found, _ = pyshacl.validate(
             data,
-            shacl_graph=shapes_graph(),
+            shacl_graph=shapes_graph(file),
             advanced=False,
             inference="none",
             do_owl_imports=False,
@@ -95,8 +115,9 @@ def validate(triples: Iterable[ox.Triple], focus: Collection[str] | None = None)
         )
     if not isinstance(found, rdflib.Graph):
         raise RuntimeError(f"pyshacl could not validate: {found}")
+    names = shapes_graph(file)
     results = [(found.value(node, rdflib.SH.focusNode), node) for node in _results(found)]
-    return [_result(found, node) for about, node in results if focus is None or _asked(about, focus)]
+    return [_result(found, node, names) for about, node in results if focus is None or _asked(about, focus)]
 
 
 def _results(found: rdflib.Graph) -> Iterator[rdflib.term.Node]:
@@ -132,13 +153,12 @@ def quiet() -> Iterator[None]:
         logger.setLevel(level)
 
 
-def _result(found: rdflib.Graph, node: rdflib.term.Node) -> ShapeResult:
+def _result(found: rdflib.Graph, node: rdflib.term.Node, names: rdflib.Graph) -> ShapeResult:
     import rdflib
 
     sh = rdflib.SH
     shape = found.value(node, sh.sourceShape)
     path, value = found.value(node, sh.resultPath), found.value(node, sh.value)
-    names = shapes_graph()
     return ShapeResult(
         focus=short(str(found.value(node, sh.focusNode))),
         path=short(str(path)) if isinstance(path, rdflib.URIRef) else None,

@@ -1,0 +1,127 @@
+"""Check changes of fluents by SHACL before they are written.
+
+Compiled checks accept fluents that are certainly well formed; pyshacl decides about the others and says what is wrong.
+The data of a check is the description of each changed fluent and its statement as a plain triple. Shapes with
+constraints that cannot be compiled are checked by pyshacl alone, which is slower.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import pyoxigraph as ox
+
+from deixis.answers import count
+from deixis.errors import OntologyError
+from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.episodes.rdf import TYPE, fluent_iri, fluent_triples, statement_triple, thing_iri
+from deixis.memory.errors import RejectedWriteError, ShapesError
+from deixis.memory.semantic.validation.compiled_shapes import Shapes, compile_shapes
+from deixis.memory.semantic.validation.shacl import violations
+from deixis.ontology.tbox import TBOX_FILES
+
+if TYPE_CHECKING:
+    from deixis.memory.semantic.rdf.after import Node
+    from deixis.memory.semantic.validation.focus_data import FocusData
+
+SHIPPED = TBOX_FILES[0].with_name("episode_shapes.ttl")
+"""Shapes that every fluent must conform to."""
+
+
+class Guard:
+    """The shapes of one Turtle file, compiled where they can be."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._compiled: Shapes | None = None
+        try:
+            self._compiled = compile_shapes(file)
+        except OntologyError:
+            self._compiled = None  # a constraint that only pyshacl knows
+        except (OSError, ValueError) as error:
+            raise ShapesError(f"{file}: the shapes cannot be read: {error}") from error
+
+    def check(self, fluents: Iterable[EpisodicFluent]) -> None:
+        """Raise RejectedWriteError unless fluents conform to the shapes.
+
+        Parameters
+        ----------
+        fluents
+            Fluents as they are after a change.
+
+        Raises
+        ------
+        RejectedWriteError
+            If one does not conform; the error names the shape and the reason for each violation.
+        """
+        doubtful = [fluent for fluent in fluents if not self.accepts(fluent)]
+        if doubtful:
+            results = violations([triple for fluent in doubtful for triple in _described(fluent)], file=self._file)
+            if results:
+                raise RejectedWriteError(
+                    f"nothing was written: it breaks the shapes in {count(len(results), 'place')}", results
+                )
+
+    def accepts(self, fluent: EpisodicFluent) -> bool:
+        """Return whether the compiled checks are certain that a fluent conforms.
+
+        Parameters
+        ----------
+        fluent
+            The fluent.
+
+        Returns
+        -------
+        bool
+            False if pyshacl must decide.
+        """
+        if self._compiled is None:
+            return False
+        view = cast("FocusData", _Description(_described(fluent)))
+        nodes: tuple[Node, ...] = (fluent_iri(fluent.id), thing_iri(fluent.statement.subject))
+        return all(
+            shape.sure(view, node) for node in nodes for shape in self._compiled.shapes if shape.targets(view, node)
+        ) and not any(shape.objects_of for shape in self._compiled.shapes)
+
+
+@lru_cache(maxsize=1)
+def shipped_guard() -> Guard:
+    """Return the guard of the shipped shapes, compiled once."""
+    return Guard(SHIPPED)
+
+
+def _described(fluent: EpisodicFluent) -> list[ox.Triple]:
+    return [*fluent_triples(fluent), statement_triple(fluent.statement)]
+
+
+class _Description:
+    """The triples of one fluent, with the methods of ``FocusData`` that compiled checks call."""
+
+    def __init__(self, triples: Sequence[ox.Triple]) -> None:
+        self._said: dict[Node, dict[ox.NamedNode, list[Node]]] = defaultdict(lambda: defaultdict(list))
+        for triple in triples:
+            self._said[triple.subject][triple.predicate].append(triple.object)
+
+    def values(self, node: Node, predicate: ox.NamedNode) -> list[Node]:
+        return self._said[node].get(predicate, [])
+
+    fresh = values
+
+    def some(self, node: Node, predicate: ox.NamedNode, number: int) -> list[Node]:
+        return self.values(node, predicate)[:number]
+
+    def classes(self, node: Node) -> frozenset[Node]:
+        return frozenset(self.values(node, TYPE))
+
+    def is_a(self, node: Node, kind: Node) -> bool:
+        return kind in self.classes(node)
+
+    def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
+        return {subject for subject in self._said if node in self.values(subject, predicate)}
+
+    def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
+        return bool(self.subjects(predicate, node))

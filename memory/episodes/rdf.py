@@ -1,0 +1,177 @@
+"""Fluents as RDF: SOSA observations with times, certainty and provenance, and statements as plain triples.
+
+>>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
+>>> print(statement_triple(cup.statement))
+<https://w3id.org/deixis/episodes/thing/cup> <https://w3id.org/deixis/onto#on> <https://w3id.org/deixis/episodes/thing/table>
+>>> len(fluent_triples(cup))
+11
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import lru_cache
+from urllib.parse import quote
+
+import pyoxigraph as ox
+
+from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.ontology.triples import category_iri
+from deixis.reasoning.temporal.fluent import Statement
+
+EP = "https://w3id.org/deixis/episodes#"
+"""Namespace of the terms for fluents; ``ontology/episodes.ttl`` defines them."""
+
+RESOURCES = "https://w3id.org/deixis/episodes/"
+"""Namespace of fluents, things, agents and events."""
+
+SOSA = "http://www.w3.org/ns/sosa/"
+_PROV = "http://www.w3.org/ns/prov#"
+
+TYPE = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#type")
+_FLUENT, _OBSERVATION = ox.NamedNode(EP + "Fluent"), ox.NamedNode(SOSA + "Observation")
+_IDENTIFIER, _CERTAINTY, _ORIGIN = (ox.NamedNode(EP + name) for name in ("identifier", "certainty", "origin"))
+_SUBJECT, _PREDICATE = ox.NamedNode(SOSA + "hasFeatureOfInterest"), ox.NamedNode(SOSA + "observedProperty")
+_THING, _TEXT = ox.NamedNode(SOSA + "hasResult"), ox.NamedNode(SOSA + "hasSimpleResult")
+_BY, _FROM = ox.NamedNode(_PROV + "wasAttributedTo"), ox.NamedNode(_PROV + "wasDerivedFrom")
+_ENDS = tuple(ox.NamedNode(EP + name) for name in ("earliestStart", "latestStart", "earliestFinish", "latestFinish"))
+_DOUBLE = ox.NamedNode("http://www.w3.org/2001/XMLSchema#double")
+_TRUE = ox.Literal(True)
+_NAME = re.compile(r"[\w.:-]+")
+
+TEXTS = {"at", "said"}
+"""Predicates whose objects are texts, not things."""
+
+
+@lru_cache(maxsize=100_000)
+def fluent_iri(id: str) -> ox.NamedNode:
+    """Return the IRI of a fluent.
+
+    Parameters
+    ----------
+    id
+        Its id.
+
+    Returns
+    -------
+    NamedNode
+        The IRI.
+    """
+    return _resource("fluent", id)
+
+
+@lru_cache(maxsize=10_000)
+def thing_iri(name: str) -> ox.NamedNode:
+    """Return the IRI of a thing.
+
+    Parameters
+    ----------
+    name
+        Its name on the blackboard, such as ``t1``.
+
+    Returns
+    -------
+    NamedNode
+        The IRI.
+    """
+    return _resource("thing", name)
+
+
+@lru_cache(maxsize=10_000)
+def predicate_iri(name: str) -> ox.NamedNode:
+    """Return the IRI of a predicate: of a relation of the ontology if it has one of this name.
+
+    Parameters
+    ----------
+    name
+        The predicate; ``isA`` stands for ``rdf:type``.
+
+    Returns
+    -------
+    NamedNode
+        The IRI.
+    """
+    if name == "isA":
+        return TYPE
+    return ox.NamedNode(_relations().get(name) or EP + quote(name, safe=""))
+
+
+@lru_cache(maxsize=1)
+def _relations() -> dict[str, str]:
+    """Return the IRIs of the relations of the ontology by their names and the last parts of their IRIs."""
+    from deixis.ontology.tbox import default_ontology
+
+    relations = default_ontology().relations
+    return {name: each.iri for each in relations.values() for name in (each.name, each.iri.rpartition("#")[2])}
+
+
+@lru_cache(maxsize=10_000)
+def _object(predicate: str, name: str) -> ox.NamedNode | ox.Literal:
+    if predicate == "isA":
+        return ox.NamedNode(category_iri(name))
+    if predicate in TEXTS or not _NAME.fullmatch(name):
+        return ox.Literal(name)
+    return thing_iri(name)
+
+
+def statement_triple(statement: Statement) -> ox.Triple:
+    """Return a statement as a plain triple; one without an object has the value true.
+
+    Parameters
+    ----------
+    statement
+        Subject, predicate and object.
+
+    Returns
+    -------
+    Triple
+        The triple.
+    """
+    thing = _TRUE if statement.object is None else _object(statement.predicate, statement.object)
+    return ox.Triple(thing_iri(statement.subject), predicate_iri(statement.predicate), thing)
+
+
+def fluent_triples(fluent: EpisodicFluent) -> list[ox.Triple]:
+    """Return the description of a fluent.
+
+    Parameters
+    ----------
+    fluent
+        The fluent.
+
+    Returns
+    -------
+    list of Triple
+        Its triples; an unknown bound of a time has none.
+    """
+    node, said, source = fluent_iri(fluent.id), fluent.statement, fluent.source
+    found = [
+        ox.Triple(node, TYPE, _FLUENT),
+        ox.Triple(node, TYPE, _OBSERVATION),
+        ox.Triple(node, _IDENTIFIER, ox.Literal(fluent.id)),
+        ox.Triple(node, _SUBJECT, thing_iri(said.subject)),
+        ox.Triple(node, _PREDICATE, predicate_iri(said.predicate)),
+        ox.Triple(node, _CERTAINTY, _double(fluent.certainty)),
+        ox.Triple(node, _ORIGIN, ox.Literal(source.origin.value)),
+        ox.Triple(node, _BY, _resource("agent", source.by)),
+    ]
+    if said.object is not None:
+        value = _object(said.predicate, said.object)
+        found.append(ox.Triple(node, _TEXT if isinstance(value, ox.Literal) else _THING, value))
+    start, finish = fluent.start, fluent.finish
+    for predicate, time in zip(_ENDS, (start.lower, start.upper, finish.lower, finish.upper), strict=True):
+        if math.isfinite(time):
+            found.append(ox.Triple(node, predicate, _double(time)))
+    if source.event is not None:
+        found.append(ox.Triple(node, _FROM, _resource("event", source.event)))
+    return found
+
+
+def _double(number: float) -> ox.Literal:
+    return ox.Literal(repr(float(number)), datatype=_DOUBLE)
+
+
+def _resource(kind: str, name: str) -> ox.NamedNode:
+    return ox.NamedNode(f"{RESOURCES}{kind}/{quote(name, safe='')}")
