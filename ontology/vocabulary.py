@@ -118,6 +118,9 @@ class DX(StrEnum):
     SCRIPT_FILE = BASE + "scriptFile"
     SCRIPT_TEXT = BASE + "scriptText"
     SCENE_TEXT = BASE + "sceneText"
+    SCENE_FILE = BASE + "sceneFile"
+    TOLD_TEXT = BASE + "toldText"
+    TAUGHT_BY = BASE + "taughtBy"
     RELATION_MODEL = BASE + "RelationModel"
     MODEL_TERM = BASE + "ModelTerm"
     TERM_OF = BASE + "termOf"
@@ -167,6 +170,7 @@ class PROV(StrEnum):
 
     ACTIVITY = "http://www.w3.org/ns/prov#Activity"
     ENTITY = "http://www.w3.org/ns/prov#Entity"
+    PERSON = "http://www.w3.org/ns/prov#Person"
     SOFTWARE_AGENT = "http://www.w3.org/ns/prov#SoftwareAgent"
     USED = "http://www.w3.org/ns/prov#used"
     WAS_DERIVED_FROM = "http://www.w3.org/ns/prov#wasDerivedFrom"

@@ -135,7 +135,7 @@ class WriteBatch:
         self.places[said.id] = moved[0]
 
     def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
-        """Drop an existing view, the keys of its arrays, and that of its lesson.
+        """Drop an existing view, the keys of its arrays, and those of its lesson and its teachings.
 
         Parameters
         ----------
@@ -146,7 +146,8 @@ class WriteBatch:
         arrays
             Keys of its arrays.
         """
-        self.pairs += [(each, None) for each in (key, *arrays, keys.name_key(keys.LESSON, view_id))]
+        beside = (keys.name_key(kind, view_id) for kind in (keys.LESSON, keys.TEACHINGS))
+        self.pairs += [(each, None) for each in (key, *arrays, *beside)]
         self.places[view_id] = None
         self.views -= 1
 

@@ -13,8 +13,12 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-ARRAYS, CATEGORY, JOURNAL, LESSON, COUNT, VIEW = b"a", b"c", b"j", b"l", b"n", b"v"
-"""First bytes of keys: arrays, category records, the last applied journal, lessons of views, counts, view headers."""
+ARRAYS, CATEGORY, JOURNAL, LESSON, COUNT, TEACHINGS, VIEW = b"a", b"c", b"j", b"l", b"n", b"t", b"v"
+"""First bytes of keys.
+
+They are of arrays, category records, the last applied journal, lessons of views, counts, the teachings of views that
+were taught more than once, and view headers.
+"""
 
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _END, _ZERO = b"\x00\x00", b"\x00\xff"

@@ -20,6 +20,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
@@ -29,11 +30,11 @@ from typing import Self
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import read_about, read_name, write_category, write_name
+from deixis.memory.perceptual.codec import ViewHeader, read_about, read_name, write_category, write_name
 from deixis.memory.perceptual.handle import Handle, WriteBatch, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
+from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken
 
 
 class LevelMemory(Closing):
@@ -228,6 +229,32 @@ class LevelMemory(Closing):
         with self.snapshot() as now:
             sealed = now.get(key)
         return None if sealed is None else read_name(key, sealed)
+
+    def teachings(self) -> dict[str, tuple[Json, ...]]:
+        """Return all teachings of each view that was taught more than once, by the view's id.
+
+        Returns
+        -------
+        dict
+            Teachings in turn, as JSON, by the ids of views.
+        """
+        with self.snapshot() as now:
+            return now.teachings()
+
+    def headers(self) -> Iterator[ViewHeader]:
+        """Iterate over the headers of all views, without reading arrays.
+
+        Yields
+        ------
+        ViewHeader
+            Headers in the order of :meth:`views`.
+
+        Raises
+        ------
+        DamagedMemoryError
+            At a damaged header.
+        """
+        return self.snapshot().headers()
 
     def taught_by_lessons(self, category: str) -> tuple[str, ...]:
         """Return the ids of the views of a category that belong to lessons.
@@ -425,6 +452,10 @@ class LevelMemory(Closing):
         for view_id, lesson in batch.lessons.items():
             key = keys.name_key(keys.LESSON, check_name("a view's id", view_id))
             change.pairs.append((key, None) if lesson is None else write_name(keys.LESSON, view_id, lesson))
+        for view_id, teachings in batch.teachings.items():
+            key = keys.name_key(keys.TEACHINGS, check_name("a view's id", view_id))
+            written = json.dumps([dict(each) for each in teachings], separators=(",", ":"))
+            change.pairs.append(write_name(keys.TEACHINGS, view_id, written) if teachings else (key, None))
         return change
 
     def renaming(self, old: str, new: str) -> WriteBatch:

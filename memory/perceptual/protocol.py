@@ -9,7 +9,7 @@ from datetime import datetime
 from types import TracebackType
 from typing import NamedTuple, Protocol, Self
 
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View
 
 Progress = Callable[[int, int], None]
 """A function called with the number of views done and the number of all views."""
@@ -150,6 +150,16 @@ class PerceptualReading(Protocol):
         -------
         dict
             Ids of lessons by the ids of views.
+        """
+        ...
+
+    def teachings(self) -> dict[str, tuple[Json, ...]]:
+        """Return all teachings of each view that was taught more than once, by the view's id.
+
+        Returns
+        -------
+        dict
+            Teachings in turn, as JSON, by the ids of views.
         """
         ...
 

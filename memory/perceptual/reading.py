@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -29,7 +30,7 @@ from deixis.memory.perceptual.codec import (
 from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
-from deixis.memory.perceptual.records import CategoryRecord, View, check_name
+from deixis.memory.perceptual.records import CategoryRecord, Json, View, check_name
 from deixis.ontology.relation import nearest
 
 MAX_LISTED = 5
@@ -409,6 +410,32 @@ class Snapshot(Closing):
         """
         return {key[1:].decode(): read_name(key, sealed) for key, sealed in self.pairs(keys.LESSON)}
 
+    def teachings(self) -> dict[str, tuple[Json, ...]]:
+        """Return all teachings of each view that was taught more than once, by the view's id.
+
+        Returns
+        -------
+        dict
+            Teachings in turn, as JSON, by the ids of views.
+        """
+        found = ((key, read_name(key, sealed)) for key, sealed in self.pairs(keys.TEACHINGS))
+        return {key[1:].decode(): tuple(json.loads(turns)) for key, turns in found}
+
+    def headers(self) -> Iterator[ViewHeader]:
+        """Iterate over the headers of all views, without reading arrays.
+
+        Yields
+        ------
+        ViewHeader
+            Headers in the order of :meth:`views`.
+
+        Raises
+        ------
+        DamagedMemoryError
+            At a damaged header.
+        """
+        return (read_about(*pair) for pair in self.pairs(keys.VIEW))
+
     def counts(self) -> StoreCounts:
         """Return the counts in the snapshot.
 
@@ -571,7 +598,17 @@ def _findings(now: Snapshot, progress: Progress | None = None) -> Iterator[Findi
         yield Finding("order of views", f"it cannot be read completely: {_line(error)}")
     if found != counts.views >= 0:
         yield Finding("counts", f"{counts.views} views were written, but {found} are there")
+    yield from _teachings(now)
     yield from _strays(now)
+
+
+def _teachings(now: Snapshot) -> Iterator[Finding]:
+    try:
+        for view_id in now.teachings():
+            if now.about(view_id) is None:
+                yield Finding(f"teachings of view '{view_id}'", "they belong to no view")
+    except _WRONG as error:
+        yield Finding("teachings", f"they cannot be read completely: {_line(error)}")
 
 
 def _categories(now: Snapshot) -> Iterator[Finding]:

@@ -156,8 +156,9 @@ class Batch:
 
     A view with a known id replaces the stored one, whatever its category was, and belongs to no lesson. A record of a
     category replaces the stored record. ``forgotten`` are ids of views, ``dropped`` names of categories whose records
-    are removed. ``lessons`` maps ids of views to their lessons; None means no lesson. Raises RecordError where an id or
-    a name occurs twice.
+    are removed. ``lessons`` maps ids of views to their lessons; None means no lesson. ``teachings`` maps ids of views
+    to all their teachings in turn, as JSON; an empty list where the view itself says all. Raises RecordError where an
+    id or a name occurs twice.
     """
 
     views: Sequence[View] = ()
@@ -165,6 +166,7 @@ class Batch:
     forgotten: Sequence[str] = ()
     dropped: Sequence[str] = ()
     lessons: Mapping[str, str | None] = field(default_factory=dict)
+    teachings: Mapping[str, Sequence[Json]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         ids = [*(view.id for view in self.views), *self.forgotten]

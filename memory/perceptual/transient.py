@@ -21,7 +21,7 @@ from deixis.memory.perceptual.handle import closed
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import unknown_category, unknown_view
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View, check_merging, check_name, name_taken
+from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,7 @@ class _StoredViews:
     records: dict[str, CategoryRecord]
     batches: int
     lessons: dict[str, str] = field(default_factory=dict)
+    teachings: dict[str, tuple[Json, ...]] = field(default_factory=dict)
 
 
 class TransientReading(Closing):
@@ -167,6 +168,16 @@ class TransientReading(Closing):
         """
         return dict(self._content.lessons)
 
+    def teachings(self) -> dict[str, tuple[Json, ...]]:
+        """Return all teachings of each view that was taught more than once, by the view's id.
+
+        Returns
+        -------
+        dict
+            Teachings in turn, as JSON, by the ids of views.
+        """
+        return dict(self._content.teachings)
+
     def stats(self) -> PerceptualStats:
         """Return the size of the memory.
 
@@ -259,7 +270,11 @@ class TransientMemory(TransientReading):
                 lessons.pop(view_id, None)
                 if lesson is not None:
                     lessons[view_id] = lesson
-            self._keep(views, records, lessons)
+            kept = self._content.teachings.items()
+            teachings = {view_id: turns for view_id, turns in kept if view_id not in replaced}
+            teachings |= {view_id: tuple(turns) for view_id, turns in batch.teachings.items()}
+            teachings = {view_id: turns for view_id, turns in teachings.items() if turns}
+            self._kept = _StoredViews(views, records, self._content.batches + 1, lessons, teachings)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
         """Write batches of new views, all or none.
@@ -348,7 +363,8 @@ class TransientMemory(TransientReading):
             views = {view_id: view for view_id, view in self._content.views.items() if view.category != category}
             records = {name: kept for name, kept in self._content.records.items() if name != category}
             lessons = {view_id: lesson for view_id, lesson in self._content.lessons.items() if view_id in views}
-            self._keep(views, records, lessons)
+            teachings = {view_id: turns for view_id, turns in self._content.teachings.items() if view_id in views}
+            self._kept = _StoredViews(views, records, self._content.batches + 1, lessons, teachings)
 
     def _move(self, category: str, record: CategoryRecord) -> None:
         views = {
@@ -356,7 +372,5 @@ class TransientMemory(TransientReading):
             for view_id, view in self._content.views.items()
         }
         records = {name: kept for name, kept in self._content.records.items() if name != category}
-        self._keep(views, {**records, record.name: record}, self._content.lessons)
-
-    def _keep(self, views: dict[str, View], records: dict[str, CategoryRecord], lessons: dict[str, str]) -> None:
-        self._kept = _StoredViews(views, records, self._content.batches + 1, lessons)
+        records[record.name] = record
+        self._kept = replace(self._content, views=views, records=records, batches=self._content.batches + 1)

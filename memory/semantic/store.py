@@ -365,7 +365,7 @@ class SemanticMemory(Closing):
         UnknownLessonError
             If there is no such lesson.
         """
-        self._known(lesson)
+        self.require_lesson(lesson)
         with reading(self.path):
             self._forgets += 1
             number = Change(operations=tuple(ledger.unnumbering(self.store, lesson)))
@@ -489,7 +489,7 @@ class SemanticMemory(Closing):
         UnknownLessonError
             If there is no such lesson.
         """
-        self._known(lesson)
+        self.require_lesson(lesson)
         with reading(self.path):
             return ledger.copies(self.store, lesson)
 
@@ -663,9 +663,15 @@ class SemanticMemory(Closing):
         write
             Function that commits the changes to the copy.
         """
+
+        def counting(copy: SemanticMemory) -> None:
+            write(copy)
+            self._forgets += copy._forgets
+            copy._forgets = 0
+
         self._drop_views()
         with self._writing():
-            commit_aside(self._writable, write)
+            commit_aside(self._writable, counting)
 
     def kept_up(self) -> str | None:
         """Return the rules by which the inferred graph and the statistics are up to date.
@@ -678,7 +684,19 @@ class SemanticMemory(Closing):
         with reading(self.path):
             return ledger.kept_up(self.store)
 
-    def _known(self, lesson: str) -> None:
+    def require_lesson(self, lesson: str) -> None:
+        """Raise UnknownLessonError, naming the nearest lesson, if there is no lesson with an id.
+
+        Parameters
+        ----------
+        lesson
+            The id.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
+        """
         if not self.knows(lesson):
             known = self.lessons()
             near = nearest(lesson, list(known))

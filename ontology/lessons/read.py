@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from datetime import datetime
 
 import pyoxigraph as ox
 
 from deixis.errors import UnknownTermError
 from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact, Source
-from deixis.ontology.lessons.types import Alternative, LayoutConcept, Match, Role
+from deixis.ontology.lessons.types import ANONYMOUS, Alternative, LayoutConcept, Match, Role
 from deixis.ontology.relation import Relation, Relations, nearest
 from deixis.ontology.triple_index import TripleIndex
 from deixis.ontology.triples import last_part
@@ -178,6 +179,56 @@ def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) 
         script_file = told.value(lesson, DX.SCRIPT_FILE) or name
         records.append(LessonRecord(name, script_file, script_text, scene_text, matches, words_only))
     return tuple(records)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Origin of a lesson: who taught it, when, in which words, and in which scene.
+
+    ``told_text`` are the words of a person; None for a lesson from a script in the layout language.
+    """
+
+    lesson: str
+    teacher: str
+    started: datetime
+    scene_file: str
+    scene_text: str
+    script_text: str
+    told_text: str | None = None
+
+
+def provenances(episodes: Iterable[ox.Triple]) -> tuple[Provenance, ...]:
+    """Return the provenance of all lessons.
+
+    Parameters
+    ----------
+    episodes
+        Triples of the graph of episodes.
+
+    Returns
+    -------
+    tuple of Provenance
+        The provenance of each lesson that has a time, by id. A lesson of an earlier version has the teacher
+        :data:`~deixis.ontology.lessons.types.ANONYMOUS` and no scene file.
+    """
+    told = TripleIndex(episodes)
+    found = []
+    for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):
+        started, teacher = told.value(lesson, PROV.STARTED_AT_TIME), told.value(lesson, DX.TAUGHT_BY)
+        if started is None:
+            continue
+        found.append(
+            Provenance(
+                lesson=last_part(lesson),
+                teacher=(told.value(teacher, W3C.RDFS_LABEL) if teacher else None) or ANONYMOUS,
+                started=datetime.fromisoformat(started),
+                scene_file=told.value(lesson, DX.SCENE_FILE) or "",
+                scene_text=told.value(lesson, DX.SCENE_TEXT) or "",
+                script_text=told.value(lesson, DX.SCRIPT_TEXT) or "",
+                told_text=told.value(lesson, DX.TOLD_TEXT),
+            )
+        )
+    return tuple(found)
 
 
 def _match(part: str, said: TripleIndex) -> Match | None:

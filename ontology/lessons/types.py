@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from deixis.ontology.graph import RelationGraph
 
 
+ANONYMOUS = "user"
+"""Name of a teacher who is not named."""
+
+
 @dataclass(frozen=True, slots=True)
 class Role:
     """A place in a layout: its name, the class IRI of its kind, whether that was declared, and the IRI of a colour."""
@@ -201,6 +205,9 @@ class Lesson:
     script_file: str
     script_text: str
     scene_text: str
+    teacher: str = ANONYMOUS
+    scene_file: str = ""
+    told_text: str | None = None  # the words of a person, where the script was made from them
 
     @property
     def id(self) -> str:
@@ -232,6 +239,9 @@ class WordLesson:
     scene_text: str
     engine: str = "labels"
     proved_best: bool = False
+    teacher: str = ANONYMOUS
+    scene_file: str = ""
+    told_text: str | None = None
 
 
 def next_lesson_id(name: str, taken: Callable[[str], bool]) -> str:

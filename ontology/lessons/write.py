@@ -115,7 +115,7 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
 
 
 def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
-    """Yield the provenance of the lesson: its time, script, scene, engine and software version.
+    """Yield the provenance of the lesson: its time, teacher, words, script, scene, engine and software version.
 
     Parameters
     ----------
@@ -136,17 +136,25 @@ def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
     about.say(PROV.ENDED_AT_TIME, typed(lesson.ended))
     script, agent = script_iri(lesson.id), learned_iri("agent", f"deixis {lesson.version}")
     about.say(PROV.USED, iri(scene_iri(lesson)))
+    person = learned_iri("person", lesson.teacher)
     about.say(PROV.WAS_ASSOCIATED_WITH, iri(agent))
     yield ox.Triple(iri(script), iri(W3C.RDF_TYPE), iri(PROV.ENTITY))
     yield ox.Triple(iri(script), iri(W3C.RDFS_LABEL), text(lesson.script_file))
     yield ox.Triple(iri(agent), iri(W3C.RDF_TYPE), iri(PROV.SOFTWARE_AGENT))
     yield ox.Triple(iri(agent), iri(W3C.RDFS_LABEL), text(f"Deixis {lesson.version}"))
+    yield ox.Triple(iri(person), iri(W3C.RDF_TYPE), iri(PROV.PERSON))
+    yield ox.Triple(iri(person), iri(W3C.RDFS_LABEL), text(lesson.teacher))
+    about.say(DX.TAUGHT_BY, iri(person))
     about.say(DX.ENGINE, text(lesson.engine))
     about.say(DX.PROVED_BEST, typed(lesson.proved_best))
     about.say(DX.SOFTWARE_VERSION, text(lesson.version))
     about.say(DX.SCRIPT_FILE, text(lesson.script_file))
     about.say(DX.SCRIPT_TEXT, text(lesson.script_text))
     about.say(DX.SCENE_TEXT, text(lesson.scene_text))
+    if lesson.scene_file:
+        about.say(DX.SCENE_FILE, text(lesson.scene_file))
+    if lesson.told_text is not None:
+        about.say(DX.TOLD_TEXT, text(lesson.told_text))
     yield from about
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from deixis.learning.words import LearnedWords
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
+    from deixis.memory.semantic.rdf.links import Link
     from deixis.memory.semantic.store import SemanticMemory
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.ontology.tbox import Ontology
@@ -245,6 +246,30 @@ class KnowledgeStore(Closing):
         from deixis.learning.update import forgetting
 
         return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
+
+    def unlearning(self, lessons: Sequence[str], links: Mapping[str, Sequence[Link]]) -> Commit:
+        """Return a function that removes lessons, with what follows from them only, and changes the links of views.
+
+        Parameters
+        ----------
+        lessons
+            Ids of the lessons.
+        links
+            All links of each view that changes, by the id of the view.
+
+        Returns
+        -------
+        Commit
+            The function, to be called while the memory is held.
+
+        Raises
+        ------
+        UnknownLessonError
+            If there is no such lesson.
+        """
+        from deixis.learning.update import unlearning
+
+        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links))
 
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from deixis.workflows.check import Check
     from deixis.workflows.dialogue import Ask
     from deixis.workflows.learn import Learned
+    from deixis.workflows.unlearn import Selection, Unlearned
 
 
 Given = ParamSpec("Given")
@@ -158,6 +159,7 @@ class Session(Closing):
         scene: Scene | str | Path | Mapping[str, Any],
         engine: str = "exact",
         time_limit: float = DEFAULT_TIME_LIMIT,
+        teacher: str = "user",
     ) -> Learned:
         """Ground a script in a scene, and keep the layout and the look of its objects, with their provenance.
 
@@ -174,6 +176,8 @@ class Session(Closing):
             Name of the engine that grounds the script.
         time_limit
             Seconds for the grounding.
+        teacher
+            Name of the teacher, stored with the lesson.
 
         Returns
         -------
@@ -185,7 +189,7 @@ class Session(Closing):
         DeixisError
             The script contradicts itself or earlier lessons. Nothing was changed.
         """
-        (learned,) = self.learn_all([(script, scene)], engine, time_limit)
+        (learned,) = self.learn_all([(script, scene)], engine, time_limit, teacher=teacher)
         return learned
 
     @_one_at_a_time
@@ -195,6 +199,7 @@ class Session(Closing):
         engine: str = "exact",
         time_limit: float = DEFAULT_TIME_LIMIT,
         progress: Progress | None = None,
+        teacher: str = "user",
     ) -> tuple[Learned, ...]:
         """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
 
@@ -210,6 +215,8 @@ class Session(Closing):
             Seconds for each grounding.
         progress
             Called with the number of grounded examples and of all.
+        teacher
+            Name of the teacher, stored with each lesson.
 
         Returns
         -------
@@ -223,7 +230,7 @@ class Session(Closing):
         """
         from deixis.workflows.learn import learn
 
-        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit, progress)
+        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit, progress, teacher)
 
     @_one_at_a_time
     def check(
@@ -431,6 +438,34 @@ class Session(Closing):
         from deixis.workflows.views_of_lessons import forget_lesson
 
         forget_lesson(lesson, self.knowledge_store, self.view_store)
+
+    @_one_at_a_time
+    def unlearn(self, selection: Selection, dry_run: bool = False) -> Unlearned:
+        """Take back what a lesson, a sentence, a label, a table, a teacher or a day taught, in all stores.
+
+        Everything that came only from it goes, and nothing else: a view keeps its other teachings, and is forgotten
+        with its last one.
+
+        Parameters
+        ----------
+        selection
+            What to take back.
+        dry_run
+            True to change nothing, and return what would be taken back.
+
+        Returns
+        -------
+        Unlearned
+            The lessons and views; it is false where nothing matches.
+
+        Raises
+        ------
+        UnknownLessonError
+            If the selected lesson is not in the memory.
+        """
+        from deixis.workflows.unlearn import unlearn
+
+        return unlearn(selection, self.knowledge_store, self.view_store, dry_run)
 
     @_one_at_a_time
     def import_(self, file: str | Path) -> None:

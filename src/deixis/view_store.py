@@ -98,7 +98,10 @@ class ViewStore(Closing):
         return name if name in alike or not alike else alike[0]
 
     def keeping(
-        self, views: Sequence[View], lessons: Mapping[str, str] | None = None
+        self,
+        views: Sequence[View],
+        lessons: Mapping[str, str] | None = None,
+        named: Sequence[tuple[View, str | None]] = (),
     ) -> tuple[WriteBatch, tuple[Taught, ...]]:
         """Return the change that stores views, and what each taught.
 
@@ -111,6 +114,8 @@ class ViewStore(Closing):
             The views, each with its category.
         lessons
             Id of the lesson by the id of the view, for views that a lesson teaches.
+        named
+            All new teachings in turn, each a view and its lesson or None.
 
         Returns
         -------
@@ -120,7 +125,7 @@ class ViewStore(Closing):
         from deixis.learning.views import batch_of
 
         def change(readable: LevelMemory) -> tuple[WriteBatch, tuple[Taught, ...]]:
-            batch, taught = batch_of(readable, views, lessons)
+            batch, taught = batch_of(readable, views, lessons, named)
             return readable.writing(batch), taught
 
         return self._despite_damage(self.memory(create=True), change)
@@ -239,7 +244,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     SceneError
         If two things have the same points.
     """
-    from deixis.learning.views import GROUNDING
+    from deixis.learning.teachings import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
     views = [view_of_thing(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
@@ -280,9 +285,24 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
-    boxes = hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
-    metadata = {"scene": file, "boxes": boxes, "object": object_id, "teacher": teacher}
+    metadata = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}
     return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)
+
+
+def boxes_key(scene: Scene) -> str:
+    """Return a key of the boxes of a scene, by which two tables in one file are kept apart.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    str
+        Digest of the corners of all boxes, 16 characters.
+    """
+    return hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
 
 
 def category_name(text: str) -> str:

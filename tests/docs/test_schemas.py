@@ -76,6 +76,7 @@ CASES = [
     ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
     ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
     ("taught", "teach {t}/table.scene.json o1 napkin"),
+    ("unlearned", "unlearn --table {t}/table.scene.json --dry-run"),
     ("time", "time {e}/serving.fluents.json"),
     ("time", "time {e}/serving.fluents.json --at 25"),
     ("time", "time {e}/serving.fluents.json --relate fetch served"),

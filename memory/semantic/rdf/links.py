@@ -7,7 +7,7 @@ no views.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 from urllib.parse import unquote
 
@@ -89,6 +89,33 @@ def relinking(store: ox.Store, categories: Mapping[str, str | None], besides: fr
             if category is not None:
                 triple = ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category))
                 operations += ledger.insertion(views_graph(lesson), [triple])
+    return Change(operations=tuple(operations))
+
+
+def replacing(store: ox.Store, links: Mapping[str, Sequence[Link]]) -> Change:
+    """Return the change that replaces all links of some views.
+
+    Parameters
+    ----------
+    store
+        Store before the change.
+    links
+        New links by the ids of the views; a view without links belongs to no lesson.
+
+    Returns
+    -------
+    Change
+        Change that leaves the canonical graphs as they are.
+    """
+    operations: list[ledger.Operation] = []
+    for view, new in links.items():
+        for quad in store.quads_for_pattern(view_node(view), CATEGORY_OF_VIEW, None, None):
+            lesson = lesson_of_views(quad.graph_name)
+            if lesson is not None:
+                operations += ledger.deletion(views_graph(lesson), [quad.triple])
+        for link in new:
+            triple = ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(link.category))
+            operations += ledger.insertion(views_graph(link.lesson), [triple])
     return Change(operations=tuple(operations))
 
 

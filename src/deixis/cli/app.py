@@ -51,6 +51,7 @@ COMMAND_GROUPS = {
         "learn-relation": "learn_relation",
         "habits": "habits",
         "category": "category_app",
+        "unlearn": "unlearn",
         "memory": "memory_app",
     },
     "Reasoning": {"reason": "reason", "validate": "validate", "solve": "solve", "time": "time_command"},

@@ -35,6 +35,7 @@ def learn(
     ],
     engine: Annotated[EngineName, typer.Option(help=ENGINE_HELP)] = EngineName.EXACT,
     time_limit: TimeLimit = 10.0,
+    teacher: Annotated[str, typer.Option(metavar="NAME", help="Name of the teacher.")] = "user",
     hide_labels: HideLabels = False,
     image: Image = None,
     memory: MemoryDir = None,
@@ -52,7 +53,7 @@ def learn(
     with Session(memory) as session:
         try:
             with progress_bar("grounding") as progress:
-                lessons = session.learn_all(pairs, engine, time_limit, progress)
+                lessons = session.learn_all(pairs, engine, time_limit, progress, teacher)
         except NothingFoundError as error:
             print_note(error)
             raise typer.Exit(NO) from error

@@ -12,7 +12,7 @@ from pathlib import Path
 from deixis.grammar.format import format_script
 from deixis.grammar.language import language_of
 from deixis.grammar.script import Script
-from deixis.ontology.lessons.types import LayoutConcept, Lesson, Role, SeenRelation
+from deixis.ontology.lessons.types import ANONYMOUS, LayoutConcept, Lesson, Role, SeenRelation
 from deixis.ontology.relation import Relations
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
@@ -27,11 +27,12 @@ In a larger scene only the pairs that the script compares are kept.
 
 @dataclass(frozen=True, slots=True)
 class Occasion:
-    """Time span in which something was learned, and the version of the program that learned it."""
+    """Time span in which something was learned, the version of the program that learned it, and the teacher."""
 
     started: datetime
     ended: datetime
     version: str
+    teacher: str = ANONYMOUS
 
 
 def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[str, ...]] = ()) -> LayoutConcept:
@@ -123,6 +124,9 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
         script_file=script.file,
         script_text=format_script(script),
         scene_text=json.dumps(scene_to_dict(scene), ensure_ascii=False, sort_keys=True),
+        teacher=occasion.teacher,
+        scene_file=scene.file,
+        told_text=None if script.reading is None else script.reading.text,
     )
 
 

@@ -32,7 +32,8 @@ from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.after import After
 from deixis.memory.semantic.rdf.change import Change, concluding, modelling, remodelling, together
 from deixis.memory.semantic.rdf.graphs import COUNTED, STATISTICS, GraphName, ModelSet, models_graph, share_graph
-from deixis.memory.semantic.rdf.links import linking, relinking
+from deixis.memory.semantic.rdf.links import Link, linking, relinking
+from deixis.memory.semantic.rdf.links import replacing as replacing_links
 from deixis.memory.semantic.rdf.package import package_digest
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.lessons.shapes import layout_shapes
@@ -209,6 +210,52 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
     UnknownLessonError
         If there is no such lesson.
     """
+    change, rules = _departed(memory, ontology, lesson)
+    return lambda journal: memory.commit(change, rules, journal)
+
+
+def unlearning(
+    memory: SemanticMemory, ontology: Ontology, lessons: Sequence[str], links: Mapping[str, Sequence[Link]]
+) -> Commit:
+    """Return a function that removes lessons, with what follows from them only, and changes the links of views.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        The ontology.
+    lessons
+        Ids of the lessons.
+    links
+        All links of each view that changes, by the id of the view.
+
+    Returns
+    -------
+    Commit
+        The function.
+
+    Raises
+    ------
+    UnknownLessonError
+        If there is no such lesson.
+    """
+    if len(lessons) <= 1:
+        parts = [_departed(memory, ontology, lesson) for lesson in lessons]
+        change = together(*(part for part, _ in parts), replacing_links(memory.store, links))
+        rules = parts[0][1] if parts else memory.kept_up()
+        return lambda journal: memory.commit(change, rules, journal)
+
+    def write(copy: SemanticMemory, journal: str | None) -> None:
+        for lesson in lessons:
+            copy.commit(*_departed(copy, ontology, lesson), journal)
+        copy.commit(replacing_links(copy.store, links), copy.kept_up(), journal)
+
+    return lambda journal: memory.commit_in_bulk(lambda copy: write(copy, journal))
+
+
+def _departed(memory: SemanticMemory, ontology: Ontology, lesson: str) -> tuple[Change, str]:
+    """Return the change that removes a lesson, with what follows from it only, and its rules."""
     one = _remembered_one(memory, ontology, lesson)
     change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
     known, strength = informed(models_from_triples(memory.models(ModelSet.WORDS)))
@@ -219,7 +266,7 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
             others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
             words = fit(_recollected_from(others, ontology), strength)
         change = together(change, _worded(memory, words))
-    return lambda journal: memory.commit(change, rules, journal)
+    return change, rules
 
 
 def forget_words(memory: SemanticMemory) -> None:

@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
+from deixis.learning.teachings import GROUNDING, Teaching, Teachings, teachings_of, written
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.calibrated import read_calibrations, write_calibrations
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReading, Progress, ViewKey
-from deixis.memory.perceptual.records import Batch, CategoryRecord, View
+from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
 from deixis.perception.features.colour import ColourDescriber
@@ -90,9 +91,6 @@ DISTANCES, IDS, COMPARED, DESCRIBED = "distances", "views", "compared", "describ
 """Names in the state and metadata of a category: D_V between its views; the ids of the views, in the same order; the
 descriptor in which they were compared; all descriptors that each of the views has.
 """
-
-GROUNDING = "grounding"
-"""Name of the teacher of views that come from a grounding."""
 
 LEAST_CONFIDENCE = 0.01
 MOST_CONFIDENCE = 0.99
@@ -238,7 +236,10 @@ def thing_of(view: View) -> str | None:
 
 
 def batch_of(
-    memory: PerceptualMemory, views: Sequence[View], lessons: Mapping[str, str] | None = None
+    memory: PerceptualMemory,
+    views: Sequence[View],
+    lessons: Mapping[str, str] | None = None,
+    named: Sequence[tuple[View, str | None]] = (),
 ) -> tuple[Batch, tuple[Taught, ...]]:
     """Return the batch that stores views in turn, and what each view taught.
 
@@ -253,6 +254,9 @@ def batch_of(
         The views, each with its category.
     lessons
         Id of the lesson by the id of the view; other views are from a teacher and belong to no lesson.
+    named
+        All new teachings in turn, each a view and its lesson or None: ``views``, and those that change no view, as a
+        teacher named it otherwise.
 
     Returns
     -------
@@ -277,14 +281,85 @@ def batch_of(
             corrected = before if before != view.category else None
             again = before == view.category
             taught.append(Taught(view.id, view.category, len(known[view.category]), corrected, again))
-        records = [
-            record_of(category, chosen[name], described_by_all(grown[name]))
-            for name, category in known.items()
-            if len(category)
-        ]
-        empty = [name for name, category in known.items() if not len(category)]
+        records, empty = _records(known, chosen, grown)
         coming = list({view.id: view for view in views}.values())
-    return Batch(coming, records, dropped=empty, lessons=dict(lessons or {})), tuple(taught)
+        turns = _with_turns(memory, named)
+    return Batch(coming, records, dropped=empty, lessons=dict(lessons or {}), teachings=turns), tuple(taught)
+
+
+def _records(
+    known: Mapping[str, InstanceCategory],
+    chosen: Mapping[str, ViewDescriptor],
+    views: Mapping[str, Sequence[View]],
+) -> tuple[list[CategoryRecord], list[str]]:
+    """Return the records of the categories that have views, and the names of the others."""
+    records = [
+        record_of(category, chosen[name], described_by_all(views[name]))
+        for name, category in known.items()
+        if len(category)
+    ]
+    return records, [name for name, category in known.items() if not len(category)]
+
+
+def _with_turns(memory: PerceptualReading, named: Sequence[tuple[View, str | None]]) -> dict[str, list[Json]]:
+    """Return all teachings of views, with those that are new, as they are stored."""
+    stored, lessons = memory.teachings(), memory.lessons_of_views()
+    turns: dict[str, Teachings] = {}
+    for id, view in _kept(memory, [view for view, _ in named]).items():
+        current = Teaching(view.category, view.time, view.metadata, lessons.get(id))
+        turns[id] = teachings_of(current, stored.get(id, ()))
+    for view, lesson in named:
+        turns[view.id] = (*turns.get(view.id, ()), Teaching(view.category, view.time, view.metadata, lesson))
+    return {id: written(all_turns) for id, all_turns in turns.items()}
+
+
+def batch_without(memory: PerceptualReading, gone: Sequence[str], changed: Mapping[str, Teaching]) -> Batch:
+    """Return the batch that forgets views, and gives others the category, time and metadata of another teaching.
+
+    Write the batch before anything else is written, so inside :meth:`PerceptualMemory.exclusive`.
+
+    Parameters
+    ----------
+    memory
+        The memory.
+    gone
+        Ids of the views to forget.
+    changed
+        Teachings by the ids of the views to change.
+
+    Returns
+    -------
+    Batch
+        The batch, with the records of all categories that lose or gain a view.
+    """
+    before = {id: memory.view(id) for id in (*gone, *changed)}
+    after = {id: _retold(before[id], turn) for id, turn in changed.items()}
+    names = dict.fromkeys(view.category for view in (*before.values(), *after.values()))
+    there = set(memory.categories())
+    own = {name: list(memory.views(name)) if name in there else [] for name in names}
+    stay = {
+        name: [*(view for view in own[name] if view.id not in before), *_of(after.values(), name)] for name in names
+    }
+    chosen = {name: comparison_of(views)[0] for name, views in stay.items()}
+    known = {}
+    for name in names:
+        category = InstanceCategory(name)
+        if own[name]:
+            record = memory.category(name)
+            compared = record.metadata.get(COMPARED, SPIN_IMAGE_ROOTS.name) == chosen[name].name
+            held = own[name] if compared else [view for view in own[name] if view.id not in before]
+            category = instances_of(record, held, (chosen[name],))[0]
+            for view in held:
+                category = category.without_view(view.id) if view.id in before else category
+        for view in _of(after.values(), name):
+            category = category.with_view(view.id, view.descriptors[chosen[name].name], thing_of(view))
+        known[name] = category
+    records, empty = _records(known, chosen, stay)
+    return Batch(list(after.values()), records, forgotten=list(gone), dropped=empty)
+
+
+def _retold(view: View, turn: Teaching) -> View:
+    return View(view.id, turn.category, turn.time, view.descriptors, view.points, dict(turn.metadata))
 
 
 def taught_by_hand(memory: PerceptualReading, views: Sequence[View]) -> dict[str, View]:

@@ -268,4 +268,7 @@ def word_lesson(script: Script, scene: Scene, id: str, occasion: Occasion) -> Wo
         script_file=script.file,
         script_text=layout_script(layout_concept(script, id), script.ontology),
         scene_text=json.dumps(scene_to_dict(scene), ensure_ascii=False, sort_keys=True),
+        teacher=occasion.teacher,
+        scene_file=scene.file,
+        told_text=None if script.reading is None else script.reading.text,
     )

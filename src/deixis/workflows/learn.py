@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
+from deixis.ontology.lessons.types import ANONYMOUS
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
 from deixis.reasoning.grounding.answer import Grounding
@@ -53,6 +54,7 @@ def learn(
     engine: str = "exact",
     time_limit: float = DEFAULT_TIME_LIMIT,
     progress: Callable[[int, int], None] | None = None,
+    teacher: str = ANONYMOUS,
 ) -> tuple[Learned, ...]:
     """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
 
@@ -74,6 +76,8 @@ def learn(
         Seconds for each grounding.
     progress
         Called with the number of grounded examples and of all.
+    teacher
+        Name of the person who teaches.
 
     Returns
     -------
@@ -94,14 +98,15 @@ def learn(
     taken: set[str] = set()
     learned = []
     for done, (script, scene) in enumerate(pairs, 1):
-        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken))
+        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken, teacher))
         if progress is not None:
             progress(done, len(pairs))
     if not learned:
         return ()
     groups = [views.except_taught(seen) for _, seen in learned]
     new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
-    found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views))
+    named = {one.lesson.id: seen for one, seen in learned}
+    found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views, named))
     for (one, _), (new, kept) in zip(learned, groups, strict=True):
         found.append(replace(one, seen=tuple(left[: len(new)]), kept_names=kept))
         del left[: len(new)]
@@ -115,6 +120,7 @@ def _lesson(
     engine: str,
     time_limit: float,
     taken: set[str],
+    teacher: str,
 ) -> tuple[Learned, list[View]]:
     """Return the lesson that a script and a scene are, not kept yet, and its views; put its id among those taken."""
     from deixis.learning.lesson import Occasion, layout_name, lesson_of
@@ -134,5 +140,5 @@ def _lesson(
     knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
     lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
     taken.add(lesson_id)
-    lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION))
+    lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION, teacher))
     return Learned(lesson, found), views_of_matches(scene, lesson.matches)

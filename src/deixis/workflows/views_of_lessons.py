@@ -7,20 +7,29 @@ perceptual store carries it out or drops it, also after a kill: see :mod:`deixis
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from deixis.knowledge_store import KnowledgeStore
+from deixis.learning.teachings import each_changed
+from deixis.memory.perceptual.records import Batch
 from deixis.view_store import ViewStore
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
     from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson
 
 
 def keep_lessons(
-    lessons: Sequence[Lesson], seen: Mapping[str, Sequence[View]], knowledge: KnowledgeStore, views: ViewStore
+    lessons: Sequence[Lesson],
+    seen: Mapping[str, Sequence[View]],
+    knowledge: KnowledgeStore,
+    views: ViewStore,
+    named: Mapping[str, Sequence[View]] = MappingProxyType({}),
 ) -> tuple[Taught, ...]:
     """Write lessons, and the views that each teaches, in one step over both stores.
 
@@ -34,6 +43,8 @@ def keep_lessons(
         The semantic store.
     views
         The perceptual store.
+    named
+        Views that each lesson names, by its id, with those that a teacher named otherwise.
 
     Returns
     -------
@@ -41,13 +52,14 @@ def keep_lessons(
         What each view taught, in turn.
     """
     together = [view for lesson in lessons for view in seen.get(lesson.id, ())]
-    if not together:
+    turns = [(view, lesson.id) for lesson in lessons for view in named.get(lesson.id, seen.get(lesson.id, ()))]
+    if not turns:
         knowledge.keeping(lessons, {})(None)
         return ()
     owners = {view.id: lesson.id for lesson in lessons for view in seen.get(lesson.id, ())}
     memory = views.memory(create=True)
     with memory.exclusive():
-        change, taught = views.keeping(together, owners)
+        change, taught = views.keeping(together, owners, turns)
         memory.handle.write_with(change, knowledge.keeping(lessons, seen))
     return taught
 
@@ -71,7 +83,7 @@ def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught
     """
     memory = views.memory(create=True)
     with memory.exclusive():
-        change, (taught,) = views.keeping([view])
+        change, (taught,) = views.keeping([view], named=[(view, None)])
         of_lessons = [view.id] if memory.lesson_of(view.id) is not None else []
         _write(change, dict.fromkeys(of_lessons), knowledge, views)
     return taught
@@ -94,22 +106,27 @@ def forget_lesson(lesson: str, knowledge: KnowledgeStore, views: ViewStore) -> N
     UnknownLessonError
         If there is no such lesson.
     """
-    from deixis.memory.perceptual.records import Batch
     from deixis.memory.semantic.rdf.links import lessons_with, links_of
 
     commit, store = knowledge.forgetting(lesson), knowledge.memory().store
     linked = links_of(store, lesson)
-    if not linked or not views.exists():
+    if not views.exists():
         commit(None)
         return
     memory = views.memory()
     with memory.exclusive():
+        turns = each_changed(
+            memory.teachings(), lambda turn: replace(turn, lesson=None) if turn.lesson == lesson else turn
+        )
+        if not linked and not turns:
+            commit(None)
+            return
         owners: dict[str, str | None] = {}
         for link in linked:
             if memory.lesson_of(link.view) == lesson:
                 others = [other for other in lessons_with(store, link.view) if other != lesson]
                 owners[link.view] = others[-1] if others else None
-        memory.handle.write_with(memory.writing(Batch(lessons=owners)), commit)
+        memory.handle.write_with(memory.writing(Batch(lessons=owners, teachings=turns)), commit)
 
 
 def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
@@ -134,6 +151,7 @@ def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewSt
     memory = views.memory()
     with memory.exclusive():
         change = memory.renaming(old, new)
+        change.pairs += _renamed_teachings(memory, old, new)
         _write(change, dict.fromkeys(memory.taught_by_lessons(old), new), knowledge, views)
 
 
@@ -157,6 +175,7 @@ def merge_categories(source: str, into: str, knowledge: KnowledgeStore, views: V
     memory = views.memory()
     with memory.exclusive():
         change = memory.merging(source, into)
+        change.pairs += _renamed_teachings(memory, source, into)
         _write(change, dict.fromkeys(memory.taught_by_lessons(source), into), knowledge, views)
 
 
@@ -180,7 +199,17 @@ def forget_category(name: str, knowledge: KnowledgeStore, views: ViewStore) -> N
     memory = views.memory()
     with memory.exclusive():
         change = memory.forgetting(name)
+        gone = {key.id for key in memory.listing(name)}
+        others = {view: turns for view, turns in memory.teachings().items() if view not in gone}
+        turns = each_changed(others, lambda turn: None if turn.category == name else turn)
+        change.pairs += memory.writing(Batch(teachings=turns)).pairs
         _write(change, dict.fromkeys(memory.taught_by_lessons(name)), knowledge, views)
+
+
+def _renamed_teachings(memory: LevelMemory, old: str, new: str) -> list[tuple[bytes, bytes | None]]:
+    """Return the keys and values of the teachings of which some name a category that gets another name."""
+    turns = each_changed(memory.teachings(), lambda turn: replace(turn, category=new) if turn.category == old else turn)
+    return memory.writing(Batch(teachings=turns)).pairs
 
 
 def _write(
