@@ -20,7 +20,7 @@ jsonschema = pytest.importorskip("jsonschema")
 
 EXAMPLES = ROOT / "examples"
 PAGE = ROOT / "docs" / "reference" / "json.md"
-RUN_ELSEWHERE = {"experiment figure6", "experiment scoreboard", "experiment open-ended"}
+RUN_ELSEWHERE = {"experiment figure6", "experiment scoreboard", "experiment open-ended", "experiment apprentice"}
 """Commands whose answers the tests of the experiments validate, since running them takes long."""
 
 CASES = [

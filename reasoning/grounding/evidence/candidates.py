@@ -28,7 +28,10 @@ Candidates = Mapping[str, float]
 
 
 def candidate_ratios(
-    description: RelationGraph, candidates: Sequence[Candidates | None], kinds: Kinds
+    description: RelationGraph,
+    candidates: Sequence[Candidates | None],
+    kinds: Kinds,
+    outliers: float = CANDIDATE_OUTLIERS,
 ) -> NDArray[np.float64]:
     r"""Return log-likelihood ratios by candidates of n1 objects being each of n2 things, shape (n1, n2).
 
@@ -41,6 +44,8 @@ def candidate_ratios(
         Candidates of each thing; None, or an empty mapping, gives 0. A name that any thing has counts as taught.
     kinds
         The known kinds.
+    outliers
+        Share of things whose candidates are independent of their names, above 0.
 
     Returns
     -------
@@ -63,5 +68,5 @@ def candidate_ratios(
         if each:
             shares = np.array([each.get(name, 0.0) for name in taught])
             found = np.where(calls.any(axis=1), calls @ shares, max(0.0, 1.0 - float(shares.sum())))
-            ratios[:, thing] = np.log((1 - CANDIDATE_OUTLIERS) * found / prior + CANDIDATE_OUTLIERS)
+            ratios[:, thing] = np.log((1 - outliers) * found / prior + outliers)
     return ratios

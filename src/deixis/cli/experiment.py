@@ -95,3 +95,25 @@ def open_ended(
     else:
         print_lines(lines(found))
         print_written(plot)
+
+
+@experiment.command()
+def apprentice(
+    tables: Annotated[int, typer.Option(min=1, metavar="N", help="Number of tables that are checked.")] = 100,
+    seed: Seed = 1,
+    noise: Annotated[
+        float, typer.Option(min=0.0, max=10.0, metavar="FACTOR", help="Factor on the noise of the depth camera.")
+    ] = 1.0,
+    as_json: AsJson = False,
+) -> None:
+    """Show a robot four things, tell it six layouts on first tables, and let it check further tables."""
+    from deixis.experiments.apprentice.report import lines, to_dict
+    from deixis.experiments.apprentice.run import ApprenticePlan, run
+
+    plan = ApprenticePlan(tables=tables, seed=seed, noise=noise)
+    with step_bar(plan.steps) as tick:
+        found = run(plan, tick=lambda: tick("tables"))
+    if as_json:
+        print_json(to_dict(found))
+    else:
+        print_lines(lines(found))

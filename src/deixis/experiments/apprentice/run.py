@@ -1,0 +1,360 @@
+"""Run the experiment: a teacher points at four things, describes layouts on first tables, and the robot checks others.
+
+The robot sees clouds only. The truth serves the teacher, who points at things that she knows, and the scores.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from deixis.examples_data import example
+from deixis.experiments.apprentice.scoring import Count, TableScore, score, total, true_things
+from deixis.experiments.apprentice.tables import Tampered, lay_tampered
+from deixis.extras import require
+from deixis.ontology.kinds import plain_name
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.simulator.depth import DepthSensor
+from deixis.robot.looking import Look, TableKnowledge
+from deixis.robot.robot import Robot, perceived
+from deixis.workflows.read import read_script
+from deixis.workflows.simulate import CameraSetup, Simulation, simulate
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.perception.scene import Scene
+
+LAYOUTS = ("formal_dinner", "script2", "informal", "breakfast", "tea", "childs_place")
+"""Layouts of the tables; script2 is the formal dinner with three more glasses, by another hand."""
+
+SHOWN = ("dinner_plate", "dinner_fork", "dinner_knife", "napkin")
+"""Categories that are taught by pointing."""
+
+FIRST_TABLES = 3
+"""Number of tables of each layout on which the teacher describes it."""
+
+Tick = Callable[[], None]
+
+
+@dataclass(frozen=True)
+class ApprenticePlan:
+    """The plan of a run.
+
+    Attributes
+    ----------
+    tables
+        Number of further tables, which are checked.
+    seed
+        Seed of all tables.
+    noise
+        Factor on the noise of the depth camera.
+    first_tables
+        Number of tables of each layout on which the teacher describes it.
+    layouts
+        Names of the shipped layouts.
+    processes
+        Number of processes; None for one for each processor.
+    """
+
+    tables: int = 100
+    seed: int = 1
+    noise: float = 1.0
+    first_tables: int = FIRST_TABLES
+    layouts: tuple[str, ...] = LAYOUTS
+    processes: int | None = None
+
+    @property
+    def steps(self) -> int:
+        """Number of tables that are seen."""
+        return self.first_tables * len(self.layouts) + self.tables
+
+
+@dataclass(frozen=True)
+class LessonScore:
+    """Score of a first table: new things, at which the teacher did not point, and what was learned of them.
+
+    ``singled_out`` counts the new things that the words single out if the table is seen perfectly (its true boxes,
+    without names), and those of them that the robot learned right; ``learned`` counts the new things that it learned,
+    and how many of these are right.
+    """
+
+    layout: str
+    singled_out: Count
+    learned: Count
+    questions: int
+    waiting: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Apprentice:
+    """The findings of a run."""
+
+    plan: ApprenticePlan
+    lessons: tuple[LessonScore, ...]
+    tables: tuple[TableScore, ...]
+
+    @property
+    def questions(self) -> int:
+        """Number of questions that the robot asked."""
+        return sum(one.questions for one in self.lessons) + sum(one.questions for one in self.tables)
+
+
+def run(plan: ApprenticePlan, tick: Tick = lambda: None) -> Apprentice:
+    """Teach a robot, and let it check further tables.
+
+    Parameters
+    ----------
+    plan
+        The plan. The same plan gives the same findings.
+    tick
+        Called after each table.
+
+    Returns
+    -------
+    Apprentice
+        Scores of the first tables and of the further ones.
+    """
+    require("open3d", "simulating tables")
+    with tempfile.TemporaryDirectory() as folder, closing(Robot(folder)) as robot:
+        lessons = []
+        for lesson in teach(robot, plan):
+            lessons.append(lesson)
+            tick()
+        knowledge = robot.knowledge()
+        numbers = range(plan.tables)
+        processes = min(plan.processes or len(os.sched_getaffinity(0)), max(plan.tables, 1))
+        if processes == 1:
+            scores = []
+            for number in numbers:
+                scores.append(check_table(knowledge, plan, number))
+                tick()
+            return Apprentice(plan, tuple(lessons), tuple(scores))
+    # The memory is closed: the processes need what was learned, not the stores.
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(processes, context, _begin, (knowledge.portable(), plan)) as pool:
+        scores = []
+        for found in pool.map(_check_in_process, numbers):
+            scores.append(found)
+            tick()
+    return Apprentice(plan, tuple(lessons), tuple(scores))
+
+
+def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[LessonScore]:
+    """Point at things on the first table, and tell all layouts on first tables.
+
+    Parameters
+    ----------
+    robot
+        The robot, whose memory is empty.
+    plan
+        The plan.
+
+    Yields
+    ------
+    LessonScore
+        Score of each first table.
+    """
+    scripts = scripts_of(plan)
+    pointed_at: set[str] = set()
+    for number in range(plan.first_tables):
+        for place, name in enumerate(plan.layouts):
+            _, look = seen_table(scripts[name], plan, _seed(plan, 0, number, place), mistakes=0)
+            scene = robot.sees(look.cloud)
+            truth = true_things(look, scene)
+            for id, thing in truth.items():
+                if plain_name(thing) in SHOWN and thing not in pointed_at:
+                    robot.shown(plain_name(thing), id, by="teacher")
+                    pointed_at.add(thing)
+            told = robot.told(scripts[name])
+            matches = told.learned.grounding.object_matches
+            new = [role for role in told.taught if plain_name(role) not in SHOWN]
+            right = {role for role in new if truth.get(matches[role].perceived) == role}
+            wanted = [role for role in singled_out(scripts[name], look) if plain_name(role) not in SHOWN]
+            yield LessonScore(
+                name,
+                Count(sum(role in right for role in wanted), len(wanted)),
+                Count(len(right), len(new)),
+                told.questions,
+                told.waiting,
+            )
+
+
+def singled_out(script: Script, look: Simulation) -> tuple[str, ...]:
+    """Return the roles that the words single out if the table is seen perfectly, without names.
+
+    Parameters
+    ----------
+    script
+        The layout.
+    look
+        A table that is laid so.
+
+    Returns
+    -------
+    tuple of str
+        Roles whose match in the true boxes is decided.
+    """
+    from deixis.workflows.ground import ground
+
+    found = ground(script, look.truth.without_labels())
+    return tuple(name for name, match in found.object_matches.items() if match.decided)
+
+
+def scripts_of(plan: ApprenticePlan) -> dict[str, Script]:
+    """Return the layouts of a plan.
+
+    Parameters
+    ----------
+    plan
+        The plan.
+
+    Returns
+    -------
+    dict
+        Script by name of the layout.
+    """
+    return {name: read_script(example(f"{name}.layout")) for name in plan.layouts}
+
+
+def _seed(plan: ApprenticePlan, *place: int) -> int:
+    """Return the seed of a table, from the seed of the plan and the place of the table in it."""
+    return int(np.random.SeedSequence([plan.seed, *place]).generate_state(1)[0])
+
+
+def seen_table(
+    script: Script, plan: ApprenticePlan, seed: int, mistakes: int | None = None
+) -> tuple[Tampered, Simulation]:
+    """Lay a table, tamper with it, and look at it.
+
+    Parameters
+    ----------
+    script
+        The layout.
+    plan
+        The plan, which has the noise of the camera.
+    seed
+        Seed of the table.
+    mistakes
+        Number of mistakes; None to draw it.
+
+    Returns
+    -------
+    tuple
+        The table with the truth, and the look at it.
+    """
+    table = lay_tampered(script, seed, mistakes)
+    return table, simulate(table.laid, CameraSetup(sensor=DepthSensor(noise=plan.noise)), seed)
+
+
+def check_table(knowledge: TableKnowledge, plan: ApprenticePlan, number: int) -> TableScore:
+    """Let a robot look at a further table, and score what it says.
+
+    Parameters
+    ----------
+    knowledge
+        What the robot learned.
+    plan
+        The plan.
+    number
+        Number of the table, from 0.
+
+    Returns
+    -------
+    TableScore
+        The score.
+    """
+    _, table, look, scene, understood, layout = looked_at(knowledge, plan, number)
+    taught = {one.name for one in knowledge.known.recogniser.parts[0].categories}
+    return score(understood, table, layout, true_things(look, scene), taught)
+
+
+def looked_at(
+    knowledge: TableKnowledge, plan: ApprenticePlan, number: int
+) -> tuple[int, Tampered, Simulation, Scene, Look, str]:
+    """Look at a further table.
+
+    Parameters
+    ----------
+    knowledge
+        What the robot learned.
+    plan
+        The plan.
+    number
+        Number of the table, from 0.
+
+    Returns
+    -------
+    tuple
+        Seed, table, simulated look, scene, what the robot understood, and the name of the true layout.
+    """
+    layout = plan.layouts[number % len(plan.layouts)]
+    seed = _seed(plan, 1, number)
+    table, look = seen_table(scripts_of(plan)[layout], plan, seed)
+    bare = PointCloud(look.cloud.points, look.cloud.colours, organised=look.cloud.organised, origin=look.cloud.origin)
+    scene = perceived(bare)
+    return seed, table, look, scene, knowledge.look(scene), layout
+
+
+_HELD: dict[str, Any] = {}
+"""Knowledge and plan of a process, which its first call sets."""
+
+
+def _begin(portable: Any, plan: ApprenticePlan) -> None:
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    _HELD["knowledge"], _HELD["plan"] = TableKnowledge.from_portable(portable), plan
+
+
+def _check_in_process(number: int) -> TableScore:
+    return check_table(_HELD["knowledge"], _HELD["plan"], number)
+
+
+def figures(found: Apprentice) -> dict[str, Count]:
+    """Return the figures that the experiment is measured by.
+
+    Parameters
+    ----------
+    found
+        The findings.
+
+    Returns
+    -------
+    dict
+        Count by the key of the JSON report.
+    """
+    return {
+        "new_things_right": total(one.singled_out for one in found.lessons),
+        "names_right": total(one.names for one in found.tables),
+        "mistake_precision": total(each for one in found.tables for each in one.true_reports.values()),
+        "mistake_recall": total(each for one in found.tables for each in one.found.values()),
+        "layouts_right": total(one.layout for one in found.tables),
+    }
+
+
+def kinds_of(scores: Sequence[TableScore]) -> dict[str, tuple[Count, Count]]:
+    """Return precision and recall by kind of mistake.
+
+    Parameters
+    ----------
+    scores
+        Scores of tables.
+
+    Returns
+    -------
+    dict
+        Count of true reports and of found mistakes, by kind.
+    """
+    from deixis.reasoning.comparison.explanation import MistakeKind
+
+    return {
+        kind.value: (total(one.true_reports[kind] for one in scores), total(one.found[kind] for one in scores))
+        for kind in MistakeKind
+    }

@@ -1,0 +1,246 @@
+"""Look at a table with what was learned: which layout lies there, what each thing is, and what is wrong.
+
+The looks of the things (recognition, sizes) and the layouts are one posterior: each layout explains the table with as
+few mistakes as it can (:mod:`deixis.reasoning.comparison.explanation`), its share is that of the sum of all its
+explanations, and the name of a thing is that of its role, averaged over all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from deixis.learning.views import Known, recognise
+from deixis.ontology.kinds import plain_name
+from deixis.ontology.tbox import Ontology
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
+from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.robot.layouts import Experience, LearnedLayout
+
+UNEXPLAINED_LAYOUT = -2.0
+"""Log-likelihood ratio, per thing, that an explanation by a layout must exceed for the layout to be there at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A mistake on a table.
+
+    Attributes
+    ----------
+    kind
+        Kind of the mistake.
+    names
+        Names of the roles that it is about; of an extra thing what it seems to be, or nothing.
+    things
+        Ids of the things that it is about; none for a missing thing.
+    """
+
+    kind: MistakeKind
+    names: tuple[str, ...]
+    things: tuple[str, ...]
+
+    def __str__(self) -> str:
+        names = " and ".join(name.replace("_", " ") for name in self.names) or "an unknown thing"
+        said = {
+            MistakeKind.MISSING: f"the {names} is missing",
+            MistakeKind.EXTRA: f"{names} does not belong here",
+            MistakeKind.DISPLACED: f"the {names} is in the wrong place",
+            MistakeKind.TURNED: f"the {names} is turned",
+            MistakeKind.SWAPPED: f"the {names} have changed places",
+        }
+        return said[self.kind]
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A table as it was understood.
+
+    Attributes
+    ----------
+    scene
+        The things, with the names that recognition gives them.
+    layouts
+        Probability of each known layout, the most probable first; what is left is that of no known layout.
+    explanations
+        Explanation of the table by each layout.
+    """
+
+    scene: Scene
+    layouts: Mapping[str, float]
+    explanations: Mapping[str, tuple[LearnedLayout, Explanation]]
+
+    @property
+    def layout(self) -> str | None:
+        """Name of the layout that lies here; None if it is probably none that is known."""
+        best = next(iter(self.layouts.items()), None)
+        return best[0] if best is not None and best[1] >= 0.5 else None
+
+    @cached_property
+    def names(self) -> dict[str, dict[str, float]]:
+        """Names that each thing may have with their probabilities, the most probable first, by id of the thing."""
+        found: dict[str, dict[str, float]] = {}
+        for place, thing in enumerate(self.scene.objects):
+            shares: dict[str, float] = {}
+            free = 1.0
+            for name, share in self.layouts.items():
+                layout, explanation = self.explanations[name]
+                for role, probability in zip(layout.roles, explanation.roles_of[:, place].tolist(), strict=True):
+                    if probability > 0:
+                        shares[plain_name(role)] = shares.get(plain_name(role), 0.0) + share * probability
+                        free -= share * probability
+            for candidate, probability in thing.candidates:
+                shares[candidate] = shares.get(candidate, 0.0) + max(free, 0.0) * probability
+            found[thing.id] = dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
+        return found
+
+    def name(self, thing: str) -> str | None:
+        """Return the name of a thing.
+
+        Parameters
+        ----------
+        thing
+            Id of the thing.
+
+        Returns
+        -------
+        str or None
+            The most probable name; None if it is more probably none of the known ones.
+        """
+        shares = self.names[thing]
+        best = next(iter(shares.items()), None)
+        return best[0] if best is not None and best[1] >= 1.0 - sum(shares.values()) else None
+
+    def faults(self, layout: str | None = None) -> tuple[Fault, ...]:
+        """Return what is wrong with the table.
+
+        Parameters
+        ----------
+        layout
+            Name of the layout to compare with; None for the one that lies here.
+
+        Returns
+        -------
+        tuple of Fault
+            The mistakes of the most probable explanation; nothing if no layout lies here.
+        """
+        wanted = layout or self.layout
+        if wanted is None:
+            return ()
+        known, explanation = self.explanations[wanted]
+        found = []
+        for mistake in explanation.mistakes:
+            things = tuple(self.scene.ids[thing] for thing in mistake.things)
+            names = tuple(known.roles[role] for role in mistake.roles)
+            if mistake.kind is MistakeKind.EXTRA:
+                name = self.name(things[0])
+                names = (name,) if name is not None else ()
+            found.append(Fault(mistake.kind, names, things))
+        return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class TableKnowledge:
+    """Learned knowledge, as far as looking at a table needs it; no store is open.
+
+    Attributes
+    ----------
+    known
+        Recogniser of the taught categories.
+    layouts
+        Learned layouts.
+    meaning
+        Words and sizes.
+    ontology
+        Known kinds and relations.
+    """
+
+    known: Known
+    layouts: tuple[LearnedLayout, ...]
+    meaning: Meaning
+    ontology: Ontology
+
+    def portable(self) -> tuple[Known, tuple[tuple[str, str, Experience], ...], Meaning]:
+        """Return the knowledge as values for another process, which has the shipped ontology.
+
+        Returns
+        -------
+        tuple
+            The recogniser; name, text and experience of each layout; words and sizes.
+        """
+        from deixis.grammar.format import format_script
+
+        layouts = tuple((one.name, format_script(one.script), one.experience) for one in self.layouts)
+        return self.known, layouts, self.meaning
+
+    @classmethod
+    def from_portable(cls, values: tuple[Known, tuple[tuple[str, str, Experience], ...], Meaning]) -> TableKnowledge:
+        """Return the knowledge from its portable form.
+
+        Parameters
+        ----------
+        values
+            Result of :meth:`portable`.
+
+        Returns
+        -------
+        TableKnowledge
+            The knowledge with the shipped ontology.
+        """
+        from deixis.grammar.parser import parse_script
+        from deixis.ontology.tbox import default_ontology
+
+        known, layouts, meaning = values
+        told = tuple(LearnedLayout(name, parse_script(text), seen) for name, text, seen in layouts)
+        return cls(known, told, meaning, default_ontology())
+
+    def recognised(self, scene: Scene) -> Scene:
+        """Return a scene with the names that recognition gives its things.
+
+        Parameters
+        ----------
+        scene
+            The scene with clouds.
+
+        Returns
+        -------
+        Scene
+            The scene with labels and candidates.
+        """
+        clouds: list[PointCloud | None] = [
+            scene.cloud_of(thing.id) if thing.cloud is not None else None for thing in scene.objects
+        ]
+        if not self.known.recogniser.parts[0].categories:
+            return scene
+        return recognise(self.known, scene, clouds).scene
+
+    def look(self, scene: Scene) -> Look:
+        """Understand a table.
+
+        Parameters
+        ----------
+        scene
+            The scene with clouds.
+
+        Returns
+        -------
+        Look
+            The layouts, names and mistakes.
+        """
+        seen = self.recognised(scene)
+        found = {}
+        for layout in self.layouts:
+            if scene.objects:
+                evidence = layout.evidence(seen, self.ontology, self.meaning)
+                found[layout.name] = (layout, explain(evidence))
+        values = np.array([explanation.evidence for _, explanation in found.values()])
+        # A table of things that no layout mentions has one extra thing after another.
+        nothing = UNEXPLAINED_LAYOUT * len(seen.objects)
+        total = np.logaddexp.reduce(np.append(values, nothing))
+        shares = dict(zip(found, np.exp(values - total).tolist(), strict=True))
+        ordered = dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
+        return Look(replace(seen), ordered, found)

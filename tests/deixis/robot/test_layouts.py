@@ -1,0 +1,75 @@
+"""Test what a robot keeps of the tables of one layout."""
+
+from __future__ import annotations
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import OrientedBox, PerceivedObject
+from deixis.robot.layouts import Experience, LearnedLayout, angle_between, long_axis
+from deixis.workflows.read import read_script
+
+ROLES = ("fork", "knife", "plate")
+
+
+def thing(name: str, x: float, y: float, yaw: float = np.pi / 2) -> PerceivedObject:
+    """Return a long thing of 20 by 2 cm."""
+    box = OrientedBox((x, y, 0.01), yaw, (0.2, 0.02, 0.02))
+    half = np.abs([0.1 * np.cos(yaw) + 0.01 * np.sin(yaw), 0.1 * np.sin(yaw) + 0.01 * np.cos(yaw)])
+    return PerceivedObject(name, (x - half[0], y - half[1], 0.0), (x + half[0], y + half[1], 0.02), oriented=box)
+
+
+def table(places: tuple[float, ...]) -> Experience:
+    things = {role: thing(role, x, 0.0) for role, x in zip(ROLES, places, strict=False)}
+    return Experience.of_table(ROLES, things, default_ontology().relations)
+
+
+places = st.lists(st.floats(-1, 1), min_size=0, max_size=3).map(tuple)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(places, min_size=1, max_size=3))
+def test_order_of_tables_does_not_matter(tables: list[tuple[float, ...]]) -> None:
+    seen = [table(each) for each in tables]
+    sums = [sum(order, Experience()) for order in permutations(seen)]
+    for other in sums:
+        assert other.tables == sums[0].tables
+        assert other.held == sums[0].held
+        assert other.filled == sums[0].filled
+        for pair, moments in other.apart.items():
+            assert moments.total == pytest.approx(sums[0].apart[pair].total, abs=1e-9)
+
+
+def test_experience_counts_what_holds_and_how_far_apart() -> None:
+    seen = table((0.0, 0.2)) + table((0.0, 0.4))
+    assert seen.tables == 2
+    assert (seen.held["left", "fork", "knife"].held, seen.held["left", "fork", "knife"].of) == (2, 2)
+    assert seen.filled["plate"].held == 0
+    assert seen.apart["fork", "knife"].mean[0] == pytest.approx(0.3)
+    assert seen.apart["fork", "knife"].deviation[0] == pytest.approx(0.1)
+
+
+def test_layout_knows_how_its_things_lie() -> None:
+    script = read_script(text="layout place; fork left of knife")
+    layout = LearnedLayout("place", script, table((0.0, 0.2)))
+    assert layout.axis("fork") == pytest.approx(np.pi / 2)
+    assert LearnedLayout.told(script).axis("fork") is None
+
+
+def test_seen_relations_join_the_told_ones() -> None:
+    script = read_script(text="layout place; fork left of knife; plate left of knife")
+    layout = LearnedLayout("place", script, table((0.0, 0.4, 0.2)))
+    told = {(r.name, layout.roles[a], layout.roles[b]): p for r, a, b, p, _ in layout.expectations}
+    assert told["left", "fork", "knife"] == pytest.approx(0.99)
+    assert told["left", "fork", "plate"] == pytest.approx(0.75)
+
+
+def test_round_things_have_no_direction() -> None:
+    plate = PerceivedObject("p", (0, 0, 0), (1, 1, 1), oriented=OrientedBox((0, 0, 0), 0.3, (1.0, 0.9, 1.0)))
+    assert long_axis(plate) is None
+    assert angle_between(0.1, np.pi - 0.1) == pytest.approx(0.2)
