@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from deixis.grammar.english.build import Built, Noun, Said, Verb, misunderstood, notes, viewpoint_of
 from deixis.grammar.english.chunks import Chunk, VerbGroup
 from deixis.grammar.english.joints import Segment
+from deixis.grammar.english.nouns import PEOPLE, last_word
 from deixis.grammar.english.places import HOURS
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
@@ -14,7 +15,15 @@ from deixis.grammar.english.words import APPROXIMATE, ENTER_VERBS, FACE_VERBS, H
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _FRAMES = frozenset({"facing", "from"})
-_PLACING = frozenset({"put", "place", "keep", "leave", "set", "lay", "store", "spread", "position"})
+_PLACING = frozenset(
+    {
+        "put", "place", "keep", "leave", "set", "lay", "store", "spread", "position", "move", "return", "transfer",
+        "shift", "pour", "scatter", "sprinkle", "arrange", "drape", "stand", "hang",
+    }
+)  # fmt: skip
+_BEARING = frozenset({"hold", "contain", "carry", "bear"})
+"""Verbs after whose object a place is that of the object."""
+_TURNING = frozenset({"turn", "flip"})
 _UNDONE = frozenset({"almost", "nearly"})
 _FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
 _LETTING = frozenset({"let", "make", "help", "watch"})
@@ -50,6 +59,7 @@ class Assembly:
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
     is_lost: bool = False  # True if the clause before has an object and was not understood
+    borne: NounPhrase | None = None  # thing that the subject of the clause before holds
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -133,6 +143,7 @@ class Assembly:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
             if subject.phrase.head and not letting:
+                mood = Mood.COMMAND if self.opens_list else mood  # 'mind the saw: it …'
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):
@@ -152,6 +163,8 @@ class Assembly:
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
         person = subject.phrase.pronoun in _PEOPLE
         known = len(self.clauses)
+        held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None
+        self.borne = held.phrase if held is not None and held.phrase.head else None
         for i, verb in enumerate(verbs):
             front = said if i == 0 else ()
             none = subject.phrase.pronoun == "nothing" or subject.phrase.determiner == "no"
@@ -161,10 +174,22 @@ class Assembly:
             if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
+            departs = verb.group.lemma == "leave" and verb.thing is not None and bool(subject.phrase.head)
+            if departs and last_word(subject.phrase.head) not in PEOPLE:
+                misunderstood(span, "'leave' does not say where something is here")
+                left = verb.thing.phrase if verb.thing is not None else None
+                if left is not None and left.head and left.predicates:
+                    self._append(Clause(replace(left, predicates=()), left.predicates, left.span), link)
+                continue
             if verb.thing is not None and verb.group.lemma in _PLACING and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
-            if verb.thing is not None and (verb.group.lemma in _PLACING or (person and verb.group.lemma in _OWNING)):
+            if verb.thing is not None and (
+                verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
+            ):
+                placed = person and verb.group.lemma in _PLACING - {"leave", "keep"} and verb.group.past
+                if placed and " had " not in f" {self.text[slice(*verb.span)]} " and not self._was_undone(span):
+                    verb = replace(verb, group=replace(verb.group, past=False))  # 'I stood the candle on the plate'
                 moved, thing = self._of_the_thing(verb, subject)
                 if subject.phrase.pronoun == "nothing":
                     misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
@@ -397,12 +422,21 @@ class Assembly:
             self.fragments[-1] = replace(joined, predicates=(*joined.predicates, *predicates))
             return
         subject = None if last is None else last.subject
+        if self.borne is not None and link == "," and not built.verbs:
+            subject = self.borne  # 'the shelf holds a lamp, in the middle'
         for verb in verbs:
             noun = None if subject is None else Noun(subject)
             self._clause("said", noun, verb, said, span, mood, None, link)
             said = ()
 
     # clauses
+
+    def _was_undone(self, span: Span) -> bool:
+        """Return True if a sentence in the past says when something was so, or what was done next."""
+        words = self.text[self.raw.start : self.raw.end].casefold()
+        return any(
+            f" {word} " in f" {words} ".replace(",", " ") for word in ("yesterday", "ago", "last", "but", "until")
+        )
 
     def _of_the_thing(self, verb: Verb, subject: Noun) -> tuple[Verb, Noun]:
         """Return *I have a lamp on the desk*, *you keep it under the mug* as said of the lamp."""
@@ -489,6 +523,13 @@ class Assembly:
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
             self.clauses.append(replace(clause, predicates=tuple(kept)))
+
+
+def _turns_over(verb: Verb) -> bool:
+    """Return True for *I turned one jar upside down*."""
+    said = [p for part in verb.said for p in part.predicates]
+    said += verb.thing.phrase.predicates if verb.thing is not None else ()
+    return verb.group.lemma in _TURNING and any(p.relation == "upside_down" for p in said)
 
 
 def _flat(verb: Verb) -> list[Predicate]:

@@ -9,6 +9,7 @@ from typing import Any
 from lark import Transformer, v_args
 
 from deixis.grammar.english.chunks import Chunk, Relator, VerbGroup
+from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.places import directions_of, is_place, place
 from deixis.grammar.english.tree import (
     Adjective,
@@ -159,7 +160,7 @@ class Builder(Transformer[Any, Built]):
             said = tuple(
                 replace(
                     part,
-                    predicates=tuple(replace(p, relation="at") if p.relation == "to" else p for p in part.predicates),
+                    predicates=tuple(_destination(p) for p in part.predicates),
                 )
                 for part in said
             )
@@ -222,6 +223,11 @@ class Builder(Transformer[Any, Built]):
             said = _moved(group, parts[1] or (), chunk.span)
             return Verb(group, said, chunk.span)
         _, things, said = parts
+        if group.lemma in _MOVING and said:
+            said = tuple(replace(part, predicates=tuple(map(_destination, part.predicates))) for part in said)
+        if group.lemma in _MOVING:
+            moved = replace(things.phrase, predicates=tuple(map(_destination, things.phrase.predicates)))
+            things = Noun(moved, tuple(map(_destination, things.extra)))
         return Verb(group, said or (), chunk.span, thing=things)
 
     def nominal(self, nps: Noun, *joined: Any) -> Noun:
@@ -939,7 +945,20 @@ _STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
 
 
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
-_MOVING = frozenset({"move", "bring", "slide", "push", "add", "carry", "take"})
+_MOVING = frozenset(
+    {"shift", "transfer", "relocate", "return", "move", "bring", "slide", "push", "add", "carry", "take"}
+)
+
+
+def _destination(predicate: Predicate) -> Predicate:
+    """Return *to the drawer* after a verb of motion as the place where the thing is now."""
+    if predicate.relation != "to" or not predicate.arguments:
+        return predicate
+    noun = last_word(predicate.arguments[0].head)
+    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+    return replace(predicate, relation=relation)
+
+
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
@@ -979,6 +998,8 @@ def _state(lemma: str, marker: Predicate) -> Predicate:
 def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Predicate:
     span = union(marker.span, following.span)
     relation, value, arguments = following.relation, following.value, following.arguments
+    if relation == "to" and arguments and lemma in _MOVING:
+        relation = _destination(following).relation
     if relation == "to" and arguments:
         if lemma in (
             "affix",
@@ -1026,6 +1047,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "on"
     elif lemma in ("align", "line") and relation in ("with",):
         relation = "aligned"
+    elif lemma in _TELLING and relation in ("inside", "on", "at"):
+        relation = "through"  # 'mentioned in the catalogue'
+    elif lemma in ("cover", "coat", "drape") and relation == "with":
+        return replace(following, relation="on", reversed=True, span=span)
     elif lemma in _COVERING and relation == "above":
         relation = "on"
     elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
@@ -1062,6 +1087,10 @@ _STAYING = word_set(
     " lean prop nestle perch find see go come wait live stop linger belong be"
 )
 """Verbs after which *by* means *near*."""
+_TELLING = word_set(
+    "mention describe list show note picture record state name quote illustrate explain depict photograph"
+)
+"""Verbs after which *in* names a text or a picture."""
 _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
 """Verbs after which *over* means *on*."""
 _PASSIVES = {

@@ -210,6 +210,12 @@ class Chunker:
             order = self._order(at)
             if order is not None:
                 return order
+        told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
+        if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
+            return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
+        if norm == "welcome" and at == 0 and self.norms[1] in ("in", "to", "at"):
+            end = next(i for i in range(1, len(self.norms)) if self.norms[i] in ("", ",", "!", ".", ":", ";"))
+            return Chunk("ADVERB", at, end, norm)
         if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
             return Chunk("ADVERB", at, at + 2, "in first")
         if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
@@ -922,7 +928,10 @@ class Chunker:
             subject = self.chunks[-1].value
             if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
                 return self._finite(at, end, found)  # 'I hung the mirror on the pole'
-        if form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS:
+        owned = self.norms[end] in ("it", "them", "him", "us") and form.form == "past" and self._previous() == "NP"
+        if owned or (
+            form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
+        ):
             return self._finite(at, end, found)  # 'the cups you asked about'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
@@ -1044,6 +1053,8 @@ class Chunker:
         """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
         norm = self.norms[i]
         previous = self._previous()
+        if previous == "ADVERB" and len(self.chunks) > 1 and self.chunks[-2].type in ("COMMA", "BE"):
+            previous = self.chunks[-2].type  # 'a loaf, perfectly preserved'
         if (
             len(norm) < 5
             or not norm.endswith(("ed", "ing"))
@@ -1053,6 +1064,9 @@ class Chunker:
             return None
         if previous == "NP" and len(self.chunks) > 1 and self.chunks[-2].type == "REL" and norm.endswith("ed"):
             return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past"))
+        if previous == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS and norm.endswith("ed"):
+            kind = "TVERB" if self.nouns.starts(i + 1) else "VERB"
+            return Chunk(kind, at, i + 1, _with(group, norm, "unknown", "past", past=True))
         if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
@@ -1208,7 +1222,7 @@ _NOUNS_TOO = word_set("stand rest set place position face point back front top b
 _HEDGES_OF_PLACES = word_set("about around roughly approximately approx almost nearly")
 """Hedges that belong to the place or the measure after them, and not to the verb."""
 
-_UNREAL = frozenset({"ought", "should", "could", "would", "might"})
+_UNREAL = frozenset({"must", "may", "ought", "should", "could", "would", "might"})
 """Modal verbs that, before *have*, say what was not."""
 _TENDING = {
     "supposed": "should", "meant": "should", "intended": "should", "allowed": "can", "permitted": "can",

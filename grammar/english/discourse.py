@@ -32,6 +32,13 @@ MIN_PAST_OF_STORY = 3
 PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
 """Beginning of a relative clause in the past."""
 
+NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
+"""Words by which a story says what is so in the end."""
+WHILE_DOING = re.compile(
+    r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
+    re.IGNORECASE,
+)
+"""Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
 UNSURE_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
 )
@@ -50,6 +57,8 @@ UNREAL = re.compile(
     r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|planned|tried|tries|intends?|intended|"
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
     r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
+    r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
+    r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
     r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b",
     re.IGNORECASE,
 )
@@ -101,7 +110,7 @@ SUPPOSED = {
 }
 """Weights of adverbs that the layout language does not have."""
 RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
-ABSENT = frozenset(["missing", "absent", "gone"])
+ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
 DIRECTIONS = frozenset(
     [
@@ -324,7 +333,7 @@ class Discourse:
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
             optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
             condition=clause.condition or self.condition,
-            past=clause.past and not self.story, uncertain=uncertain,
+            past=clause.past and not self.story and not NOW.search(self.text[slice(*clause.span)]), uncertain=uncertain,
         )  # fmt: skip
         subject = clause.subject
         if subject is not None and any(member.negated for member in subject.members):
@@ -338,8 +347,10 @@ class Discourse:
             p for p in clause.predicates
             if p.value is not None and p.value.word in ABSENT and p.positive and p.subject_part is None
         ]  # fmt: skip
-        if missing and subject is not None and subject.head and not self.how.past and clause.positive:
-            self._absent(subject)
+        lost = () if subject is None else subject.members or (subject,)
+        if missing and lost and all(m.head for m in lost) and not self.how.past and clause.positive:
+            for member in lost:
+                self._absent(member)
             return
         if (
             subject is not None and subject.pronoun in ("anything", "something")
@@ -382,7 +393,11 @@ class Discourse:
         predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
         if not predicates and clause.predicates and not clause.existential:
             return
-        aimed = bool(predicates) and all(p.relation in ("pointing", "facing") for p in predicates)
+        aimed = bool(predicates) and all(
+            p.relation in ("pointing", "facing")
+            or (p.relation == "far" and any(a.pronoun in VIEWER_WORDS for a in p.arguments))
+            for p in predicates
+        )
         own = subject.determiner is None and subject.owner is None and bool(subject.head) and not subject.count
         last = next((f for f in self.references.recent if f.subject is not None), None)
         if (
@@ -611,7 +626,11 @@ class Discourse:
         last = next((f.subject for f in self.references.recent if f.subject is not None), None)
         if last is None:
             return False
+        if last.size > 1 and last_word(part.head) in REMOVABLE:
+            return True  # 'rosin and cloth are in the case, lid open'
         for predicate in predicates:
+            if predicate.relation == "far":
+                predicate = replace(predicate, relation="pointing", arguments=(), value=None, part="away")
             if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (
                 predicate.relation == "pointing" and predicate.part is not None and "same" in predicate.part
             ):
@@ -807,7 +826,8 @@ class Discourse:
             self._pair(subject, relation, other, predicate.reversed)
 
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
-        if other is subject:
+        same_group = subject.itself.group is not None and subject.itself.group is other.itself.group
+        if other is subject or (same_group and relation == "inside"):
             return
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
@@ -1220,7 +1240,12 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
     around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
     bare = all((not p.arguments and p.relation in DIRECTIONS) or p.reversed for p in phrase.predicates)
-    return around and bare
+    noun = last_word(entity.noun)
+    flat = noun in ("wall", "ceiling") and all(
+        p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
+    )
+    amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
+    return (around and bare) or flat or amid
 
 
 def condition_of(sentence: Sentence) -> str | None:
@@ -1237,6 +1262,8 @@ def condition_of(sentence: Sentence) -> str | None:
         Text of the condition with single spaces, or None for a sentence that does not begin with one.
     """
     first = sentence.text.split(None, 1)[:1]
+    if WHILE_DOING.match(sentence.text):
+        return " ".join(sentence.text.split(",", 1)[0].split())
     if not first or first[0].casefold() not in ("if", "unless", "whenever", "assuming", "suppose"):
         return None
     return " ".join(sentence.text.split(",", 1)[0].split())

@@ -160,6 +160,8 @@ def _subject_follows(
         mods += kind in PREDICATES
         i += 1
     following = types[end + 1] if end + 1 < len(types) else ""
+    if kinds == {"AND"} and _list_of_with(types, start, at):
+        return False
     if complete and kinds == {"COMMA"} and following in (PREDICATES - {"WITH"}):
         phrase = chunks[end].value
         if (
@@ -181,6 +183,12 @@ def _subject_follows(
     if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
         return not _in_list(chunks, types, start, at, i)
     return kinds == {"AND"} and complete and _verb_left_out(chunks, types, start, at, end)
+
+
+def _list_of_with(types: list[str], start: int, at: int) -> bool:
+    """Return True for things with their places after *with*: 'with salt at its left and pepper at its right'."""
+    withs = [i for i in range(start, at) if types[i] == "WITH"]
+    return bool(withs) and not any(kind in FINITE for kind in types[withs[-1] : at])
 
 
 def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
@@ -302,8 +310,8 @@ def _inversion_follows(types: list[str], at: int) -> bool:
 def _turned_clause_follows(types: list[str], at: int) -> bool:
     """Return True for a place, a verb and a subject: 'to the right of the plate lay a knife'."""
     i = at + 2
-    while types[i : i + 2] == ["OF", "NP"]:
-        i += 2
+    while types[i : i + 2] == ["OF", "NP"] or types[i : i + 3] == ["COMMA", "PREP", "NP"]:
+        i += 2 if types[i] == "OF" else 3
     return types[at : at + 2] == ["PREP", "NP"] and types[i : i + 1] in (["VERB"], ["BE"]) and "NP" in types[i : i + 3]
 
 
@@ -455,6 +463,11 @@ def classify(segment: Segment) -> list[Chunk]:
 def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: int, link: str) -> bool:
     """Return True for things with a place each: *garlic in the first bowl, onion in the second, and celery …*."""
     types = [chunk.type for chunk in found]
+    if "FJ" in types:  # 'in front of it the board, knives on the right, …'
+        found = found[types.index("FJ") + 1 :]
+        types = types[types.index("FJ") + 1 :]
+    if not types:
+        return False
     if (
         {"PREP", "ADV"}.isdisjoint(types)
         or types[0] != "NP"

@@ -450,6 +450,8 @@ class NounChunker:
                 return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
             return not plural and not (after in DETERMINERS or after in NUMBERS or after in POSSESSIVES)
         if at == 0 or before in ("never", "always", "not", ",", "and", "then", ".", ";", ":", "please"):
+            if form.form == "s" and before in ("never", "always") and self.is_determiner(at + 1):
+                return False
             if form.form == "s":
                 return not self._predicate_follows(at) or at == 0
             imperative = norm in PUT_VERBS or norm in FIND_VERBS

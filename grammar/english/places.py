@@ -24,7 +24,16 @@ _ROWS = {
 }
 _DIRECTIONS = {
     **{"north": "top", "south": "bottom", "west": "left", "east": "right", "low": "bottom", "high": "top"},
-    **{"upper": "top", "lower": "bottom", "rear": "back", "distant": "far", "up": "top", "down": "bottom"},
+    **{
+        "upper": "top",
+        "lower": "bottom",
+        "rear": "back",
+        "distant": "far",
+        "downstage": "near",
+        "upstage": "far",
+        "up": "top",
+        "down": "bottom",
+    },
 }
 _SIDES = ("left", "right", "top", "bottom", "front", "back", "far", "near", "middle", "other", "opposite")
 _BINARY = {"front": "in_front", "back": "behind"}

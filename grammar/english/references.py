@@ -445,6 +445,9 @@ class References:
                 (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None
             )
             pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
+            last = self.recent[0].subject if self.recent else None
+            if last is not None and not last.noun and len(last.members) > 1:
+                return last.members[0 if word == "former" else -1]
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides, relation)
@@ -456,7 +459,9 @@ class References:
             return None
         before = self.text[self.start : phrase.span[0]]
         nouns = re.findall(
-            r"\b(?:the|a|an|your|my)\s+((?:[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])", before, re.IGNORECASE
+            r"\b(?:the|a|an|your|my)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])",
+            before,
+            re.IGNORECASE,
         )
         if (
             not nouns
@@ -486,10 +491,16 @@ class References:
                     return self._seen(entity, phrase)
         if group is None and (contrasted := self._contrasted(phrase)) is not None:
             return contrasted
+        if group is None and not phrase.adjectives and relation in ("inside", "on", "under"):
+            another = self._another_one(phrase, besides, relation)
+            if another is not None:
+                return another
         group = group or self.last_group(besides)
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
+        if further and phrase.of is None and (last := self._last_thing(besides)) is not None:
+            return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
         if group is None or not group.members:
             return self._another_one(phrase, besides, relation)
         found = self.member(group, phrase)
@@ -499,6 +510,12 @@ class References:
         if found is not None:
             self._picked(found, phrase)
         return found
+
+    def _last_thing(self, besides: Entity | None) -> Entity | None:
+        """Return the single thing that the last clause is about."""
+        last = self.recent[0].subject if self.recent else None
+        known = last is not None and last is not besides and last.role is Role.THING and bool(last.noun)
+        return last if known else None
 
     def _contrasted(self, phrase: NounPhrase) -> Entity | None:
         """Return *the front one* beside *the back burner*: the thing of the same noun with the other adjective."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.chunks import FINITE, JOINT_TYPES, Chunk, Relator
+from dataclasses import replace
+
+from deixis.grammar.english.chunks import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.nouns import HOLDERS, PEOPLE, SURFACES, VESSELS, last_word
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.words import PLACE_NOUNS, Preposition, word_set
@@ -30,9 +32,10 @@ def rewritten(chunks: list[Chunk]) -> list[Chunk]:
     """
     for rewrite in (
         _without_vocatives, _without_times, _without_beneficiaries, _without_bare_superlatives, _without_free_places,
-        _without_asides, _without_infinitives, _without_counts_apart, _with_relative_places, _with_objects_after_verbs,
-        _with_contact_clauses, _with_label_nouns, _with_telegraphic_places, _with_labels_apart,
-        _with_places_before_verbs, _with_pronouns_of_lists,
+        _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
+        _without_searches, _without_infinitives, _without_counts_apart, _with_relative_places,
+        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -154,7 +157,8 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
         after = _type(chunks, i + 1)
         told = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
         compared = chunk.type == "SUB" and chunk.value == "as" and after == "SUB"
-        if _type(chunks, i - 1) != "COMMA" or not (told or compared):
+        so = chunk.type == "SUB" and chunk.value == "so" and after == "ADJP"
+        if _type(chunks, i - 1) != "COMMA" or not (told or compared or so):
             continue
         end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
         if end is not None and told and _type(chunks, i - 2) == "NOT":
@@ -162,6 +166,67 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
         if end is not None:
             return _without_asides([*chunks[: i - 1], *chunks[end:]])
     return chunks
+
+
+def _without_resumed_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the pronoun of *the capsules they are inside the tin*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        resumes = (
+            chunk.type == "NP" and chunk.value.pronoun in ("it", "they") and bool(found) and found[-1].type == "NP"
+            and _type(chunks, i + 1) in FINITE and (len(found) == 1 or found[-2].type in JOINT_TYPES | {"ADVERB"})
+            and bool(found[-1].value.head) and found[-1].value.plural is (chunk.value.pronoun == "they")
+        )  # fmt: skip
+        if not resumes:
+            found.append(chunk)
+    return found
+
+
+def _with_existential_have(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *in the room has a table* as *in the room there is a table*."""
+    for i, chunk in enumerate(chunks):
+        places = [c.type for c in chunks[:i] if c.type != "ADVERB"]
+        turned = places[:1] == ["PREP"] and places.count("NP") == places.count("PREP") + places.count("OF")
+        if chunk.type == "TVERB" and chunk.value.lemma == "have" and turned and set(places) <= {"PREP", "NP", "OF"}:
+            there = Chunk("THERE", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0]))
+            be = Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
+            return [*chunks[:i], there, be, *chunks[i + 1 :]]
+    return chunks
+
+
+def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the second verb of *I stood the candle on it and poured water around it* as one in the past."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "TPART" or _type(chunks, i - 1) != "AND" or chunk.value.form != "past":
+            continue
+        first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
+        spoken = _type(chunks, first) == "NP" and chunks[first].value.pronoun in ("me", "we")
+        if spoken and _type(chunks, first + 1) in FINITE:
+            chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
+    return chunks
+
+
+def _without_searches(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out a command to look somewhere: *look behind the bandages*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        looks = (
+            isinstance(chunk.value, VerbGroup) and chunk.value.lemma in ("look", "search", "check", "peek")
+            and chunk.value.form == "base" and _type(chunks, i - 1) in JOINT_TYPES | {"", "ADVERB"}
+            and _type(chunks, i + 1) == "PREP"
+            and chunks[i + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
+        )  # fmt: skip
+        if looks:
+            end = next((k for k in range(i, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
+            span = (chunk.span[0], chunks[end - 1].span[1])
+            found.append(Chunk("UNKNOWN", chunk.start, chunks[end - 1].end, None, span))
+            i = end
+            continue
+        found.append(chunk)
+        i += 1
+    return found
 
 
 def _without_infinitives(chunks: list[Chunk]) -> list[Chunk]:
@@ -302,18 +367,25 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             chunk.type == "NP"
             and ends
             and found
-            and (found[-1].type in ("NP", "COLON") or (aside and chunk.value.adjectives))
+            and (
+                found[-1].type in ("NP", "COLON")
+                or (aside and (chunk.value.adjectives or chunk.value.head in _MIDDLES))
+            )
             and chunk.value.head in PLACE_NOUNS
             and chunk.value.determiner is None
             and chunk.value.owner is None
             and not chunk.value.plural
             and any(other.type == "NP" for other in found)
-            and not any(other.type in FINITE for other in found)
+            and (not any(other.type in FINITE for other in found) or (aside and found[-2].value.determiner is not None))
         ):
             at = Relator(Preposition("at", "at"))
             found.append(Chunk("PREP", chunk.start, chunk.start, at, (chunk.span[0], chunk.span[0])))
         found.append(chunk)
     return found
+
+
+def _is_described_place(phrase: NounPhrase) -> bool:
+    return bool(phrase.adjectives) or phrase.head in _MIDDLES
 
 
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
@@ -324,6 +396,9 @@ def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
         part = chunks[i + 1].value
         told = _type(chunks, i + 2) in ("PART", "ADJP") and _type(chunks, i + 3) in _ENDS
         verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
+        other = not part.head and (part.pronoun == "one" or part.count is not None) and _type(chunks, i + 2) == "PART"
+        if verbless and other:
+            chunks[i] = Chunk("CUT", chunk.start, chunk.end, None, chunk.span)  # 'four chairs around it, one fallen'
         if told and verbless and part.determiner is None and part.owner is None and not part.adjectives:
             chunks[i] = Chunk("CUT", chunk.start, chunk.end, None, chunk.span)
     return chunks
@@ -343,8 +418,11 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     for i, chunk in enumerate(chunks):
         lay = _type(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
         if chunk.type == "COMMA" and (_type(chunks, i + 1) in ("BE", "VERB") or lay) and _type(chunks, i + 2) == "NP":
-            first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
-            clause = [c.type for c in found[first:] if c.type != "ADVERB"]
+            first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA", "AND"}), default=0)
+            clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
+            if FINITE & set(clause) or "THERE" in clause:
+                first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+                clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
             objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
             places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
             if places and not (FINITE & set(clause)):
@@ -368,6 +446,7 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+_MIDDLES = frozenset({"centre", "center", "middle"})
 _ENDEARMENTS = word_set(
     "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
     " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls"

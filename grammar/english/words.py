@@ -473,6 +473,10 @@ aligned: aligned with, in line with, in alignment with, flush to
 level_with: level with, on a level with, at the same height as
 perpendicular: perpendicular to, at right angles to, at a right angle to
 leaning: leaning against, leaning on, leant against, propped against, propped up against, leaned against
+left: to port of
+right: to starboard of
+behind: upstage of, aft of
+in_front: downstage of, forward of
 left: at left of, to the left from, left side from
 left: left of, left to, left from, leftward of, to left of, left side of, on left of, on left side of
 right: at right of, to the right from, right side from
@@ -491,7 +495,7 @@ through: through, thru, via
 like: like, similar to, looking like, identical to
 -: for, as, during, except, except for, besides from, per, because of, instead of, due to, rather than, such as
 -: since, until, till, after, same as, belonging to, according to, unlike, than
-with: with, w/
+with: with, w/, complete with
 without: without, with out
 """
 
@@ -517,7 +521,8 @@ upside_down: upside down, face down, bottom up, face-down, upside-down
 near_each_other: side by side, next to each other, next to one another, beside each other, together, close together
 near_each_other: near each other, adjacent to each other, beside one another
 nested: inside one another, nested in one another, one inside the other, inside each other, nested in each other
-stacked: on top of each other, on top of one another, one on top of the other, stacked inside one another
+stacked: on top of each other, on top of one another, one on top of the other, one on top of another, one upon another
+stacked: stacked inside one another
 parallel_each_other: parallel, parallel to each other, in parallel
 one_each: one each, one apiece, one for each, respectively
 there: over there, there, here, out there, up there, down there
@@ -592,6 +597,7 @@ material: woolen, linen, velvet, tiled, cardboard, oak, pine, upholstered, rubbe
 shape: round, rounded, square, rectangular, rectangle, circular, oval, triangular, curved, straight, flat, cylindrical
 shape: l-shaped, u-shaped, boxy, conical, cubic, hexagonal, octagonal, spherical, pointed, pointy, cube-shaped, bent
 position: left, right, top, bottom, upper, lower, middle, central, center, centre, front, back, rear, near, far, outer
+position: downstage, upstage
 position: inner, leftmost, rightmost, topmost, bottommost, uppermost, lowermost, left-hand, right-hand, lefthand
 position: righthand, centermost, middlemost, outermost, innermost, foremost, hindmost, inside, outside, opposite
 position: outermost, lefthanded, righthanded, near-side, far-side, overhead, nearest, closest, farthest, furthest, next
@@ -793,7 +799,7 @@ other: start, help, look, walk, enter, approach, turn
 other: come comes came come coming, want, like, say says said said saying, think thinks thought thought thinking, try
 other: eat eats ate eaten eating, drink drinks drank drunk drinking, write writes wrote written writing, wash, let, take
 other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
-other: follow
+other: follow, shift, transfer, relocate, return
 other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, see, notice
 other: ignore, disregard, skip, exclude
 other: choose chooses chose chosen choosing, find, select, pick, locate, identify, click, get gets got got getting, grab
