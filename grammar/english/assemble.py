@@ -24,6 +24,7 @@ _PLACING = frozenset(
 _BEARING = frozenset({"hold", "contain", "carry", "bear"})
 """Verbs after whose object a place is that of the object."""
 _TURNING = frozenset({"turn", "flip"})
+_PLACES = frozenset({"left", "right", "middle", "top", "bottom", "part", "corner", "edge", "end", "side"})
 _UNDONE = frozenset({"almost", "nearly"})
 _FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
 _LETTING = frozenset({"let", "make", "help", "watch"})
@@ -55,6 +56,7 @@ class Assembly:
     viewpoint: Viewpoint | None = None
     condition: str | None = None
     front: tuple[Predicate, ...] = ()  # places before a command: 'on the desk, choose the monitor'
+    shared: tuple[Predicate, ...] = ()  # place before a list: 'in the box, put A on the left, B on the right'
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
@@ -118,6 +120,10 @@ class Assembly:
                 self.viewpoint, said, link = _joined(self.viewpoint, frame), (), ""
         if link in ("before", "after") and built.shape == "statement":
             return
+        last = self.clauses[-1] if self.clauses else None
+        if link == "until" and last is not None and last.mood is Mood.COMMAND and last.positive:
+            misunderstood(span, "this says how long something is done, not where it is")
+            return  # 'press the foam into the bowl until it sits firmly'
         if link == "instead":
             misunderstood(span, "this says where something is not", "deny it: 'The cup is not on the tray.'")
             return
@@ -334,6 +340,8 @@ class Assembly:
                 bare = replace(phrase, predicates=())
                 if self.clauses and self.clauses[-1].mood is Mood.COMMAND:
                     mood = Mood.COMMAND
+                    if all(not p.arguments and p.relation in _PLACES for p in predicates[:1]):
+                        predicates = (*self.shared, *predicates)
                 self._append(Clause(bare, predicates, span, mood, step=self.raw.step), link)
                 return
             if self.clauses or phrase.pronoun in _PEOPLE:
@@ -364,7 +372,9 @@ class Assembly:
                 continue
             span = (waiting[0].span[0], member.span[1])
             subject = waiting[0] if len(waiting) == 1 else NounPhrase(span, plural=True, members=tuple(waiting))
-            self._append(Clause(subject, member.predicates, span, mood, step=self.raw.step), link)
+            first = member.predicates[0]
+            shared = self.shared if not first.arguments and first.relation in _PLACES else ()
+            self._append(Clause(subject, (*shared, *member.predicates), span, mood, step=self.raw.step), link)
             waiting = []
         return True
 
@@ -482,7 +492,10 @@ class Assembly:
                 )
                 choices.append(chosen)
         if self.front and phrase is not None:
+            self.shared = tuple(p for p in self.front if p.relation in ("inside", "on") and mood is Mood.COMMAND)
             predicates, self.front = [*self.front, *predicates], ()
+        if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
+            predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
         made, absolute = _absolutes(predicates + main)
         if verb.thing is not None:
             made = _flat(replace(verb, said=(), nominal=None)) + made

@@ -9,7 +9,7 @@ from typing import Any
 from lark import Transformer, v_args
 
 from deixis.grammar.english.chunks import Chunk, Relator, VerbGroup
-from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.nouns import HOLDERS, PARTS, SURFACES, VESSELS, last_word
 from deixis.grammar.english.places import directions_of, is_place, place
 from deixis.grammar.english.tree import (
     Adjective,
@@ -27,6 +27,7 @@ from deixis.grammar.english.words import (
     ENTER_VERBS,
     FACE_VERBS,
     NOT_PLACES,
+    PLACE_NOUNS,
     TRANSITIVE_RELATIONS,
     word_set,
 )
@@ -156,6 +157,8 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
+        if said and (group.lemma in _WRAPPING or group.lemma in _FASTENING):
+            said = tuple(replace(part, predicates=_means(group.lemma, part.predicates)) for part in said)
         if group.lemma in _MOVING and said:
             said = tuple(
                 replace(
@@ -259,7 +262,11 @@ class Builder(Transformer[Any, Built]):
                 shared = _shared([("", phrase.predicates[-1:]), (joint.value, tuple(mods))])
                 phrase = replace(phrase, predicates=(*phrase.predicates[:-1], *shared[0][1]))
                 mods = shared[1][1]
-            if is_place(phrase) or phrase.pronoun in ("it", "they", "this") or phrase.members:
+            if phrase.members and all(member.predicates for member in phrase.members):
+                *rest, last = phrase.members  # 'A on the left and B on the right, next to C'
+                last = _restricted(last, mods)
+                phrase = replace(phrase, members=(*rest, last), span=union(phrase.span, last.span))
+            elif is_place(phrase) or phrase.pronoun in ("it", "they", "this") or phrase.members:
                 extra += tuple(mods)
             else:
                 phrase = _restricted(phrase, mods)
@@ -352,8 +359,18 @@ class Builder(Transformer[Any, Built]):
         if on_it:  # 'the desk with a piece of paper on it'
             inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in on_it))
             its = (*on_it, *its)
+        share = phrase.head in _FRACTIONS and (inner.pronoun is not None or inner.plural) and phrase.owner is None
+        if share and not phrase.adjectives:
+            return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'two thirds of them'
+        aims = tuple(p for p in inner.predicates if p.relation in ("pointing", "facing") or _is_side(p))
+        if aims and last_word(phrase.head) in PARTS:  # 'the handle of the spoon pointing to the right'
+            inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in aims))
+            its = (*aims, *its)
         if not phrase.head and phrase.pronoun is None and phrase.determiner in _QUANTIFIERS and inner.head:
             return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'most of the knives'
+        if phrase.head.rpartition(" ")[2] in _AMOUNTS and inner.head and not inner.owner and inner.determiner is None:
+            span = union(phrase.span, inner.span)  # 'a thin layer of gravel', '8 cm of soil'
+            return replace(inner, determiner=phrase.determiner if phrase.determiner != "each" else "the", span=span)
         if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
             return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
         return replace(
@@ -397,6 +414,10 @@ class Builder(Transformer[Any, Built]):
             return () if target is None else (replace(target, relation="diagonal", span=span),)
         if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
             return (*_places(relator, noun.phrase.members, span), *extra)
+        side = PLACE_NOUNS.get(noun.phrase.head, "")
+        if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
+            aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
+            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))
@@ -409,6 +430,9 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
+        if noun.phrase.head in ("level", "height") and relation in ("at", "on"):
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return extra
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
         if (
             last is not None
@@ -419,6 +443,10 @@ class Builder(Transformer[Any, Built]):
         ):  # 'above X to the left'
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
             noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,)), *extra)
+        if last_word(noun.phrase.head) in _GAPS and relation in ("inside", "on") and noun.phrase.predicates:
+            between = tuple(p for p in noun.phrase.predicates if p.relation == "between")
+            if between:  # 'in the space between the plate and the cup'
+                return (*between, *extra)
         hour = next(
             (
                 p
@@ -450,9 +478,10 @@ class Builder(Transformer[Any, Built]):
         if relator.rank is not None:
             value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
         arguments = noun.phrase
+        adverbs = (*relator.adverbs, "over") if relator.preposition.phrase == "over" else relator.adverbs
         made = Predicate(
             relation, _arguments(relation, arguments), span, value=value, degree=degree,
-            than=None if other is None else other.phrase, adverbs=relator.adverbs, positive=relator.positive,
+            than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,
         )  # fmt: skip
         return (made, *extra)
 
@@ -679,6 +708,10 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
 
 
+def _is_side(predicate: Predicate) -> bool:
+    return predicate.relation in ("left", "right", "top", "bottom") and not predicate.arguments
+
+
 def _arguments(relation: str, phrase: NounPhrase) -> tuple[NounPhrase, ...]:
     if relation in ("between", "among") and phrase.members and phrase.joined_by == "and":
         return phrase.members
@@ -778,6 +811,9 @@ def _transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, 
         for member in phrase.members or (phrase,):
             found += _accompanied_by(member, span)
         return (*(_adverbs(p, group) for p in found), *things.extra)
+    between = tuple(p for p in phrase.predicates if p.relation == "between")
+    if last_word(phrase.head) in _GAPS and between:  # 'soft bags fill the gaps between the cases'
+        return (*between, *things.extra)
     if not relation:
         misunderstood(span, f"'{group.lemma}' with an object does not say where something is")
         return things.extra
@@ -881,6 +917,8 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
+            if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
+                found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
                 flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
                 if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
@@ -941,6 +979,18 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
     return tuple(_checked(found)) if check else tuple(found)
 
 
+def _means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+    """Return the predicates of a command with *with* read as what it uses: a cover, or a tool, which is left out."""
+    found: list[Predicate] = []
+    for predicate in predicates:
+        bare = predicate.relation == "with" and not any(a.predicates for a in predicate.arguments)
+        if bare and predicate.subject_part is None and lemma in _WRAPPING:
+            found.append(replace(predicate, relation=_WRAPPING[lemma], reversed=True))
+        elif not bare:
+            found.append(predicate)
+    return tuple(found)
+
+
 _STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
 
 
@@ -964,6 +1014,20 @@ _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
 _ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
+_WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": "inside", "flank": "each_side"}
+"""Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
+_FASTENING = word_set(
+    "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"
+    " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
+)
+"""Commands in which *with* names a tool: *secure it with two bolts*."""
+_FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
+_SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
+_AMOUNTS = word_set(
+    "layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
+    " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
+)
+"""Nouns of an amount, before the substance or the things that are meant."""
 _GAPS = frozenset({"gap", "space", "distance", "room"})
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
@@ -1051,7 +1115,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "through"  # 'mentioned in the catalogue'
     elif lemma in ("cover", "coat", "drape") and relation == "with":
         return replace(following, relation="on", reversed=True, span=span)
-    elif lemma in _COVERING and relation == "above":
+    elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
         relation = "on"
     elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
         relation = "inside"

@@ -26,6 +26,7 @@ from deixis.grammar.english.words import (
     IDIOMS,
     IS_FORMS,
     MODALS,
+    NAMED_LIKE_THINGS,
     NEGATIONS,
     OTHER_UNITS,
     PLACE_NOUNS,
@@ -139,6 +140,7 @@ class Chunker:
         self.nouns = NounChunker(words, self.norms, nouns)
         self.chunks: list[Chunk] = []
         self._denied: str | None = None  # modal of a denial that stands before its subject
+        self._made: int | None = None  # index of the verb of 'let the ribbon hang …'
         self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
 
     def run(self) -> list[Chunk]:
@@ -153,6 +155,11 @@ class Chunker:
         while at < end:
             chunk = self._chunk(at)
             chunk.span = self.words[at].start, self.words[chunk.end - 1].end
+            if chunk.type == "GO":  # 'stand back': you stand back
+                start = chunk.span[0]
+                you = NounPhrase((start, start), pronoun="you")
+                self.chunks.append(Chunk("NP", at, at, you, (start, start)))
+                chunk.type = "VERB"
             self.chunks.append(chunk)
             at = chunk.end
         return self.chunks
@@ -167,6 +174,13 @@ class Chunker:
             return Chunk(fixed, at, at + 1)
         if self.norms[at : at + 1] and (end := self._denial(at)) is not None:
             return Chunk("ADVERB", at, end, "never")
+        if (verb := self._causative(at)) is not None:
+            self._made = verb
+            return Chunk("ADVERB", at, at + 1, norm)
+        if self._made is not None and at >= self._made - (norm == "to"):
+            verb, self._made = self._made, None
+            form = self._verbs[self.norms[verb]]
+            return Chunk("VERB", at, verb + 1, VerbGroup(form.lemma, form.kind, "s"))
         for find in (self._measure, self._idiom, self._joint, self._relator, self._verb_group, self._noun_phrase):
             chunk = find(at)
             if chunk is not None:
@@ -177,9 +191,25 @@ class Chunker:
             return Chunk("ADVERB", at, at + 1, norm)
         return Chunk("UNKNOWN", at, at + 1, norm)
 
+    def _causative(self, at: int) -> int | None:
+        """Return the index of the verb of *let the ribbon hang …* and *ask an adult to stand …*; None for others."""
+        needs_to = _CAUSATIVES.get(self.norms[at])
+        if needs_to is None or self._previous() not in JOINT_TYPES | {"", "ADVERB"} or not self.nouns.starts(at + 1):
+            return None
+        for i in range(at + 2, min(at + 7, len(self.words))):
+            form = self._verbs.get(self.norms[i])
+            if form is not None and form.form == "base" and form.kind in ("posture", "lean", "face", "point", "other"):
+                has_to = self.norms[i - 1] == "to"
+                place = self.norms[i + 1] in prepositions() or self.norms[i + 1] in places_alone()
+                if has_to == needs_to and place:
+                    return i
+            if self.norms[i] in prepositions() and self.norms[i] != "to":
+                return None
+        return None
+
     def _denial(self, at: int) -> int | None:
         """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
-        if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB"):
+        if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB", "COLON"):
             return None
         for phrase in _DENIALS:
             end = at + len(phrase)
@@ -200,7 +230,8 @@ class Chunker:
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase and not (
-                (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
+                (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
+                or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
                 or (phrase == ("above", "all") and self.norms[end] != ",")
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
@@ -222,6 +253,23 @@ class Chunker:
             return Chunk("ADVERB", at, at + 2, "set up")
         if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:
             return Chunk("ADVERB", at, min(at + 4, len(self.words)), "in order")
+        if (
+            self.norms[at + 1] == "side"
+            and self.norms[at + 2] in ("up", "down", "out", "in", "outwards", "inwards")
+            and self._previous() in ("COMMA", "NP")
+            and self.norms[at + 3] in _CLAUSE_ENDS | {"and", "on", "in"}
+        ):
+            return Chunk("ADVERB", at, at + 3, "side up")  # 'lay the sheet on the mat, shiny side down'
+        if norm in ("consists", "consist", "comprises") and (self.norms[at + 1] == "of" or norm == "comprises"):
+            return Chunk("CUT", at, at + (1 if norm == "comprises" else 2))
+        if norm in ("marked", "labelled", "labeled") and self._previous() == "NP" and self.nouns.is_noun(at + 1):
+            return Chunk("ADVERB", at, at + 2, norm)  # 'the beaker marked "waste" at the end'
+        if (
+            norm == "over"
+            and not self.nouns.starts(at + 1)
+            and not _TURNING.isdisjoint(self.norms[max(0, at - 5) : at])
+        ):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'turn the desk over'
         if norm == "from" and self.norms[at + 1] == "where" and self.norms[at + 2] in ("i", "you", "we"):
             end = at + 3
             while self.norms[end] in IS_FORMS or self.norms[end] in (
@@ -480,9 +528,24 @@ class Chunker:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
             return Chunk("SUB", at, at + 1, norm)
-        if norm in ("before", "after") and (after in ("you", "we", "i") or after.endswith("ing")):
+        if norm in ("before", "after") and (
+            after in ("you", "we", "i") or after.endswith("ing") or self._clause_follows(at + 1)
+        ):
             return Chunk("SUB", at, at + 1, norm)
         return None
+
+    def _clause_follows(self, at: int) -> bool:
+        """Return True if a noun phrase with a verb after it begins here: *before the guests enter*."""
+        found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) else None
+        if found is None or found[1] is None:
+            return False
+        norm = self.norms[found[0]]
+        form = self._verbs.get(norm)
+        return (
+            norm in IS_FORMS
+            or norm in MODALS
+            or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
+        )
 
     def _is_back(self, chunk: Chunk) -> bool:
         """Return True for *your back*."""
@@ -616,6 +679,9 @@ class Chunker:
             and self.norms[at + 1] not in ("to", "of", "by")
         ):
             return None
+        begins = self._previous() in JOINT_TYPES | {"", "ADVERB"}
+        if self.norms[at] == "close" and begins and self.nouns.is_determiner(at + 1):
+            return None  # 'close the lid'
         alone = self._alone.longest(self.norms, at)
         if alone is not None and alone[1].phrase.startswith("far ") and PLACE_NOUNS.get(self.norms[alone[0]]) in _SPOTS:
             alone = None  # 'far left corner'
@@ -750,7 +816,7 @@ class Chunker:
             and not past
             and not self._auxiliary(i)
             and self.norms[i] not in ("seems", "appears")
-            and (self.norms[i] not in self._verbs or self.nouns.is_noun(i))
+            and (self.norms[i] not in self._verbs or (self.nouns.is_noun(i) and not self._orders(i)))
         ):
             return None
         if self.norms[at] in ("both", "all", "each", "either") and self._previous() != "NP":
@@ -821,6 +887,9 @@ class Chunker:
         i = at + (self.norms[at] == "be")
         form = self._verbs.get(self.norms[i])
         command = self._previous() == "ADVERB"
+        if command and form is not None and self.norms[at] in _GOING and self._goes(at + 1):
+            self._denied = None
+            return Chunk("GO", at, at + 1, VerbGroup(form.lemma, form.kind, form.form, None, False))
         if form is None or (i == at and form.form not in ("base", "ing") and self._previous() != "NP"):
             return None
         if not command and form.form == "base" and self.nouns.is_noun(i) and not self._predicate_after(i):
@@ -910,7 +979,12 @@ class Chunker:
         if (
             norm in ("lay", "put", "set")
             and self._previous() in ("", "AND", "COMMA", "THEN", "CUT")
-            and (self.nouns.is_determiner(end) or self.norms[end] in ("it", "them", "out", "down", "up"))
+            and (
+                self.nouns.is_determiner(end)
+                or self.nouns.number(end) is not None
+                or self.norms[end] in ("it", "them", "out", "down", "up")
+                or (not self._previous() and self.nouns.is_noun(end))
+            )
         ):
             end += self.norms[end] in ("out", "down", "up")
             return Chunk("PUT", at, end, _with(group, norm, "posture", "base"))
@@ -942,6 +1016,7 @@ class Chunker:
                 return Chunk("PUT", at, end, found)
             if self.nouns.is_noun(i) and self._previous() != "NP":
                 return None
+            end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
         if form.form == "base":
             subject = self._previous()
@@ -960,6 +1035,11 @@ class Chunker:
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
+            if imperative and not subject_is_you and norm in _GOING and self._goes(end):
+                end += self.norms[end] in ("back", "away", "aside", "here")
+                return Chunk("GO", at, end, found)
+            if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and not self.nouns.commands(i):
+                return None
             if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
                 kind = "FIND" if norm in FIND_VERBS else "PUT"
                 if norm in ("pick", "point", "look", "single", "search") and self.norms[end] in (
@@ -1071,6 +1151,23 @@ class Chunker:
             return None
         return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
 
+    def _orders(self, at: int) -> bool:
+        """Return True for the verb of a command after an adverb: *now lower the lid*."""
+        return (
+            self._previous() in JOINT_TYPES | {""}
+            and self.norms[at] in NAMED_LIKE_THINGS
+            and self.nouns.is_determiner(at + 1)
+        )
+
+    def _goes(self, at: int) -> bool:
+        """Return True if a place and not an object follows a command such as *stand* or *sit*."""
+        if self._previous() in ("AND", "COMMA") and not any(c.type in ("PUT", "DO", "GO") for c in self.chunks):
+            return False
+        after = self.norms[at]
+        return after in ("back", "away", "aside", "here") or (
+            after not in ("for", "at", "to") and not self.nouns.is_determiner(at) and self._relator(at) is not None
+        )
+
     def _imperative_object(self, at: int) -> bool:
         return self.nouns.starts(at) or self.norms[at] in ("out", "for", "on", "to", "up")
 
@@ -1161,6 +1258,11 @@ class Chunker:
         if found is None:
             return None
         end, phrase, adjectives = found
+        if self._made is not None and at < self._made < end:
+            verb, self.norms[self._made] = self.norms[self._made], ","  # 'let ivy trail over the rim'
+            found = self.nouns.phrase(at, self._previous()) or found
+            self.norms[self._made] = verb
+            end, phrase, adjectives = found
         if self._denied is not None and end - at > 1 and self._is_base(end - 1) and self._predicate_after(end - 1):
             verb, self.norms[end - 1] = self.norms[end - 1], ","  # 'must the container stand on it'
             shorter = self.nouns.phrase(at, self._previous())
@@ -1199,7 +1301,9 @@ _DENIALS = tuple(
     )
 )  # fmt: skip
 """Denials that can stand before their clause and turn its words round."""
-PUT_ONLY = word_set("put place keep leave set lay use see find position have cover stack fold roll store")
+PUT_ONLY = word_set(
+    "put place keep leave set lay use see find position have cover stack fold roll store fill top flank screw bolt"
+)
 _JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
 _SUBORDINATING = {
     ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
@@ -1229,6 +1333,14 @@ _TENDING = {
     "about": "would", "going": "will", "likely": "might", "required": "must",
 }  # fmt: skip
 """Modal verb that a word between *is* and *to* amounts to: *is allowed to stand*."""
+_CAUSATIVES = {"let": False, "have": False, "make": False, "ask": True, "allow": True, "get": True, "tell": True}
+"""Commands that make something else do a thing, and whether *to* stands before its verb."""
+_CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", ")", ""})
+_BEFORE_NOUNS = {("in", "two"), ("in", "half"), ("in", "first"), ("in", "last")}
+"""Idioms, except before a noun: *in two bowls*."""
+_GOING = word_set("stand sit step walk go kneel stay wait look")
+"""Verbs of commands that take no object."""
+_TURNING = word_set("turn flip roll tip fold hand bend knock")
 _BEGINNING = word_set("start begin finish continue proceed end")
 _OTHER_END = {"left": "right", "right": "left", "top": "bottom", "bottom": "top", "front": "back", "back": "front"}
 _PHRASAL = {("make", "out"): ("see", "posture"), ("take", "up"): ("occupy", "transitive")}

@@ -138,6 +138,8 @@ NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"}
 CONTAINING = frozenset({"contains", "contain", "containing"})
 HOLDING = frozenset({"holds", "hold", "holding"})
 SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
+HOLLOW_SURFACES = frozenset({"cabinet", "dresser", "trolley", "cart", "nightstand", "sideboard", "desk", "buffet"})
+"""Surfaces that things can also be inside of."""
 SUPPORTS = frozenset(
     [
         "saucer",
@@ -374,6 +376,10 @@ class Discourse:
             self._count(subject)
             return
         subject = _with_restrictions_of_contents(subject)
+        order = tuple(p for p in subject.predicates if p.relation == "follows")
+        if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
+            subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
+            clause = replace(clause, predicates=(*clause.predicates, *order))
         if not clause.predicates and not clause.choices and not clause.existential:
             handled = self._introduce(subject)  # 'fold the napkin'
             if handled is not None:
@@ -411,7 +417,8 @@ class Discourse:
             and subject.owner is None
             and subject.of is None
             and not (
-                last_word(subject.head) in REMOVABLE and any(p.arguments or p.relation in PLACES for p in predicates)
+                (last_word(subject.head) in REMOVABLE or _is_moved(clause, subject))
+                and any(p.arguments or p.relation in PLACES for p in predicates)
             )
             and self._of_last(predicates, subject)
         ):
@@ -660,6 +667,8 @@ class Discourse:
         existential: bool = False,
     ) -> None:
         others: list[Entity] = []
+        if focus:
+            self.references.named = others
         if any(p.relation == "one_each" for p in predicates):
             self.how = replace(self.how, quantifier="each")
         outer = self.how
@@ -675,7 +684,10 @@ class Discourse:
                 self._add("middle", (entity,), (), value=min(places))
                 continue
             self._predicate(entity, predicate, others)
-        relation = next((p.relation for p in predicates if p.arguments), None)
+        relation = next(
+            (p.relation for p in predicates
+             if p.arguments and not (p.relation in ("in_front", "behind") and self._within(p.relation))), None
+        )  # fmt: skip
         if focus:
             self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
         else:
@@ -697,6 +709,9 @@ class Discourse:
             if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
                 self._add("pointing", (subject.whole,), (), value=relation)
                 return
+            lies = relation in DIRECTIONS or relation in ("on", "under", "inside")
+            if relation in PLACES or (not predicate.arguments and lies):
+                return  # said of the part alone: 'the rounded edge is at the top'
             if relation == "upside_down":
                 return  # the label, and not the bottle
             subject = subject.whole
@@ -838,6 +853,10 @@ class Discourse:
                 self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
             elif subject.role is not Role.SURFACE and not swapped:
                 self._add(relation, (subject,), (), value=other.noun)
+        elif (
+            relation in ("in_front", "behind") and last_word(other.noun) in VESSELS | HOLDERS and self._within(relation)
+        ):
+            self._add("part", (subject,), (other,), value="back" if relation == "behind" else "front")
         elif other.role is Role.SURROUNDING and relation in (
             "pointing",
             "facing",
@@ -858,7 +877,7 @@ class Discourse:
         """Return True if the clause says *at the back of the table*, and not *behind the table*."""
         words = " ".join(self.text[slice(*self.how.span)].casefold().split())
         place = "back" if relation == "behind" else "front"
-        return any(f"{preposition} the {place} of" in words for preposition in ("at", "on", "towards", "toward"))
+        return any(f"{preposition} the {place} of" in words for preposition in ("at", "in", "on", "towards", "toward"))
 
     def _holds_substance(self, content: Entity, vessel: Entity, relation: str) -> bool:
         """Read *the tea is in the jar* as the contents of the jar; the words for the tea then mean the jar as well."""
@@ -910,6 +929,10 @@ class Discourse:
             name = name_of_bound.get(measure.bound or "", "distance")
             self._add(name, (subject,), (), value=entities[-1].noun, metres=measure.metres)
             return
+        if measure is not None and entities and entities[-1].role is Role.SURFACE:
+            name = name_of_bound.get(measure.bound or "", "distance")
+            self._add(name, (subject,), (), value=entities[-1].noun, metres=measure.metres)
+            return
         if measure is None or not ends or ends[-1].role is not Role.THING:
             return
         name = {"<": "distance_less", ">": "distance_more"}.get(measure.bound or "", "distance")
@@ -919,6 +942,8 @@ class Discourse:
         arguments = () if region.of is None else (region.of,)
         if relation == "parallel":
             self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
+        elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
+            self._pair(subject, relation, region.of, False)
         elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
             self._add(region.term, (subject,), arguments, value=region.value)
         elif region.of is not None and region.of.role is Role.THING:
@@ -928,6 +953,13 @@ class Discourse:
 
     def _place(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """State a place on the surface or on an object: a corner, an edge, the middle."""
+        if predicate.reversed:  # 'a towel with a rest on its near edge'
+            for phrase in predicate.arguments:
+                held = self._introduce(phrase, predicate.relation, subject)
+                if held is not None and held.role is Role.THING:
+                    of = () if subject.role is Role.SURFACE else (subject,)
+                    self._add(predicate.relation, (held,), of, value=predicate.part)
+            return
         if subject.role is Role.SURFACE:
             return
         arguments: list[Entity] = []
@@ -1040,6 +1072,8 @@ class Discourse:
         ordered = self.order is not None or (last is not None and last.relation == "part")
         relation = "right" if ordered and "left" in sides else "left" if ordered and "right" in sides else None
         relation = relation or (last.relation if last is not None and last.relation in ("left", "right") else "next_to")
+        if last is not None and last.relation in ("on", "inside", "above", "under"):
+            return  # 'on the gravel comes moss, followed by charcoal' tells an order in time
         for phrase in predicate.arguments:
             for member in phrase.members or (phrase,):
                 following = self._introduce(member, "right", subject)
@@ -1060,7 +1094,7 @@ class Discourse:
                     self._add(name, (subject,), tuple(rest))
                 elif adjective.degree is Degree.SUPERLATIVE and adjective.word in ("left", "right"):
                     self._add(f"{adjective.word}most", (subject,), ())
-                elif adjective.dimension == "rank" and adjective.rank is not None:
+                elif adjective.dimension == "rank" and adjective.rank is not None and phrase.head not in GENERAL:
                     self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
                 elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
                     self._add(adjective.dimension, (subject,), (), value=adjective.word)
@@ -1096,7 +1130,10 @@ class Discourse:
                 self.references.entities.append(thing)
                 self.shared[1].append(thing)
                 self._add(self.shared[0], (subject,), (thing,))
-            elif phrase.head in SUBSTANCES:
+            elif phrase.head in SUBSTANCES or (
+                last_word(subject.noun) in VESSELS and phrase.head and phrase.determiner is None and not phrase.plural
+                and phrase.owner is None and not phrase.predicates and phrase.count is None
+            ):  # fmt: skip
                 self._add("contents", (subject,), (), value=phrase.head)
             elif last_word(phrase.head) in PARTS or phrase.head == "glass":
                 states = [a.word for a in phrase.adjectives if a.dimension == "state"]
@@ -1105,9 +1142,16 @@ class Discourse:
             elif phrase.head:
                 phrase = self._placed_on(phrase, subject)
                 held = self._introduce(phrase, "with", subject)
+                part = (
+                    phrase.plural
+                    and phrase.determiner is None
+                    and phrase.count is None
+                    and predicate.relation == "with"
+                )
+                vague = part and last_word(subject.noun) not in SUPPORTS | SURFACES | VESSELS | HOLDERS
                 if held is not None and held.role is Role.THING:
                     others.append(held)
-                if held is not None and held.role is Role.THING and not phrase.predicates:
+                if held is not None and held.role is Role.THING and not phrase.predicates and not vague:
                     self._hold(subject, held, self._words_of_clause())
 
     def _words_of_clause(self) -> list[str]:
@@ -1143,7 +1187,7 @@ class Discourse:
             self._pair(held, "on", subject, False)
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)
-        else:
+        elif not {"with", "without"}.isdisjoint(words):  # what a thing has may be a part of it
             self._add("near", (held,), (subject,))
 
     def _say_leftmost(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
@@ -1222,6 +1266,12 @@ class Discourse:
             self.drafts.append(draft)
 
 
+def _is_moved(clause: Clause, subject: NounPhrase) -> bool:
+    """Return True for a part that a command puts somewhere, such as a leg of a chair that is assembled."""
+    commanded = clause.mood is Mood.COMMAND and clause.span[0] < subject.span[0]
+    return commanded and not any(p.relation in ("pointing", "facing") for p in clause.predicates)
+
+
 def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
     """Attach to the vessel what follows its contents: *a box of screws on the left*."""
     of = phrase.of
@@ -1236,16 +1286,22 @@ def _whole(entity: Entity) -> Entity:
     return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
 
 
+_BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
+"""Relations that, after a wall or a floor, are those of the thing that is on it: *on the wall near the exit*."""
+
+
 def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
     around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
     bare = all((not p.arguments and p.relation in DIRECTIONS) or p.reversed for p in phrase.predicates)
     noun = last_word(entity.noun)
+    wide = noun in ("wall", "floor", "ceiling", "ground")
+    beside = all(p.relation in _BESIDE and p.degree is Degree.PLAIN for p in phrase.predicates)
     flat = noun in ("wall", "ceiling") and all(
         p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
     )
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
-    return (around and bare) or flat or amid
+    return (around and (bare or (wide and beside))) or flat or amid
 
 
 def condition_of(sentence: Sentence) -> str | None:
@@ -1324,7 +1380,8 @@ def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
         for phrase in (*_own_and_members(argument), *_own_and_members(argument.of)):
             noun = last_word(phrase.head)
             told_apart = any(a.dimension in ("position", "colour", "rank") for a in phrase.adjectives)
-            if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart:
+            held = predicate.relation == "inside" and noun in HOLLOW_SURFACES and not of_place
+            if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart and not held:
                 counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)
         _count_restrictions(argument, counts)
 

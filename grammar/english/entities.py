@@ -96,6 +96,21 @@ class Entity:
         if phrase and phrase not in entity.mentions:
             entity.mentions.append(phrase)
 
+    def was_called(self, noun: str) -> bool:
+        """Return True if the text used a noun, with an article alone, for the entity: *the plate* for a dinner plate.
+
+        Parameters
+        ----------
+        noun
+            Noun in the singular.
+
+        Returns
+        -------
+        bool
+            False for a noun that was only used with other words.
+        """
+        return any(phrase.casefold() in (noun, f"the {noun}") for phrase in self.itself.mentions)
+
 
 def names_of(entities: Iterable[Entity]) -> dict[Entity, str]:
     """Return a name for each single object: its noun, with an adjective or a number where several share it.

@@ -52,7 +52,8 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
                 again = replace(chunks[verb], span=(chunks[end + 1].span[0], chunks[end + 1].span[0]))
                 chunks = [*chunks[: end + 1], again, *chunks[end + 1 :]]
                 types.insert(end + 1, "TVERB")
-            cut = _cuts(chunks, types, start, i, end, kinds, link)
+            labelled = link == ":" and bool(found) and [chunk.type for chunk in found[-1].chunks] == ["NP"]
+            cut = _cuts(chunks, types, start, i, end, kinds, link, labelled)
             if cut:
                 if i > start:
                     found.append(Segment(tuple(chunks[start:i]), link))
@@ -108,14 +109,21 @@ def _finite_between(types: list[str], start: int, end: int) -> bool:
     return False
 
 
-def _cuts(chunks: list[Chunk], types: list[str], start: int, at: int, end: int, kinds: set[str], link: str) -> bool:
-    """Return True if a clause begins after the joints from ``at`` to ``end``."""
-    if end >= len(types) or kinds & {"CUT", "SUB", "COLON", "THEN"}:
+def _cuts(
+    chunks: list[Chunk], types: list[str], start: int, at: int, end: int, kinds: set[str], link: str, labelled: bool
+) -> bool:
+    """Return True if a clause begins after the joints from ``at`` to ``end``.
+
+    ``labelled`` is True for places after the thing that they are said of, and a colon: *slippers: on the mat, …*.
+    """
+    if end >= len(types) or kinds & {"CUT", "SUB", "COLON"}:
+        return True
+    if "THEN" in kinds and not ("AND" in kinds and types[end] == "NP" and types[end + 1 : end + 2] in ([], ["CUT"])):
         return True
     if at == start:
         return True
     following = types[end]
-    complete = _finite_between(types, start, at)
+    complete = _finite_between(types, start, at) or (labelled and types[start] in PREDICATES)
     if link in _SUBORDINATE and "COMMA" in kinds and following not in ("REL", "WHOSE", "TPART", "PART"):
         return True
     if following == "BE" and types[end + 1 : end + 2] == ["NP"] and not complete:
@@ -159,7 +167,13 @@ def _subject_follows(
         seen_noun = seen_noun or kind == "NP"
         mods += kind in PREDICATES
         i += 1
-    following = types[end + 1] if end + 1 < len(types) else ""
+    after = end + 1
+    while types[after : after + 2] == ["OF", "NP"]:
+        after += 2
+    following = types[after] if after < len(types) else ""
+    accompanied = any(  # 'the telephone is on the desk, with a pad next to it and …'
+        types[k - 1 : k + 3] == ["COMMA", "WITH", "NP", "PREP"] for k in range(start + 1, at)
+    )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
     if complete and kinds == {"COMMA"} and following in (PREDICATES - {"WITH"}):
@@ -173,12 +187,16 @@ def _subject_follows(
     if (
         kinds == {"AND"}
         and complete
-        and following == "PREP"
-        and types[at - 1] == "NP"
-        and (is_place(chunks[at - 1].value) or (types[start] == "PUT" and "PREP" in types[start:at]))
+        and (following == "PREP" or (following in ("PART", "ADV") and (types[start] == "PUT" or accompanied)))
+        and types[at - 1] in ("NP", "ADV")
+        and (
+            is_place(chunks[at - 1].value) or (types[start] == "PUT" and "PREP" in types[start:at])
+            if types[at - 1] == "NP" and not accompanied
+            else types[at - 1] == "NP" or types[start] == "PUT"
+        )
     ):
         return not _in_list(chunks, types, start, at, i)
-    if kinds == {"AND"} and complete and following == "PREP" and _same_place_again(chunks, types, start, at, end + 1):
+    if kinds == {"AND"} and complete and following == "PREP" and _same_place_again(chunks, types, start, at, after):
         return True
     if "COMMA" in kinds and complete and "AND" in kinds and following in (PREDICATES - {"WITH"}):
         return not _in_list(chunks, types, start, at, i)
@@ -474,7 +492,10 @@ def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: 
         or any(kind in FINITE or kind in ("REL", "WITH") for kind in types)
     ):
         return False
-    if [chunk.type for chunk in source[at : at + 2]] not in (["NP", "PREP"], ["NP", "ADV"]):
+    after = at + 1
+    while [chunk.type for chunk in source[after : after + 2]] == ["OF", "NP"]:
+        after += 2
+    if [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
         return False
     first, second = found[0].value, source[at].value
     last = max(i for i, kind in enumerate(types) if kind in ("PREP", "ADV"))

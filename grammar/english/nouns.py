@@ -399,6 +399,8 @@ PARTS = frozenset(
         "cable",
         "hinge",
         "lip",
+        "fold",
+        "crease",
         "foot",
         "head",
         "shaft",

@@ -123,7 +123,7 @@ def _sentence(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            chunks = rewritten(Chunker(words, nouns).run())
+            chunks = rewritten(_without_parentheses(Chunker(words, nouns).run(), text))
             assembly.hedges = [
                 (chunk.span[0], chunk.value)
                 for chunk in chunks
@@ -150,6 +150,32 @@ def _sentence(
         heading=raw.heading,
         viewpoint=found.viewpoint,
     )
+
+
+def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
+    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
+
+    *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
+    with its blade to the left*.
+    """
+    kept: list[Chunk] = []
+    after: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
+        inside = chunks[i + 1 : closing]
+        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
+        if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
+            noun = replace(kept[-1].value, determiner="the", count=None)
+            named = Chunk("NP", kept[-1].start, kept[-1].end, noun, kept[-1].span)
+            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
+            i = (closing or i) + 1
+            continue
+        kept.append(chunk)
+        i += 1
+    ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
+    return [*kept[:ends], *after, *kept[ends:]]
 
 
 def _is_foreign(words: list[Word]) -> bool:

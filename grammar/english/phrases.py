@@ -21,6 +21,7 @@ from deixis.grammar.english.words import (
     HEDGES,
     IS_FORMS,
     MODALS,
+    NAMED_LIKE_THINGS,
     NEGATIONS,
     NUMBERS,
     ORDINALS,
@@ -422,7 +423,12 @@ class NounChunker:
             return False
         if form.form == "s" and before == "," and self.is_determiner(at + 1):
             return False
-        if form.form == "s" and before in (",", "and") and form.lemma in _NAMED_LIKE_THINGS and self._nouns.knows(norm):
+        if (
+            form.form == "s"
+            and before in (",", "and")
+            and form.lemma in _PLURALS_LIKE_VERBS
+            and self._nouns.knows(norm)
+        ):
             return True
         if (
             form.form == "s"
@@ -454,6 +460,8 @@ class NounChunker:
                 return False
             if form.form == "s":
                 return not self._predicate_follows(at) or at == 0
+            if norm in NAMED_LIKE_THINGS:
+                return not self.commands(at) or after == "of"
             imperative = norm in PUT_VERBS or norm in FIND_VERBS
             return (
                 not self.starts(at + 1)
@@ -461,6 +469,43 @@ class NounChunker:
                 or (not imperative and not self.is_determiner(at + 1) and (after not in PRONOUNS))
             )
         return before in self._closed and before not in PRONOUNS and before not in ("to", "not", "which", "that", "who")
+
+    def commands(self, at: int) -> bool:
+        """Return True if the words after a verb that is a noun too make it a command: *screw the*, *heap sand on*.
+
+        Parameters
+        ----------
+        at
+            Index of the verb, where a command can begin.
+
+        Returns
+        -------
+        bool
+            False for *screw holes are on the left* and *top shelf: plates*.
+        """
+        after = at + 1
+        if self.is_determiner(after) or self.number(after) is not None or self.norms[after] in ("it", "them"):
+            return self.norms[after] not in ("that", "which")
+        if not self.starts(after):
+            return self.norms[after] in ("out", "up", "down", "away", "off") or self.norms[at : at + 2] == [
+                "turn",
+                "on",
+            ]
+        if is_adjective(self.norms[at]):
+            return False  # 'top box', 'lower shelf'
+        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]):
+            return False
+        rest = self.norms[after : after + 12]
+        ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
+        rest, mark = rest[:ends], rest[ends : ends + 1]
+        states = any(norm in IS_FORMS or norm in MODALS or self._stands(after + i) for i, norm in enumerate(rest))
+        return mark != [":"] and not states and any(norm in prepositions() for norm in rest[1:])
+
+    def _stands(self, at: int) -> bool:
+        """Return True for the verb of a statement: *cards stand behind …*."""
+        form = self._verbs.get(self.norms[at])
+        spatial = form is not None and form.form in ("s", "base") and form.kind in ("posture", "lean", "face")
+        return spatial and self._predicate_follows(at)
 
     def _reports(self, at: int) -> bool:
         """Return True for *states* and *claims* before what they report: *the owner states that the cup is …*."""
@@ -788,6 +833,8 @@ class NounChunker:
     def _adjective(self, at: int, degree: Degree | None, start: int) -> Adjective:
         norm = self.norms[at]
         lemma, own = degree_of(norm)
+        if norm == "lower" and (self._nounish(at + 1) or self.norms[at + 1] in ("one", "ones")):
+            return Adjective("bottom", "position", Degree.PLAIN, self._span(start, at + 1))
         dimension = self._adjectives.get(norm) or self._adjectives.get(lemma)
         if dimension is None:
             if norm.endswith(("colored", "coloured")):
@@ -831,6 +878,10 @@ class NounChunker:
                     "twin",
                     "gold",
                     "silver",
+                    "charcoal",
+                    "olive",
+                    "lavender",
+                    "level",
                 )
             ):
                 telegraphic = after in ("upper", "lower", "top", "bottom", "far", "near") and (
@@ -853,9 +904,16 @@ class NounChunker:
                     return True
                 if is_adjective(after) and (self._nounish(at + 2) or after in PLACE_NOUNS):
                     return True
-                return norm in ("gold", "silver", "square", "flat", "orange", "cream") and not self._noun_by_position(
-                    at
-                )
+                return norm in (
+                    "gold",
+                    "silver",
+                    "square",
+                    "flat",
+                    "orange",
+                    "cream",
+                    "charcoal",
+                    "lavender",
+                ) and not self._noun_by_position(at)
             if self._is_relation(at) and not (
                 after == "away" and (self._nounish(at + 2) or self.adjective_before_noun(at + 2))
             ):
@@ -918,7 +976,8 @@ class NounChunker:
     def _noun_by_position(self, at: int) -> bool:
         before = self.norms[at - 1] if at else ""
         return (before in ("a", "an") and self.norms[at] in ("orange", "square", "cream", "flat")) or (
-            before in ("the", "some", "and", "with", "of", ",") and self.norms[at] in ("orange", "cream")
+            before in ("the", "some", "and", "with", "of", ",")
+            and self.norms[at] in ("orange", "cream", "charcoal", "lavender")
         )
 
     def _joins_adjectives(self, at: int) -> bool:
@@ -1005,6 +1064,8 @@ class NounChunker:
                     or (is_adjective(norm) and norms[i + 1] not in ("of",))
                 ):
                     break
+            if nouns and norm in ("face", "bottom") and norms[i + 1] in ("up", "down"):
+                break  # 'the card face down'
             letter = self._letter(i)
             if letter is None and norm not in PLACE_NOUNS and (norm in self._closed or not self._noun_here(i, nouns)):
                 break
@@ -1225,12 +1286,13 @@ class NounChunker:
         return self.is_noun(at)
 
 
+_CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
 _STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
 _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
 _LATIN_PLURALS = ("ae", "i", "a")
 _NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
-_NAMED_LIKE_THINGS = word_set(
+_PLURALS_LIKE_VERBS = word_set(
     "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape"
 )
 """Verbs whose third person is more often the plural of a thing: *cups here, sandwiches there*."""

@@ -59,7 +59,9 @@ def is_place(phrase: NounPhrase) -> bool:
     if not phrase.head or phrase.members:
         return False
     return (
-        phrase.head in PLACE_NOUNS or phrase.head == "o'clock" or (phrase.head in _ROWS and phrase.determiner != "the")
+        phrase.head in PLACE_NOUNS
+        or phrase.head == "o'clock"
+        or (phrase.head in _ROWS and phrase.determiner in (None, "a", "an", "one"))
     )
 
 
@@ -153,7 +155,11 @@ def _sided(
     if kind == "side" and not sides:
         return _made(
             relator,
-            "next_to" if relator.preposition.relation in ("at", "to", "on", "near") else "side",
+            "side"
+            if phrase.owner is not None and phrase.of is not None
+            else "next_to"
+            if relator.preposition.relation in ("at", "to", "on", "near")
+            else "side",
             arguments,
             span,
         )

@@ -105,6 +105,7 @@ class References:
     start: int = 0  # of the sentence in the text
     text: str = ""
     surface: Entity | None = None
+    named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
     doubtful: list[PronounUse] = field(default_factory=list)
     renamed: list[Entity] = field(default_factory=list)  # entities with aliases
     _by_last_word: dict[str, list[Entity]] = field(default_factory=dict)
@@ -175,7 +176,10 @@ class References:
             return self.surface
         worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
         if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
-            whole = self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
+            whole = None
+            if phrase.owner is not None and phrase.owner.pronoun == "it" and besides is not None:
+                whole = next((e for e in self.named[-1:] if e is not besides and not e.itself.members), None)
+            whole = whole or self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
             return None if whole is None else Entity(noun, Role.PART, whole=whole)
         if last in PARTS - REMOVABLE and noun != last and phrase.determiner != "a":
             whole = self._earlier(replace(phrase, head=noun.rpartition(" ")[0], adjectives=(), determiner="the"))
@@ -206,6 +210,10 @@ class References:
         words = written.replace(",", " ").split()
         count = phrase.count
         stem = last_word(phrase.head)
+        amount = written.partition(" of ")[0].split()[-1:] if " of " in written and phrase.of is None else []
+        if amount and not phrase.plural:  # 'a drop of water', and later 'the drop'
+            entity.aliases.add(amount[0])
+            self.renamed.append(entity)
         lump = next((word for word in words if word in SINGLE_PLURALS), None)
         if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
             count = 2
@@ -286,13 +294,17 @@ class References:
         for entity in sorted(
             latest_first,
             key=lambda entity: (
-                entity.noun != phrase.head, -_agreement(entity, phrase),
+                entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
                 not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
             ),
         ):  # fmt: skip
             if not _can_name(phrase.head, entity) or _conflicting(entity, phrase):
                 continue
             if phrase.determiner == "other" and not entity.members:
+                continue
+            if (phrase.count or 1) > 1 and not (entity.members or entity.plural or entity.group is not None):
+                continue  # 'the two rails' after 'a rail'
+            if self._is_further(phrase, entity):
                 continue
             if entity.group is not None and entity.group in self.entities:
                 continue
@@ -309,6 +321,14 @@ class References:
                 return self.member(entity, phrase) or entity
             return entity
         return None
+
+    def _is_further(self, phrase: NounPhrase, entity: Entity) -> bool:
+        """Return True for *the second panel* after *one panel*: another one, which is not counted from a side."""
+        rank = next((a.rank for a in phrase.adjectives if a.rank is not None), None)
+        counted = any(p.relation == "ordinal" for p in phrase.predicates)
+        alone = not (entity.members or entity.plural or entity.group is not None)
+        ranked = any(dimension == "rank" for dimension, _ in entity.adjectives)
+        return alone and not ranked and rank is not None and rank > 1 and not counted and not phrase.plural
 
     def _named_like(self, head: str) -> list[Entity]:
         """Return the known objects whose noun, or another noun for them, has the same last word, the latest first."""
@@ -472,6 +492,9 @@ class References:
         return self.find(NounPhrase(phrase.span, head=nouns[-1].casefold(), determiner="the"))
 
     def _ellipsis(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
+        two = phrase.count == 2 and phrase.determiner in ("the", "these", "those") and not phrase.adjectives
+        if two and phrase.of is None and (pair := self._plural(None, besides)) is not None and pair.size == 2:
+            return pair  # 'behind the two'
         group = self.find(phrase.of, None, besides) if phrase.of is not None else None
         if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
             contrasted = self._contrasted(phrase)
@@ -495,6 +518,11 @@ class References:
             another = self._another_one(phrase, besides, relation)
             if another is not None:
                 return another
+        ranks = [a.rank for a in phrase.adjectives if a.rank is not None]
+        if group is None and ranks and besides is not None and besides.noun and not besides.itself.members:
+            like = [e for e in self._known() if e.noun == besides.noun and not e.members and e is not besides.itself]
+            if like and besides.itself.group is None:
+                return self._seen(like[0], phrase)  # 'the second panel opposite the first one'
         group = group or self.last_group(besides)
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         if further and group is not None and group.noun and phrase.of is None:

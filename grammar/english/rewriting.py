@@ -35,7 +35,7 @@ def rewritten(chunks: list[Chunk]) -> list[Chunk]:
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without_searches, _without_infinitives, _without_counts_apart, _with_relative_places,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
-        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists,
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -452,3 +452,24 @@ _ENDEARMENTS = word_set(
     " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls"
 )
 """Nouns by which a person is spoken to."""
+
+
+def _with_gaps(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *leave (a gap of) 2 cm between the cup and the jug* as *leave the cup 2 cm from the jug*."""
+    found = list(chunks)
+    for i in range(len(found) - 5, -1, -1):
+        gap = [c.type for c in found[i + 1 : i + 3]] == ["NP", "OF"] and found[i + 1].value.head in _GAPS
+        at = i + 3 if gap else i + 1
+        types = [chunk.type for chunk in found[at : at + 5]]
+        if found[i].type not in ("PUT", "DO") or found[i].value.lemma not in ("leave", "keep", "allow", "maintain"):
+            continue
+        if types == ["MEASURE", "PREP", "NP", "AND", "NP"] and found[at + 1].value.preposition.relation == "between":
+            measure, _, first, joint, second = found[at : at + 5]
+            put = Chunk("PUT", found[i].start, found[i].end, found[i].value, found[i].span)
+            off = Relator(Preposition("from", "measured_from"))
+            away = Chunk("PREP", joint.start, joint.end, off, joint.span)
+            found[i : at + 5] = [put, first, measure, away, second]
+    return found
+
+
+_GAPS = frozenset({"gap", "space", "distance", "clearance"})

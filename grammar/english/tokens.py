@@ -47,7 +47,7 @@ _WORD = re.compile(
     r"`[^`\n]{1,1000}`|"
     r"(?<!\w)\w[\w-]*?_[\w-]*\w(?!\w)|"  # left_shoe
     r"\b[wW]/(?:o\b)?|\b(?:[A-Za-z]\.){2,}|"  # with, without
-    r"[^\W\d_]{1,3}\d+\b|"  # codes: M1
+    r"[^\W\d_]{1,3}\d+\b|\b[A-Z]\.\d+\b|"  # codes: M1, M.2
     r"[^\W\d_]+(?:['\u2019][^\W\d_]+)*(?:-[^\W_]+(?:['\u2019][^\W\d_]+)*)*"  # words, with apostrophes and hyphens
     r"|\d+(?:[.,:]\d+)*(?:st|nd|rd|th)?(?:-[^\W\d_]+)*"  # numbers, ordinals, 3-level
     r"|['\u2019](?:s|re|m|ll|d|ve)\b"
@@ -57,7 +57,9 @@ _WORD = re.compile(
 _CLITICS = ("'s", "'re", "'m", "'ll", "'d", "'ve")
 _ENDS = re.compile(r"[.!?\u2026]+[\"'\u201d\u2019)\]]*(?=\s|$)|[.!?](?=[A-Z][a-z])|\n[ \t]*\n|\n")
 _STEP = re.compile(
-    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013]|step\s+\d+[.:]?|\d{1,3}[.:]\d+)[ \t]+", re.I
+    r"[ \t]*(?:\(?(?:\d{1,3}|[a-zA-Z]|[ivx]{1,4})[.)]|[-*\u2022\u2013\u25a1\u25aa\u25cf\u2610-\u2612\u2713\u2714]"
+    r"|\[[ xX]?\]|step\s+\d+(?:[.:]|[ \t]*[-\u2013\u2014])?|\d{1,3}[.:]\d+)[ \t]+",
+    re.I,
 )
 
 

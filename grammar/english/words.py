@@ -166,6 +166,10 @@ IDIOMS = tuple(
         "over the moon",
         "over and over",
         "off the top of my head",
+        "in half",
+        "in two",
+        "in first",
+        "in last",
         "out of the way",
         "right away",
         "right off",
@@ -203,13 +207,19 @@ IDIOMS = tuple(
         "it is best to",
         "feel free to",
         "left over",
-        "within reach",
-        "within easy reach",
+        "at arm 's length",
+        "out of sight",
+        "on edge",
         "out of reach",
         "at eye level",
         "at a glance",
         "from above",
         "seen from above",
+        "face up",
+        "right side up",
+        "right way up",
+        "the right way up",
+        "the right way round",
     )
 )
 """Fixed phrases that say nothing of places."""
@@ -419,7 +429,7 @@ ADVERBS = word_set(
     " neatly carefully gently loosely tightly firmly evenly centrally all up down back out off along there here"
     " together apart away nearby itself else instead please kindly basically kinda sorta obviously however therefore"
     " further farther close facedown freely freestanding separately individually alone solely lengthwise sideways"
-    " crosswise squarely dead bang smack slap ever least most more less super extremely"
+    " crosswise squarely dead bang smack slap ever least most more less super extremely overnight"
 )
 DEGREE_ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
@@ -463,7 +473,8 @@ across: across
 opposite: opposite, opposite of, opposite to, opposite from, across from, directly across from, on the other side of
 opposite: facing opposite, on the opposite side of, at the opposite side of, opposing
 against: against, up against, right up against, flush with, flush against
-along: along, all along
+along: along, all along, down the centre of, down the center of, down the middle of, along the middle of
+along: along the centre of, along the center of, down the length of, along the length of
 touching: in contact with, touching
 facing: facing, facing to, facing toward, facing towards, toward
 facing: towards, looking at, looking toward, looking towards, facing at
@@ -525,6 +536,7 @@ stacked: on top of each other, on top of one another, one on top of the other, o
 stacked: stacked inside one another
 parallel_each_other: parallel, parallel to each other, in parallel
 one_each: one each, one apiece, one for each, respectively
+there: within reach, within easy reach, within arm 's reach
 there: over there, there, here, out there, up there, down there
 apart: apart, away, far away
 alone: by itself, all by itself, on its own, all on its own, by themselves, on their own, all alone
@@ -809,6 +821,8 @@ posture: sleep sleeps slept slept sleeping, poke, peek, peep, dangle, sprawl, cu
 posture: kneel kneels knelt knelt kneeling, crouch, squat, recline, droop, sag, teeter, soak, dry, cool, gather
 posture: gleam, glow, glint, glitter, sparkle, shimmer, spill, stretch, hunch, cluster, bob, totter
 posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range, reside, protrude, balance
+posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
+posture: trail, dot, ladle, step
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
 transitive: encircle, straddle
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
@@ -861,7 +875,17 @@ PUT_VERBS = word_set(
     "put place set lay position keep leave stand arrange hang stack lean rest move slide push add drop insert store"
     " line fold roll turn center centre align tuck mount attach install fix plug bring stick spread"
     " surround situate locate seat nest wrap pile prop start finish balance"
+    " plant heap pour scatter screw bolt glue nail tape strap sprinkle drizzle spoon load thread drape lower raise pin"
+    " slot hook suspend fasten secure connect press wedge nestle space clip clamp tip park sit lodge sandwich group"
+    " tie shelve stow lay bury hide cram slip position pack feed affix anchor angle straddle"
+    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot heap"
 )
+NAMED_LIKE_THINGS = word_set(
+    "plant heap screw bolt glue nail tape strap spoon load thread pin slot hook press wedge clip clamp tip park group"
+    " tie pack feed anchor angle top lower fit dot fill float cover position space spread stick stack pile line drop"
+    " center centre turn roll fold prop nest seat store rest stand set place mount slide bring"
+)
+"""Commands whose verb is a noun as well: *screw the bracket to it* and *screw holes*."""
 VIEW_VERBS = word_set(
     "facing looking standing sitting walking entering viewing coming seated stood face look stand walk enter sit view"
     " turn imagine approach approaching step stepping turning lying laying"
@@ -916,7 +940,10 @@ def verb_forms() -> dict[str, VerbForm]:
     return found
 
 
-_ONLY_PARTICIPLES = word_set("clip clamp ring tower string range coil slip lower fill stow")
+_ONLY_PARTICIPLES = word_set(
+    "clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
+    " thread pack feed scoop dot ladle stretch swing"
+)
 """Verbs whose plain forms are nouns or adjectives more often."""
 
 
