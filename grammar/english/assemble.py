@@ -180,7 +180,13 @@ class Assembly:
             if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
-            departs = verb.group.lemma == "leave" and verb.thing is not None and bool(subject.phrase.head)
+            departs = (
+                verb.group.lemma == "leave"
+                and verb.thing is not None
+                and not front
+                and not verb.said
+                and bool(subject.phrase.head)
+            )
             if departs and last_word(subject.phrase.head) not in PEOPLE:
                 misunderstood(span, "'leave' does not say where something is here")
                 left = verb.thing.phrase if verb.thing is not None else None

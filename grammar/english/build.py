@@ -526,8 +526,12 @@ class Builder(Transformer[Any, Built]):
         """Return the predicates of *with a napkin on it*."""
         relator: Relator = chunk.value
         found: list[Predicate] = []
+        several: NounPhrase | None = None
         for noun in nouns[::2]:
             for member in _with_shared_place(noun.phrase):
+                if several is not None:
+                    member = _beside(member, several)
+                several = replace(member, predicates=()) if member.plural else several
                 found += _accompanied(relator, member, union(chunk.span, noun.phrase.span))
             found += noun.extra
         return tuple(found)
@@ -614,6 +618,16 @@ def flat(verb: Verb) -> list[Predicate]:
     if verb.group.adverbs:
         found = [replace(p, adverbs=(*verb.group.adverbs, *p.adverbs)) for p in found]
     return found
+
+
+def _beside(member: NounPhrase, several: NounPhrase) -> NounPhrase:
+    """Return *the knife to their right* after *with two limes on it* with the limes as what it is beside."""
+    made = []
+    for p in member.predicates:
+        theirs = bool(p.arguments) and all(a.pronoun == "they" for a in p.arguments)
+        own = p.viewpoint is not None and p.viewpoint.own is not None and p.viewpoint.own.pronoun == "they"
+        made.append(replace(p, arguments=(several,), viewpoint=None if own else p.viewpoint) if theirs else p)
+    return replace(member, predicates=tuple(made))
 
 
 def _with_own_parts(parts: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -1093,6 +1107,11 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
             relation = "near"
     if (kind == "lean" or lemma in ("lean", "prop")) and relation in ("against", "on", "at", "near"):
         relation = "leaning"
+    elif (
+        lemma in _ROTATING and not arguments and (relation in ("left", "right") or following.part in ("left", "right"))
+    ):
+        value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
+        relation = "facing"
     elif kind in ("face", "point") or lemma in ("look", "aim"):
         meaning = "pointing" if kind == "point" else "facing"
         if relation == "pointing":
@@ -1109,6 +1128,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         lemma in ("stack", "pile") and relation in ("on", "stacked") and arguments
     ):
         relation = "on"
+    elif lemma in ("centre", "center") and relation == "on":
+        relation = "middle"
+    elif lemma == "hang" and relation == "part" and arguments:
+        return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
     elif lemma in ("align", "line") and relation in ("with",):
         relation = "aligned"
     elif lemma in _TELLING and relation in ("inside", "on", "at"):
@@ -1151,6 +1174,7 @@ _STAYING = word_set(
     " lean prop nestle perch find see go come wait live stop linger belong be"
 )
 """Verbs after which *by* means *near*."""
+_ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _TELLING = word_set(
     "mention describe list show note picture record state name quote illustrate explain depict photograph"
 )

@@ -247,6 +247,8 @@ class Chunker:
         if norm == "welcome" and at == 0 and self.norms[1] in ("in", "to", "at"):
             end = next(i for i in range(1, len(self.norms)) if self.norms[i] in ("", ",", "!", ".", ":", ";"))
             return Chunk("ADVERB", at, end, norm)
+        if self.nouns.number(at) is not None and self.norms[at + 1] in _LAYERS and self._previous() in ("PART", "ADV"):
+            return Chunk("ADVERB", at, at + 2, "layers")  # 'stacked two high'
         if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
             return Chunk("ADVERB", at, at + 2, "in first")
         if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
@@ -1126,6 +1128,8 @@ class Chunker:
             at + 1
         ):
             return False
+        if self.nouns.number(at) is not None and self.norms[at + 1] in _LAYERS:
+            return False
         found = self.nouns.phrase(at, "TVERB")
         return found is not None and found[1] is not None
 
@@ -1310,10 +1314,11 @@ _SUBORDINATING = {
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
 _TOLD = word_set("it they he she there")
+_LAYERS = frozenset({"high", "deep", "abreast"})
 _THIRD_PERSONS = (["it"], ["he"], ["she"])
 _SUBJECTS = word_set("i you we he she they")
 """Pronouns before which no participle stands: the verb after them is finite."""
-_WHOEVER = word_set("whoever whatever whichever whomever")
+_WHOEVER = word_set("otherwise whoever whatever whichever whomever")
 """Words for any person or thing of which the clause holds: it is a condition."""
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 _HALF_STATES = word_set("dead empty full open closed finished done eaten asleep")

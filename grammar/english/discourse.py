@@ -46,6 +46,7 @@ UNSURE_RELATIVE = re.compile(
 
 OBLIGED = frozenset({"should", "ought", "shall"})
 REVOKED = re.compile(
+    r"^,?\s*(?:but|though|yet)\s+not\s+(?:today|now|here|yet|always|any\s*more|this\s+time|tonight|any\s+longer)\b|"
     r"^,?\s*(?:but|though|although|yet)\s+(?:we|i|you|they|he|she|it)\s+"
     r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$",
     re.IGNORECASE,
@@ -76,6 +77,8 @@ ELSEWHERE = re.compile(
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
 """Words between what should be and what is."""
+MAX_WORDS_AFTER = 3
+"""Number of words between a relative clause and the pronoun that stands for its last thing."""
 MAX_BETWEEN_CLAUSES = 40
 """Number of characters between two clauses that are contrasted."""
 
@@ -133,6 +136,8 @@ EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"
 
 OF_SURFACES = PLACES | {"on", "inside", "at", "along", "across", "near", "around", "row", "circle", "part"} | DIRECTIONS
 """Relations of things to the surface that they stand on."""
+GAPS = frozenset({"gap", "space", "room", "distance"})
+"""Nouns of what is between things, which is not a thing."""
 NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"})
 """Relations of the parser that say nothing of where a thing is."""
 CONTAINING = frozenset({"contains", "contain", "containing"})
@@ -213,6 +218,7 @@ class Discourse:
         self.asked: tuple[int, Entity] | None = None  # sentence and thing of the last question
         self.introduced: dict[tuple[Span, str, int | None], Entity] = {}  # by their first mention
         self.restricted: dict[Entity, tuple[Entity, int]] = {}  # the last thing of a relative clause and its end
+        self.on_surface: Span | None = None  # clause with a place on the surface
         self.edge: str | None = None
         self.end = 0  # of the sentence in the text
         self.condition: str | None = None
@@ -232,6 +238,7 @@ class Discourse:
         for number, sentence in enumerate(self.sentences):
             self.references.sentence = number
             self.references.start, self.end = sentence.span
+            self.references.lost = [problem.span for problem in sentence.misunderstood]
             self.condition = condition_of(sentence)
             parts: list[Clause | NounPhrase] = list(sentence.clauses)
             if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
@@ -266,6 +273,11 @@ class Discourse:
             return
         subject: Entity | None = None
         for part in self._with_shared_places(listed):
+            own = part.determiner is None and part.owner is None and last_word(part.head) in PARTS and part.predicates
+            if own and subject is not None and all(p.relation in ("pointing", "facing") for p in part.predicates):
+                for predicate in part.predicates:  # 'shells, front left, hollow side down'
+                    self._predicate(subject, predicate, [])
+                continue
             if part.pronoun == "one" and subject is not None and subject.members:
                 self._one_each(subject, part)
                 continue
@@ -534,6 +546,10 @@ class Discourse:
         new = len(self.references.entities) > known and self.references.entities[-1] is entity
         if entity.role is Role.THING or entity.role is Role.SURROUNDING:
             self._describe(entity, phrase, new)
+        if phrase.determiner == "the" and besides is not None:
+            heights = ("above", "below")  # 'the cupboard underneath' is not below the thing in it
+            kept = tuple(p for p in phrase.predicates if p.arguments or p.relation not in heights)
+            phrase = replace(phrase, predicates=kept)
         rows = tuple(p for p in phrase.predicates if p.relation in ("row", "circle") and not p.arguments)
         if rows and besides is not None and not entity.plural and not entity.itself.members:
             self._say(besides, rows, phrase, focus=False)
@@ -594,7 +610,8 @@ class Discourse:
                 if phrase.head and last_word(phrase.head) not in GENERAL:
                     self._absent(phrase)
             return
-        if clause.modal is not None and subject.pronoun is None and last_word(subject.head) not in GENERAL:
+        forbidden = clause.modal in (None, "may", "must", "should", "shall", "can")
+        if not forbidden and subject.pronoun is None and last_word(subject.head) not in GENERAL:
             return
         known = self.references.earlier(replace(subject, determiner="the")) if subject.head else None
         inside = all(p.relation in ("on", "inside") for p in predicates)
@@ -636,6 +653,9 @@ class Discourse:
         if last.size > 1 and last_word(part.head) in REMOVABLE:
             return True  # 'rosin and cloth are in the case, lid open'
         for predicate in predicates:
+            if predicate.relation in ("left", "right") and not predicate.arguments:
+                self._add("pointing", (last,), (), value=predicate.relation)
+                continue
             if predicate.relation == "far":
                 predicate = replace(predicate, relation="pointing", arguments=(), value=None, part="away")
             if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (
@@ -715,7 +735,7 @@ class Discourse:
             if relation == "upside_down":
                 return  # the label, and not the bottle
             subject = subject.whole
-        if subject.role in (Role.VIEWER, Role.PERSON):
+        if subject.role in (Role.VIEWER, Role.PERSON) or subject.noun in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
             owner, _, part = predicate.subject_part.head.rpartition(" ")
@@ -781,7 +801,11 @@ class Discourse:
             if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
                 phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
             last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
-            if phrase.pronoun == "it" and restricted is not None and not others and predicate.span[0] >= end:
+            if phrase.pronoun == "it" and not others and self.on_surface == self.how.span and self.references.surface:
+                found.append(self.references.surface)  # 'outside the tray, behind it'
+                continue
+            near = predicate.span[0] >= end and len(self.text[end : predicate.span[0]].split()) <= MAX_WORDS_AFTER
+            if phrase.pronoun == "it" and restricted is not None and not others and near:
                 last = restricted  # 'the comb, which was in front of the mirror, is behind it'
 
             if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
@@ -799,6 +823,8 @@ class Discourse:
                     found.append(thing)
         entities = [_whole(thing) for thing in found if isinstance(thing, Entity)]
         regions = [thing for thing in found if isinstance(thing, Region)]
+        if any(e.role is Role.SURFACE for e in entities):
+            self.on_surface = self.how.span
         others += [e for e in entities if e.role is Role.THING]
         if predicate.arguments and not found:
             return
@@ -822,7 +848,13 @@ class Discourse:
         if relation == "between":
             self._between(subject, entities)
             return
+        single = subject.size == 1 and not subject.plural and not entities
+        if single and relation in ("near_each_other", "parallel_each_other", "nested"):
+            return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
+            if subject.itself.members:
+                subject.itself.aliases.add({"stacked": "stack"}.get(relation, relation))
+                self.references.renamed.append(subject.itself)  # later 'the row'
             value = predicate.part if relation == "row" else None
             if relation == "stacked" and "inside" in self.text[predicate.span[0] : predicate.span[1]]:
                 relation = "nested"

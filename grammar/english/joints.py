@@ -136,6 +136,10 @@ def _cuts(
         return _subject_follows(chunks, types, start, at, end, kinds, complete)
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(types, end):
         return True
+    if following == "PREP" and "AND" in kinds and types[end : end + 3] == ["PREP", "NP", "NP"]:
+        beside = chunks[end + 1].value.pronoun in ("it", "they")
+        if beside and (end + 3 >= len(types) or types[end + 3] in JOINTS | {"OF"}):
+            return True  # 'the brush, and behind it the cup'
     if (following in ("PREP", "ADV") and complete) or (
         following == "PREP" and types[start] == "PREP" and "AND" in kinds
     ):

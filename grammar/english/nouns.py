@@ -361,7 +361,7 @@ HOLDERS = frozenset(
 )  # fmt: skip
 """Nouns of things, other than vessels, that things are inside of."""
 
-REMOVABLE = frozenset({"lid", "cap", "label", "stick", "drawer", "cable", "cord", "strap", "base", "screen"})
+REMOVABLE = frozenset({"door", "lid", "cap", "label", "stick", "drawer", "cable", "cord", "strap", "base", "screen"})
 """Parts that can lie apart from their thing."""
 
 PARTS = frozenset(

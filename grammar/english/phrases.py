@@ -49,10 +49,11 @@ _BEFORE_ADJECTIVE = word_set(
     " partially partly fully completely mostly almost super bit even second third half"
 )
 _NEVER_NOUNS = word_set(
-    "and or but nor than not of to from with without at by for as if when while because that which who whom whose where"
-    " there then so too wherever also is are was were be been being am do does did has have had having n't please let"
-    " lets upside into onto upon toward towards against among amongst between beside beneath underneath behind until"
-    " during such whether whenever via per through 's 're 'm 'll 've 'd it's although though since unless"
+    "and or but nor than not of to from with without at by for as if when while because that which who whom whose"
+    " where there then so too wherever otherwise also is are was were be been being am do does did has have had"
+    " having n't please let lets upside into onto upon toward towards against among amongst between beside"
+    " beneath underneath behind until during such whether whenever via per through 's 're 'm 'll 've 'd it's"
+    " although though since unless"
 )
 _NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
 

@@ -25,6 +25,8 @@ from deixis.grammar.english.words import prepositions
 
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
+MIN_LOST = 12
+"""Number of characters from which a phrase that was not understood can name a thing."""
 REGIONS = frozenset(
     [
         "corner",
@@ -104,6 +106,7 @@ class References:
     sentence: int = 0
     start: int = 0  # of the sentence in the text
     text: str = ""
+    lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
     surface: Entity | None = None
     named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
     doubtful: list[PronounUse] = field(default_factory=list)
@@ -190,6 +193,9 @@ class References:
             inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
             return self.find(inner, relation, besides)
         earlier = self._earlier(phrase)
+        if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
+            others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
+            earlier = next((e for e in others if not _conflicting(e, phrase)), earlier)
         if earlier is not None:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
@@ -452,6 +458,8 @@ class References:
             if group is None or word in ("all", "both", "each", "everything"):
                 return group
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
+        if word in ("it", "they") and self._is_lost(phrase):
+            return None
         if word in ("they", "both", "all", "each", "these", "those"):
             return self._plural(relation, besides, word == "both")
         if word in ("it", "itself") and (left_out := self._left_out(phrase)) is not None:
@@ -472,6 +480,14 @@ class References:
         if word in ("one", "other"):
             return self._ellipsis(phrase, besides, relation)
         return None
+
+    def _is_lost(self, phrase: NounPhrase) -> bool:
+        """Return True for a pronoun after a clause of its sentence that was not understood, which it may go back to."""
+        if any(focus.sentence == self.sentence for focus in self.recent) or (
+            phrase.pronoun == "it" and self._left_out(phrase) is not None
+        ):
+            return False
+        return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
 
     def _left_out(self, phrase: NounPhrase) -> Entity | None:
         """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""

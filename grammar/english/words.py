@@ -141,6 +141,7 @@ IDIOMS = tuple(
         "in the long run",
         "in the meantime",
         "in place",
+        "on end",
         "in any case",
         "in other words",
         "in no time",
@@ -407,7 +408,7 @@ NOT_PLACES = word_set(
     "monday tuesday wednesday thursday friday saturday sunday january february march april june july august september"
     " october november december noon midnight morning evening afternoon schedule fire hurry average purpose sale"
     " holiday"
-    " reserve use stock storage transit preparation readiness advance turn total"
+    " miniature bulk profile bloom reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
@@ -506,7 +507,7 @@ through: through, thru, via
 like: like, similar to, looking like, identical to
 -: for, as, during, except, except for, besides from, per, because of, instead of, due to, rather than, such as
 -: since, until, till, after, same as, belonging to, according to, unlike, than
-with: with, w/, complete with
+with: with, w/, complete with, together with, along with
 without: without, with out
 """
 
@@ -811,6 +812,8 @@ other: start, help, look, walk, enter, approach, turn
 other: come comes came come coming, want, like, say says said said saying, think thinks thought thought thinking, try
 other: eat eats ate eaten eating, drink drinks drank drunk drinking, write writes wrote written writing, wash, let, take
 other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
+other: lose loses lost lost losing, sell sells sold sold selling, buy buys bought bought buying
+other: steal steals stole stolen stealing, forget forgets forgot forgotten forgetting, send sends sent sent sending
 other: follow, shift, transfer, relocate, return
 other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, see, notice
 other: ignore, disregard, skip, exclude
