@@ -127,6 +127,7 @@ RUNS = (
     Run("refer", "English", "objects that descriptions of rooms refer to", data=True),
     Run("blocks", "English", "coloured blocks that instructions across a table pick", data=True),
     Run("habits", "Learning", "places of unseen things, from examples of where a person puts things", data=True),
+    Run("pointing", "Perception", "things that simulated teachers point at"),
     Run("startup", "Command line", "processor time of commands on small jobs"),
 )
 """The recorded runs, in the order of the page. Each benchmark has one or more."""

@@ -19,3 +19,7 @@ class RecognitionError(DeixisError, ValueError):
 
 class SimulationError(DeixisError, ValueError):
     """Object, table or camera that cannot be simulated; the message names it and the reason."""
+
+
+class PointingError(DeixisError, ValueError):
+    """Skeleton, gesture or file of skeletons that is invalid; the message names the place and the remedy."""

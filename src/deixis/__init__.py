@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from deixis.workflows.infer import Inference, infer
     from deixis.workflows.lint import Lint, lint
     from deixis.workflows.perceive import perceive, write_scene
+    from deixis.workflows.point import Shown, point
     from deixis.workflows.read import read_script
     from deixis.workflows.refer import refer
     from deixis.workflows.retrieve import Retrieval, retrieve
@@ -74,6 +75,7 @@ __all__ = [
     "Scene",
     "Script",
     "Session",
+    "Shown",
     "Telling",
     "ask",
     "check",
@@ -84,6 +86,7 @@ __all__ = [
     "infer",
     "lint",
     "perceive",
+    "point",
     "read_scene",
     "read_script",
     "refer",
@@ -115,6 +118,7 @@ _HOMES = {
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
+    "Shown": "deixis.workflows.point",
     "Telling": "deixis.workflows.telling",
     "ask": "deixis.workflows.ask",
     "check": "deixis.workflows.check",
@@ -125,6 +129,7 @@ _HOMES = {
     "infer": "deixis.workflows.infer",
     "lint": "deixis.workflows.lint",
     "perceive": "deixis.workflows.perceive",
+    "point": "deixis.workflows.point",
     "read_scene": "deixis.perception.formats.scene_json",
     "read_script": "deixis.workflows.read",
     "refer": "deixis.workflows.refer",

@@ -26,6 +26,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/tell",
     "guides/habits",
     "guides/unlearn",
+    "guides/pointing",
     "guides/testing",
     "guides/robot",
     "reference/english",

@@ -51,6 +51,7 @@ CASES = [
     ("memory_stats", "memory stats"),
     ("memory_stats", "memory stats --memory {t}/other"),
     ("memory_verified", "memory verify"),
+    ("shown", "point {e}/showing.skeleton.jsonl {e}/showing.scene.json --said {e}/showing.said.jsonl"),
     ("query", "query 'SELECT ?s ?o WHERE {{ ?s a ?o }} LIMIT 5'"),
     ("query", "query 'ASK {{ ?s ?p 1 }}'"),
     ("query", "query 'DESCRIBE dx:left'"),
@@ -86,6 +87,10 @@ CASES = [
     ("validation", "validate {t}/wrong.ttl"),
 ]
 """Schema and command line of each validated answer; ``{e}`` is the folder of examples, ``{t}`` that of `home`."""
+
+
+OF_INPUT = {"skeleton", "utterance"}
+"""Schemas of lines of files that Deixis reads."""
 
 
 def errors(name: str, answer: Any) -> list[str]:
@@ -154,7 +159,7 @@ def test_every_command_with_json_has_a_schema_on_the_page() -> None:
         if "--json" in options(command, context)
     }
     assert known and _listed().keys() == known
-    assert set().union(*_listed().values()) | {"fact", "claim", "reference_line"} == SCHEMAS.keys()
+    assert set().union(*_listed().values()) | {"fact", "claim", "reference_line", *OF_INPUT} == SCHEMAS.keys()
 
 
 def test_answers_of_every_command_are_validated() -> None:

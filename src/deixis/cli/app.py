@@ -39,6 +39,7 @@ COMMAND_GROUPS = {
         "recognise": "recognise",
         "teach": "teach",
         "ask": "ask",
+        "point": "point",
         "relate": "relate",
         "simulate": "simulate",
     },
