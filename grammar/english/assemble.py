@@ -56,6 +56,7 @@ class Assembly:
     viewpoint: Viewpoint | None = None
     condition: str | None = None
     front: tuple[Predicate, ...] = ()  # places before a command: 'on the desk, choose the monitor'
+    forbids: bool = False  # True after a command that is denied
     shared: tuple[Predicate, ...] = ()  # place before a list: 'in the box, put A on the left, B on the right'
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
@@ -144,6 +145,12 @@ class Assembly:
             self.condition = None  # 'when the guests arrive, the table looks like this: …'
         mood = self._mood(built)
         subject = built.subject
+        if built.shape in ("command", "other"):
+            group = built.verbs[0].group
+            if link == "or" and self.forbids and group.positive:  # 'do not cover it or put it in a cupboard'
+                group = replace(group, positive=False)
+                built = replace(built, verbs=(replace(built.verbs[0], group=group), *built.verbs[1:]))
+            self.forbids = not group.positive
         letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
         if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
             verb = built.verbs[0]

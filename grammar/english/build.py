@@ -478,7 +478,9 @@ class Builder(Transformer[Any, Built]):
         if relator.rank is not None:
             value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
         arguments = noun.phrase
-        adverbs = (*relator.adverbs, "over") if relator.preposition.phrase == "over" else relator.adverbs
+        written = relator.preposition.phrase
+        shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
+        adverbs = (*relator.adverbs, written) if written == "over" or shaped else relator.adverbs
         made = Predicate(
             relation, _arguments(relation, arguments), span, value=value, degree=degree,
             than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,
@@ -498,7 +500,7 @@ class Builder(Transformer[Any, Built]):
             )
         if preposition.relation == "row":
             return (Predicate("row", (), chunk.span, part=preposition.phrase),)
-        if preposition.relation in ("up", "down", "forward", "backward"):
+        if preposition.relation in ("up", "down", "forward", "backward", "inward", "outward"):
             aim = Adjective(preposition.relation, "position", Degree.PLAIN, chunk.span)
             return (Predicate("pointing", (), chunk.span, value=aim, positive=relator.positive),)
         value = None
@@ -931,6 +933,10 @@ def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tupl
                 ]
                 i += 1
                 continue
+            if following is not None and lemma in _SHAPING and "into" in following.adverbs:
+                misunderstood(following.span, "this says what shape something gets, not where it is")
+                i += 2
+                continue  # 'folded into a fan'
             if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
                 found.append(replace(following, relation="middle"))  # 'centred on the table'
             if following is not None and not following.relation.startswith("~"):
@@ -1035,6 +1041,12 @@ _FASTENING = word_set(
     " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
 )
 """Commands in which *with* names a tool: *secure it with two bolts*."""
+_SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
+_ATTACHING = word_set(
+    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
+    " join fasten tie hook link stick pin clip clamp wire strap"
+)
+"""Verbs after which *to* means that two things touch."""
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
@@ -1079,29 +1091,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     if relation == "to" and arguments and lemma in _MOVING:
         relation = _destination(following).relation
     if relation == "to" and arguments:
-        if lemma in (
-            "affix",
-            "hinge",
-            "anchor",
-            "glue",
-            "screw",
-            "bolt",
-            "secure",
-            "nail",
-            "tape",
-            "strap",
-            "attach",
-            "fix",
-            "mount",
-            "connect",
-            "join",
-            "fasten",
-            "tie",
-            "hook",
-            "link",
-            "stick",
-            "pin",
-        ):
+        if lemma in _ATTACHING:
             relation = "touching"
         elif lemma in ("pull", "push", "tuck", "move", "scoot", "park"):
             relation = "near"
@@ -1132,6 +1122,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "middle"
     elif lemma == "hang" and relation == "part" and arguments:
         return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
+    elif relation == "next_to" and lemma in _ATTACHING:
+        relation = "touching"  # 'clipped to the side of the jug'
     elif lemma in ("align", "line") and relation in ("with",):
         relation = "aligned"
     elif lemma in _TELLING and relation in ("inside", "on", "at"):

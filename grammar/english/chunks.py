@@ -262,6 +262,8 @@ class Chunker:
             and self.norms[at + 3] in _CLAUSE_ENDS | {"and", "on", "in"}
         ):
             return Chunk("ADVERB", at, at + 3, "side up")  # 'lay the sheet on the mat, shiny side down'
+        if norm in ("itself", "themselves") and self._previous() == "NP":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'not in the box itself'
         if norm in ("consists", "consist", "comprises") and (self.norms[at + 1] == "of" or norm == "comprises"):
             return Chunk("CUT", at, at + (1 if norm == "comprises" else 2))
         if norm in ("marked", "labelled", "labeled") and self._previous() == "NP" and self.nouns.is_noun(at + 1):
@@ -733,6 +735,12 @@ class Chunker:
                     and (stranded or stands_alone)
                 ):
                     return end, "ADV", preposition
+        if self.norms[at] in ("in", "out", "inward", "inwards", "outward", "outwards"):
+            last = self.chunks[-1].value if self.chunks else None
+            if isinstance(last, VerbGroup) and last.kind in ("face", "point") and self.norms[at + 1] in _CLAUSE_ENDS:
+                return at + 1, "ADV", places_alone()["inward" if self.norms[at][0] == "i" else "outward"]
+            if alone is not None and alone[1].relation in ("inward", "outward"):
+                return None
         if alone is not None:
             if (
                 self.norms[at] in ("left", "right")
@@ -767,7 +775,8 @@ class Chunker:
 
     def _is_left_behind(self, at: int) -> bool:
         """Return True for the participle of *leave*: *the glass left on the table*, *must not be left on it*."""
-        return self.norms[at + 1] in ("on", "in", "inside", "at", "by", "lying", "standing") and (
+        placed = ("on", "in", "inside", "at", "by", "lying", "standing", "along", "against", "under", "beneath")
+        return self.norms[at + 1] in placed and (
             self._previous() == "BE" or (self._previous() == "NP" and self.nouns.starts(at + 2))
         )
 
@@ -1020,6 +1029,8 @@ class Chunker:
                 return None
             end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
+        if norm in ("set", "put") and self._previous() == "BE":
+            return Chunk("PART", at, end, found)
         if form.form == "base":
             subject = self._previous()
             subject_is_you = subject == "NP" and self.norms[self.chunks[-1].start] == "you"

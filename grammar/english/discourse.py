@@ -554,6 +554,10 @@ class Discourse:
         if rows and besides is not None and not entity.plural and not entity.itself.members:
             self._say(besides, rows, phrase, focus=False)
             phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in rows))
+        bare = all(p.relation in PLACES | DIRECTIONS and not p.arguments for p in phrase.predicates)
+        carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
+        if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
+            self._say(besides, phrase.predicates, phrase, focus=False)
         if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
         elif phrase.predicates and entity.role is not Role.PERSON:

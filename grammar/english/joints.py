@@ -118,7 +118,8 @@ def _cuts(
     """
     if end >= len(types) or kinds & {"CUT", "SUB", "COLON"}:
         return True
-    if "THEN" in kinds and not ("AND" in kinds and types[end] == "NP" and types[end + 1 : end + 2] in ([], ["CUT"])):
+    listed = "AND" in kinds and types[end] == "NP" and not _finite_between(types, end, len(types))
+    if "THEN" in kinds and not (listed and (types[start:at] == ["PUT", "NP"] or types[end + 1 : end + 2] == [])):
         return True
     if at == start:
         return True

@@ -418,6 +418,10 @@ class NounChunker:
             return False
         if at and self.number(at - 1) is not None and not (self.norms[at - 1] == "one" and form.form == "s"):
             return True
+        if norm == "set" and before in IS_FORMS:
+            return False
+        if form.lemma in ("go", "belong", "remain") and form.form == "base" and not after_determiner:
+            return False
         if form.lemma in ("lie", "sit", "hang") and form.form in ("base", "s") and not after_determiner:
             return False
         if form.form == "s" and form.lemma in _NEVER_PLURALS and before not in DETERMINERS:
@@ -1065,6 +1069,8 @@ class NounChunker:
                     or (is_adjective(norm) and norms[i + 1] not in ("of",))
                 ):
                     break
+            if nouns and f"{norm} {norms[i + 1]} {norms[i + 2]}" in prepositions() and norm in ("half", "full"):
+                break  # 'a pan half full of water'
             if nouns and norm in ("face", "bottom") and norms[i + 1] in ("up", "down"):
                 break  # 'the card face down'
             letter = self._letter(i)

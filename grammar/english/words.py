@@ -167,6 +167,11 @@ IDIOMS = tuple(
         "over the moon",
         "over and over",
         "off the top of my head",
+        "working from the outside in",
+        "from the outside in",
+        "from the inside out",
+        "from the bottom up",
+        "from the top down",
         "in half",
         "in two",
         "in first",
@@ -507,7 +512,7 @@ through: through, thru, via
 like: like, similar to, looking like, identical to
 -: for, as, during, except, except for, besides from, per, because of, instead of, due to, rather than, such as
 -: since, until, till, after, same as, belonging to, according to, unlike, than
-with: with, w/, complete with, together with, along with
+with: with, w/, complete with, together with, along with, full of, half full of, filled with, half filled with
 without: without, with out
 """
 
@@ -537,7 +542,9 @@ stacked: on top of each other, on top of one another, one on top of the other, o
 stacked: stacked inside one another
 parallel_each_other: parallel, parallel to each other, in parallel
 one_each: one each, one apiece, one for each, respectively
-there: within reach, within easy reach, within arm 's reach
+inward: inward, inwards
+outward: outward, outwards
+there: within sight, within reach, within easy reach, within arm 's reach
 there: over there, there, here, out there, up there, down there
 apart: apart, away, far away
 alone: by itself, all by itself, on its own, all on its own, by themselves, on their own, all alone
@@ -825,7 +832,7 @@ posture: kneel kneels knelt knelt kneeling, crouch, squat, recline, droop, sag, 
 posture: gleam, glow, glint, glitter, sparkle, shimmer, spill, stretch, hunch, cluster, bob, totter
 posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range, reside, protrude, balance
 posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
-posture: trail, dot, ladle, step
+posture: travel, trail, dot, ladle, step
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
 transitive: encircle, straddle
 other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
