@@ -59,7 +59,7 @@ def fluent_iri(id: str) -> ox.NamedNode:
     NamedNode
         The IRI.
     """
-    return _resource("fluent", id)
+    return resource_iri("fluent", id)
 
 
 @lru_cache(maxsize=10_000)
@@ -76,7 +76,7 @@ def thing_iri(name: str) -> ox.NamedNode:
     NamedNode
         The IRI.
     """
-    return _resource("thing", name)
+    return resource_iri("thing", name)
 
 
 @lru_cache(maxsize=10_000)
@@ -155,7 +155,7 @@ def fluent_triples(fluent: EpisodicFluent) -> list[ox.Triple]:
         ox.Triple(node, _PREDICATE, predicate_iri(said.predicate)),
         ox.Triple(node, _CERTAINTY, _double(fluent.certainty)),
         ox.Triple(node, _ORIGIN, ox.Literal(source.origin.value)),
-        ox.Triple(node, _BY, _resource("agent", source.by)),
+        ox.Triple(node, _BY, resource_iri("agent", source.by)),
     ]
     if said.object is not None:
         value = _object(said.predicate, said.object)
@@ -165,7 +165,7 @@ def fluent_triples(fluent: EpisodicFluent) -> list[ox.Triple]:
         if math.isfinite(time):
             found.append(ox.Triple(node, predicate, _double(time)))
     if source.event is not None:
-        found.append(ox.Triple(node, _FROM, _resource("event", source.event)))
+        found.append(ox.Triple(node, _FROM, resource_iri("event", source.event)))
     return found
 
 
@@ -173,5 +173,19 @@ def _double(number: float) -> ox.Literal:
     return ox.Literal(repr(float(number)), datatype=_DOUBLE)
 
 
-def _resource(kind: str, name: str) -> ox.NamedNode:
+def resource_iri(kind: str, name: str) -> ox.NamedNode:
+    """Return the IRI of something that fluents refer to.
+
+    Parameters
+    ----------
+    kind
+        ``fluent``, ``thing``, ``agent`` or ``event``.
+    name
+        Its name on the blackboard.
+
+    Returns
+    -------
+    NamedNode
+        The IRI.
+    """
     return ox.NamedNode(f"{RESOURCES}{kind}/{quote(name, safe='')}")

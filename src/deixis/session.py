@@ -16,6 +16,8 @@ from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, S
 from deixis.view_store import ViewStore
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from deixis.grammar.script import Script
     from deixis.learning.recollection import Recollection
     from deixis.learning.views import Recognised, Taught
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
     from deixis.workflows.check import Check
     from deixis.workflows.dialogue import Ask
     from deixis.workflows.learn import Learned
+    from deixis.workflows.recall import Recall
     from deixis.workflows.unlearn import Selection, Unlearned
 
 
@@ -466,6 +469,41 @@ class Session(Closing):
         from deixis.workflows.unlearn import unlearn
 
         return unlearn(selection, self.knowledge_store, self.view_store, dry_run)
+
+    @_one_at_a_time
+    def recall(self, question: str, at: datetime | None = None, speaker: str | None = None) -> Recall:
+        """Answer a question about then and now from the episodes of the memory.
+
+        Parameters
+        ----------
+        question
+            The question, such as ``where was the fork before?``.
+        at
+            Time of asking, with a time zone; the present by default.
+        speaker
+            Name of the person who says *I*; by default, *I* may be any person.
+
+        Returns
+        -------
+        Recall
+            The answer in a sentence, with the fluents that it rests on, or the reason why it is not known.
+
+        Raises
+        ------
+        RecallQuestionError
+            If the question is not understood; the message has wordings that would be.
+        MemoryFormatError
+            If the memory has no episodes.
+        """
+        from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+        from deixis.memory.errors import MemoryFormatError
+        from deixis.workflows.recall import recall
+
+        if not has_episodes(self.path):
+            raise MemoryFormatError(f"the memory at {self.path} has no episodes; name another folder")
+
+        with Blackboard.open(self.path) as board:
+            return recall(question, board, None if at is None else board.seconds(at), speaker=speaker)
 
     @_one_at_a_time
     def import_(self, file: str | Path) -> None:

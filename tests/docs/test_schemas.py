@@ -15,6 +15,9 @@ from schemas import SCHEMAS, contents, errors_in
 from source_tree import ROOT
 
 import deixis
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.reasoning.temporal.bounds import Bounds
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -77,6 +80,8 @@ CASES = [
     ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
     ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
     ("taught", "teach {t}/table.scene.json o1 napkin"),
+    ("recall", "recall 'what is on the table?' --memory {t}/watched"),
+    ("recall", "recall 'where was the spoon before?' --memory {t}/watched"),
     ("unlearned", "unlearn --table {t}/table.scene.json --dry-run"),
     ("time", "time {e}/serving.fluents.json"),
     ("time", "time {e}/serving.fluents.json --at 25"),
@@ -111,6 +116,10 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     deixis_command("simulate", script, "--seed", 7, "-o", folder / "table.pcd")
     deixis_command("perceive", folder / "table.pcd", "-o", folder / "table.scene.json")
     deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
+    with Blackboard.open(folder / "watched", create=True) as board:
+        seen = Source(Origin.SEEN, "tracker")
+        board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, source=seen), by="tracker")
+        board.add(episodic("f2", ("t1", "on", "table"), start=Bounds(-1.0, 0.0), source=seen), by="tracker")
     prefixes = "@prefix : <http://e/> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> ."
     fluent = {"id": "a", "statement": ["cup", "full"], "start": [0, 1], "finish": [5, 6]}
     too_short = {"from": "a.start", "to": "a.finish", "bounds": [1, 2]}

@@ -52,6 +52,7 @@ COMMAND_GROUPS = {
         "learn-relation": "learn_relation",
         "habits": "habits",
         "category": "category_app",
+        "recall": "recall",
         "unlearn": "unlearn",
         "memory": "memory_app",
     },

@@ -1,0 +1,281 @@
+"""Read questions about then and now.
+
+>>> question = read_question("Where was the fork before?")
+>>> question.kind, question.thing, question.when.kind
+('where', 'fork', 'before')
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+
+from deixis.errors import DeixisError
+from deixis.grammar.words import phrase_pattern
+from deixis.ontology.relation import Reading
+from deixis.ontology.tbox import Ontology, default_ontology
+
+MAX_QUESTION = 1000
+"""Maximum length of a question in characters."""
+
+WORDINGS = (
+    "where is the fork?",
+    "where was the fork before?",
+    "where was the fork at noon?",
+    "where was the fork at first?",
+    "where was the fork when the cup was taken away?",
+    "what is on the plate?",
+    "what was left of the plate before 12:30?",
+    "which forks were on the tray at 12:30?",
+    "what is there now?",
+    "what was there at noon?",
+    "what was taken away?",
+    "what was taken away since noon?",
+    "what was put down after the cup was moved?",
+    "what was moved in the last 5 minutes?",
+    "what is new?",
+    "which one did I show you first?",
+    "what was shown last?",
+    "what was the first thing I showed you?",
+    "when did the cup go?",
+    "when was the cup taken away?",
+    "when did the cup come first?",
+    "when was the fork moved last?",
+    "when was the fork shown?",
+    "since when is the fork on the plate?",
+    "when was the fork on the plate?",
+    "how long was the fork on the plate?",
+    "is the fork on the plate?",
+    "was the fork left of the plate before noon?",
+    "was the fork there yesterday?",
+    "what did Ada say?",
+    "what did I say in the last 5 minutes?",
+    "who showed you the fork?",
+    "what happened since noon?",
+    "how many forks are on the plate?",
+    "how many forks were there at noon?",
+)
+"""Wordings of all kinds of questions; a question that is not understood is answered with the nearest ones."""
+
+_NUMBERS = {
+    name: str(number)
+    for number, name in enumerate(("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), 1)
+} | {"a": "1", "an": "1", "half an": "0.5"}
+_NUMBER_WORDS = "|".join(sorted(_NUMBERS, key=len, reverse=True))
+_COUNTED = re.compile(rf"\b({_NUMBER_WORDS}) (?=(?:second|minute|hour|day|week)s?\b)")
+
+
+class RecallQuestionError(DeixisError, ValueError):
+    """A question about then and now that is not understood."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A moment that a question names.
+
+    ``kind`` is ``clock`` (``12:30``, ``3 pm``, ``noon``), ``stamp`` (an ISO date or time), ``day`` (``yesterday``),
+    ``ago`` (``value`` seconds), or an event of the thing ``value``: ``gone``, ``come`` or ``moved``.
+    """
+
+    kind: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class When:
+    """The time that a question asks about: ``kind`` is a rule of the grammar, with up to two moments."""
+
+    kind: str = "unstated"
+    moments: tuple[Moment, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RecallQuestion:
+    """A question about then and now.
+
+    ``kind`` is the alternative of the grammar (``where``, ``related``, ``gone``, …), ``thing`` and ``other`` are nouns
+    without articles, ``relation`` is the name of a relation, ``event`` what happened to the thing, ``speaker`` the
+    person named, and ``order`` ``first`` or ``last``.
+    """
+
+    text: str
+    kind: str
+    thing: str | None = None
+    other: str | None = None
+    relation: str | None = None
+    event: str | None = None
+    speaker: str | None = None
+    order: str | None = None
+    when: When = When()
+
+
+def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion:
+    """Read a question about then and now.
+
+    Parameters
+    ----------
+    text
+        The question, in English.
+    ontology
+        Words of the relations; default: the shipped ones.
+
+    Returns
+    -------
+    RecallQuestion
+        What is asked.
+
+    Raises
+    ------
+    RecallQuestionError
+        If the question is not understood; the message has wordings that would be.
+    """
+    if not isinstance(text, str) or not text.strip():
+        raise RecallQuestionError(f"a question must be a text; say for example: {WORDINGS[1]}")
+    if len(text) > MAX_QUESTION:
+        raise RecallQuestionError(f"a question must have at most {MAX_QUESTION} characters, got {len(text)}")
+    ontology = ontology or default_ontology()
+    try:
+        tree = _parser(tuple(_relation_words(ontology))).parse(_plain(text))
+    except UnexpectedInput as error:
+        raise _not_understood(text) from error
+    return _question(text, tree.children[0], ontology)
+
+
+def _plain(text: str) -> str:
+    """Return a question in lower case, without punctuation, with contractions and numbers written out."""
+    plain = text.lower().replace("\u2019", "'").replace("which ones", "which one")
+    plain = re.sub(r"\b(where|what|who|when|it|that)'s\b", r"\1 is", plain)
+    plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
+    plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
+    plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
+    return " ".join(_COUNTED.sub(lambda found: f"{_NUMBERS[found[1]]} ", plain).split())
+
+
+def _not_understood(text: str) -> RecallQuestionError:
+    near = difflib.get_close_matches(_plain(text), [_plain(each) for each in WORDINGS], n=2, cutoff=0.0)
+    said = {_plain(each): each for each in WORDINGS}
+    examples = " or ".join(f"'{said[each]}'" for each in near)
+    return RecallQuestionError(
+        f"the question '{' '.join(text.split())[:80]}' is not understood; say it as in {examples}"
+    )
+
+
+def _relation_words(ontology: Ontology) -> dict[str, str]:
+    """Return the names of relations by their phrases, without words that mean something else in a question."""
+    words = {"in": "inside", "upon": "on"}
+    for relation in ontology.relations.values():
+        if relation.reading is not Reading.EXACT:
+            phrases = (relation.phrase, *(word for word in relation.words if " " in word), *relation.words[1:])
+            words |= {phrase: relation.name for phrase in phrases if phrase not in words and phrase not in _OTHERWISE}
+    return words
+
+
+_OTHERWISE = {"by", "left", "right", "top", "bottom", "holding"}
+
+
+@lru_cache(maxsize=4)
+def _parser(relations: tuple[str, ...]) -> Lark:
+    grammar = (files("deixis.grammar.recall") / "recall.lark").read_text(encoding="utf-8")
+    phrases = phrase_pattern(relations).replace("/", r"\/")
+    return Lark(f"{grammar}\nRELATION.4: /{phrases}/\n", parser="lalr", maybe_placeholders=False)
+
+
+def _question(text: str, tree: Any, ontology: Ontology) -> RecallQuestion:
+    kind, person = str(tree.data), None
+    nouns: list[str | None] = [" ".join(each.children[0].children) for each in tree.children if _is(each, "np")]
+    named = [" ".join(each.children) for each in tree.children if _is(each, "nouns")]
+    relation = next((str(each) for each in tree.children if _is_token(each, "RELATION")), None)
+    events = [each for each in tree.children if isinstance(each, Token) and each.type in _EVENTS]
+    which = next((each for each in tree.children if _is(each, "what")), None)
+    asked: list[str | None] = list(named) if which is None else [" ".join(each.children) for each in which.children]
+    speaker = next((each.children[0] for each in tree.children if _is(each, "speaker")), None)
+    if kind == "shown_by":  # the last thing Bob showed
+        kind, words = "shown", " ".join(named).split()
+        person = None if any(_is_token(each, "ME") for each in tree.children) or not words else words.pop()
+        asked = [" ".join(words)] if words else []
+    order = next((str(each.children[0]) for each in tree.children if _is(each, "order")), None)
+    whens = [each for each in tree.children if isinstance(each, Tree) and each.data in _WHENS]
+    if kind in ("related", "present", "gone", "come", "moved", "shown", "how_many"):
+        thing, other = (asked or [None])[0], (nouns or [None])[0]
+    else:
+        thing, other = (nouns or [None])[0], (nouns[1:] or [None])[0]
+    return RecallQuestion(
+        text=text,
+        kind=kind,
+        thing=thing,
+        other=other,
+        relation=None if relation is None else _relation_words(ontology)[_phrase(relation, ontology)],
+        event=_EVENTS[events[0].type](str(events[0])) if events and kind == "when_did" else None,
+        speaker=" ".join(map(str, speaker.children)) if isinstance(speaker, Tree) else person,
+        order=order,
+        when=_when(whens[0]) if whens else When(),
+    )
+
+
+def _phrase(words: str, ontology: Ontology) -> str:
+    """Return the phrase of a relation that words were matched with, which may have articles."""
+    known = _relation_words(ontology)
+    plain = " ".join(words.replace("_", " ").split())
+    bare = " ".join(word for word in plain.split() if word not in ("the", "a", "an"))
+    by_bare = {" ".join(w for w in phrase.split() if w not in ("the", "a", "an")): phrase for phrase in known}
+    return plain if plain in known else by_bare[bare]
+
+
+_WHENS = {"now", "before", "at_first", "since", "after", "before_time", "at_time", "between", "ago", "within", "on_day"}
+
+
+def _of_verb(verb: str) -> str:
+    if verb.startswith(("come", "arrive", "appear")):
+        return "come"
+    return "moved" if verb == "move" else "gone"
+
+
+_EVENTS = {
+    "GONE": lambda _: "gone",
+    "PLACED": lambda _: "come",
+    "MOVED": lambda _: "moved",
+    "SHOWN": lambda _: "shown",
+    "VERB": _of_verb,
+}
+
+SECONDS = {"second": 1.0, "minute": 60.0, "hour": 3600.0, "day": 86_400.0, "week": 604_800.0}
+"""Units of time in seconds."""
+
+
+def _seconds(tree: Any) -> str:
+    number = next((float(each) for each in tree.children if _is_token(each, "NUMBER")), 1.0)
+    unit = next(str(each) for each in tree.children if _is_token(each, "UNIT"))
+    return repr(number * SECONDS[unit.removesuffix("s")])
+
+
+def _when(tree: Any) -> When:
+    kind = str(tree.data)
+    if kind in ("ago", "within"):
+        return When(kind, (Moment("ago", _seconds(tree)),))
+    if kind == "on_day":
+        return When(kind, (Moment("day", str(tree.children[0])),))
+    return When(kind, tuple(_moment(each) for each in tree.children if isinstance(each, Tree)))
+
+
+def _moment(tree: Any) -> Moment:
+    kind = str(tree.data)
+    if kind == "ago":
+        return Moment("ago", _seconds(tree))
+    if kind.startswith("event_"):
+        return Moment(kind.removeprefix("event_"), " ".join(tree.children[0].children[0].children))
+    return Moment(kind, " ".join(map(str, tree.children)))
+
+
+def _is(part: object, rule: str) -> bool:
+    return isinstance(part, Tree) and part.data == rule
+
+
+def _is_token(part: object, name: str) -> bool:
+    return isinstance(part, Token) and part.type == name

@@ -1,0 +1,254 @@
+"""Search the fluents of a blackboard by what they say, by when they start, hold or finish, and by what came and went.
+
+A :class:`FluentSearch` is evaluated on the blackboard, and written as SPARQL over the graph of fluents; both give the
+same fluents.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.rdf import EP, SOSA, predicate_iri, resource_iri, thing_iri
+from deixis.memory.semantic.rdf.graphs import FLUENTS
+from deixis.reasoning.temporal.fluent import Pattern
+
+
+class Edge(Enum):
+    """Role of a fluent in the window of a search: it holds, starts or finishes there."""
+
+    HOLDS = "holds"
+    STARTS = "starts"
+    FINISHES = "finishes"
+
+
+class Pick(Enum):
+    """Choice among the fluents found: all, or those of which none was certainly earlier or later."""
+
+    ALL = "all"
+    FIRST = "first"
+    LAST = "last"
+
+
+class Event(Enum):
+    """A change of the presence of a subject that a start or a finish must be."""
+
+    COMES = "comes"
+    GOES = "goes"
+    MOVES = "moves"
+
+
+@dataclass(frozen=True)
+class FluentSearch:
+    """A search of fluents; None matches everything.
+
+    Parameters
+    ----------
+    subjects, objects
+        Names of things.
+    predicates
+        Names of predicates.
+    origins
+        Ways in which a fluent became known.
+    by
+        Names of the modules or persons that state it.
+    edge
+        What happens in the window.
+    start, end
+        Ends of the window in seconds since the origin of the memory, which belong to it.
+    pick
+        The earliest or latest, by the edge: by starts, or by finishes.
+    event
+        What a start or finish must be: the subject comes (no other fluent of ``places`` held before), goes (none holds
+        after), or moves (another one held before).
+    places
+        Predicates that say where a thing is, for ``event``.
+    """
+
+    subjects: frozenset[str] | None = None
+    predicates: frozenset[str] | None = None
+    objects: frozenset[str] | None = None
+    origins: frozenset[Origin] | None = None
+    by: frozenset[str] | None = None
+    edge: Edge = Edge.HOLDS
+    start: float = -math.inf
+    end: float = math.inf
+    pick: Pick = Pick.ALL
+    event: Event | None = None
+    places: frozenset[str] = frozenset()
+
+    def run(self, board: Blackboard) -> tuple[EpisodicFluent, ...]:
+        """Return the fluents that the search finds.
+
+        Parameters
+        ----------
+        board
+            The blackboard.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts and then ids.
+        """
+        found = [each for each in self._candidates(board) if self._matches(each)]
+        if self.event is not None:
+            found = [each for each in found if self._is_event(each, board)]
+        return tuple(each for each in found if self._is_picked(each, found))
+
+    def _candidates(self, board: Blackboard) -> Iterable[EpisodicFluent]:
+        if self.subjects is None:
+            return board.holding()
+        found = (each for name in sorted(self.subjects) for each in board.holding(Pattern(name)))
+        return sorted(found, key=lambda each: (each.start.lower, each.id))
+
+    def _matches(self, found: EpisodicFluent) -> bool:
+        said, source = found.statement, found.source
+        return (
+            (self.subjects is None or said.subject in self.subjects)
+            and (self.predicates is None or said.predicate in self.predicates)
+            and (self.objects is None or said.object in self.objects)
+            and (self.origins is None or source.origin in self.origins)
+            and (self.by is None or source.by in self.by)
+            and self._is_in_window(found)
+        )
+
+    def _is_in_window(self, found: EpisodicFluent) -> bool:
+        start, finish = found.start, found.finish
+        if self.edge is Edge.HOLDS:
+            return start.lower <= self.end and finish.upper > self.start
+        if self.edge is Edge.STARTS:
+            return start.lower > -math.inf and start.lower <= self.end and start.upper >= self.start
+        return finish.upper < math.inf and finish.lower <= self.end and finish.upper >= self.start
+
+    def _is_event(self, found: EpisodicFluent, board: Blackboard) -> bool:
+        others = [
+            each
+            for each in board.holding(Pattern(found.statement.subject))
+            if each.id != found.id and each.statement.predicate in self.places
+        ]
+        if self.event is Event.GOES:
+            after = found.finish.upper
+            return not any(each.start.lower <= after < each.finish.upper for each in others)
+        before = found.start.lower
+        held = any(each.start.lower < before <= each.finish.upper for each in others)
+        return held if self.event is Event.MOVES else not held
+
+    def _is_picked(self, found: EpisodicFluent, all_found: Sequence[EpisodicFluent]) -> bool:
+        """Return whether no other fluent was certainly earlier (for the first) or later (for the last)."""
+        if self.pick is Pick.ALL:
+            return True
+        ends = [each.finish if self.edge is Edge.FINISHES else each.start for each in all_found]
+        own = found.finish if self.edge is Edge.FINISHES else found.start
+        if self.pick is Pick.FIRST:
+            return all(end.upper >= own.lower for end in ends)
+        return all(end.lower <= own.upper for end in ends)
+
+    def sparql(self) -> str:
+        """Return a query over a memory that finds the same fluents, with their times and sources.
+
+        Returns
+        -------
+        str
+            A SELECT query, of which ``?id`` has the ids of the fluents.
+        """
+        filters = [f"FILTER({condition})" for condition in self._conditions("")]
+        if self.event is not None:
+            filters.append(self._event_filter())
+        if self.pick is not Pick.ALL:
+            end = "Finish" if self.edge is Edge.FINISHES else "Start"
+            earlier = (
+                f"?latest{end}2 < ?earliest{end}" if self.pick is Pick.FIRST else f"?earliest{end}2 > ?latest{end}"
+            )
+            rivals = [f"FILTER({condition})" for condition in (*self._conditions("2"), earlier)]
+            if self.event is not None:
+                rivals.append(self._event_filter("2"))
+            filters.append(f"FILTER NOT EXISTS {{ {self._pattern('2')} {' '.join(rivals)} }}")
+        lines = "\n  ".join((self._pattern("", "\n  "), *filters))
+        chosen = "?id ?subject ?predicate ?object ?earliestStart ?latestStart ?earliestFinish ?latestFinish"
+        return (
+            f"PREFIX ep: <{EP}>\nPREFIX sosa: <{SOSA}>\nPREFIX prov: <http://www.w3.org/ns/prov#>\n"
+            f"PREFIX xsd: <http://www.w3.org/2001/XMLSchema#>\n"
+            f"SELECT {chosen} ?certainty ?origin ?by WHERE {{ GRAPH <{FLUENTS.value}> {{\n  {lines}\n}} }}\n"
+            "ORDER BY ?earliestStart ?id"
+        )
+
+    def _pattern(self, number: str, between: str = " ") -> str:
+        """Return the description of a fluent, whose variables end in a number."""
+        parts = []
+        if self.subjects is not None:
+            parts.append(_values(f"?subject{number}", (thing_iri(name).value for name in sorted(self.subjects))))
+        if self.predicates is not None:
+            parts.append(
+                _values(f"?predicate{number}", (predicate_iri(name).value for name in sorted(self.predicates)))
+            )
+        if self.objects is not None:
+            parts.append(_values(f"?object{number}", (thing_iri(name).value for name in sorted(self.objects))))
+        parts.append(
+            f"?fluent{number} ep:identifier ?id{number} ; sosa:hasFeatureOfInterest ?subject{number} ; "
+            f"sosa:observedProperty ?predicate{number} ; ep:certainty ?certainty{number} ; ep:origin ?origin{number} ; "
+            f"prov:wasAttributedTo ?by{number} ."
+        )
+        result = f"?fluent{number} sosa:hasResult|sosa:hasSimpleResult ?object{number} ."
+        parts.append(f"OPTIONAL {{ {result} }}" if self.objects is None else result)
+        parts += _times(number)
+        return between.join(parts)
+
+    def _conditions(self, number: str) -> Iterator[str]:
+        if self.origins is not None:
+            names = ", ".join(f'"{origin.value}"' for origin in sorted(self.origins, key=lambda each: each.value))
+            yield f"?origin{number} IN ({names})"
+        if self.by is not None:
+            names = ", ".join(f"<{resource_iri('agent', name).value}>" for name in sorted(self.by))
+            yield f"?by{number} IN ({names})"
+        first, last = _number(self.start), _number(self.end)
+        if self.edge is Edge.HOLDS:
+            yield f"?earliestStart{number} <= {last} && ?latestFinish{number} > {first}"
+        elif self.edge is Edge.STARTS:
+            yield f"?earliestStart{number} > {_number(-math.inf)}"
+            yield f"?earliestStart{number} <= {last} && ?latestStart{number} >= {first}"
+        else:
+            yield f"?latestFinish{number} < {_number(math.inf)}"
+            yield f"?earliestFinish{number} <= {last} && ?latestFinish{number} >= {first}"
+
+    def _event_filter(self, number: str = "") -> str:
+        places = _values("?place", (predicate_iri(name).value for name in sorted(self.places)))
+        other = (
+            f"{places} ?other ep:identifier ?otherId ; sosa:hasFeatureOfInterest ?subject{number} ; "
+            f"sosa:observedProperty ?place . {' '.join(_times('', 'other'))} FILTER(?otherId != ?id{number}"
+        )
+        if self.event is Event.GOES:
+            after = f"?latestFinish{number}"
+            return f"FILTER NOT EXISTS {{ {other} && ?otherEarliestStart <= {after} && {after} < ?otherLatestFinish) }}"
+        before = f"?earliestStart{number}"
+        exists = "EXISTS" if self.event is Event.MOVES else "NOT EXISTS"
+        return f"FILTER {exists} {{ {other} && ?otherEarliestStart < {before} && {before} <= ?otherLatestFinish) }}"
+
+
+def _times(number: str, other: str = "") -> list[str]:
+    """Return the parts of a query that read the bounds of a fluent, an unknown one as an infinite number."""
+    parts = []
+    for name, unknown in (
+        ("earliestStart", -math.inf),
+        ("latestStart", math.inf),
+        ("earliestFinish", -math.inf),
+        ("latestFinish", math.inf),
+    ):
+        node = f"?{other}" if other else f"?fluent{number}"
+        variable = f"?{other}{name[0].upper()}{name[1:]}" if other else f"?{name}{number}"
+        raw = f"?{other or 'known'}{name[0].upper()}{name[1:]}Known{number}"
+        parts.append(f"OPTIONAL {{ {node} ep:{name} {raw} }} BIND(COALESCE({raw}, {_number(unknown)}) AS {variable})")
+    return parts
+
+
+def _values(variable: str, iris: Iterable[str]) -> str:
+    return f"VALUES {variable} {{ {' '.join(f'<{iri}>' for iri in iris)} }}"
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return f'"{"-" if value < 0 else ""}INF"^^xsd:double'
+    return f'"{value!r}"^^xsd:double'

@@ -1,0 +1,514 @@
+"""Answer questions about then and now from the episodes of a memory.
+
+A question is read by :mod:`deixis.grammar.recall`, its nouns are resolved to things of the blackboard and its times to
+a window, and the fluents that answer it are found by one :class:`~deixis.memory.episodes.search.FluentSearch`, which
+can be printed as SPARQL.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from typing import TYPE_CHECKING
+
+from deixis.answers import Answer
+from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
+from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
+from deixis.ontology.inflection import singular
+from deixis.ontology.kinds import plain_name
+from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.reasoning.errors import SettingError
+
+if TYPE_CHECKING:
+    from deixis.memory.episodes.blackboard import Blackboard
+
+AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
+"""Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
+
+MOMENT = 1e-3
+"""Seconds between *before* or *after* a moment and the moment itself."""
+
+AROUND = 60.0
+"""Seconds before and after a moment at which an event is looked for: *what was taken away at noon?*"""
+
+ANY = frozenset({"one", "ones", "thing", "things", "object", "objects", "something", "anything", "everything"})
+"""Nouns that stand for all things."""
+
+SURFACES = frozenset({"table", "desk", "counter", "surface"})
+"""Nouns of what everything stands on, where no thing has the name: *what is on the table?*"""
+
+EVENTS = {"gone": Event.GOES, "come": Event.COMES, "moved": Event.MOVES}
+
+
+@dataclass(frozen=True, slots=True)
+class Recalled:
+    """One fluent of an answer, with the names of its things then."""
+
+    fluent: EpisodicFluent
+    name: str
+    other: str | None
+
+    @property
+    def certainly(self) -> bool:
+        """True if both ends are known exactly, or the fluent has not finished and its start is known exactly."""
+        start, finish = self.fluent.start, self.fluent.finish
+        return start.lower == start.upper and (self.fluent.is_open or finish.lower == finish.upper)
+
+
+@dataclass(frozen=True, repr=False)
+class Recall(Answer):
+    """Answer to a question about then and now.
+
+    ``facts`` are the fluents that answer it, in order of time. ``known`` is False if nothing recorded answers it, and
+    ``reason`` then says why. ``answer`` is a sentence, ``search`` finds the facts, ``asked`` is the time of asking, and
+    ``origin`` the time from which fluents count seconds.
+    """
+
+    question: RecallQuestion
+    facts: tuple[Recalled, ...]
+    search: FluentSearch | None
+    answer: str
+    reason: str | None
+    asked: float
+    origin: datetime
+
+    @property
+    def known(self) -> bool:
+        """True if something recorded answers the question."""
+        return self.reason is None
+
+    def summary(self) -> str:
+        """Return the answer in a sentence."""
+        return self.answer
+
+    def moment(self, seconds: float) -> datetime | None:
+        """Return seconds since the origin as local time.
+
+        Parameters
+        ----------
+        seconds
+            Seconds since the origin of the memory.
+
+        Returns
+        -------
+        datetime or None
+            The moment; None for an infinite number, which stands for an unknown time.
+        """
+        return None if math.isinf(seconds) else (self.origin + timedelta(seconds=seconds)).astimezone()
+
+
+def recall(
+    question: str,
+    board: Blackboard,
+    at: float | None = None,
+    ontology: Ontology | None = None,
+    speaker: str | None = None,
+) -> Recall:
+    """Answer a question about then and now.
+
+    Parameters
+    ----------
+    question
+        The question, in English.
+    board
+        The blackboard.
+    at
+        Time of asking in seconds since the origin of the memory; default: the present.
+    ontology
+        Words of relations and kinds; default: the shipped ones.
+    speaker
+        Name of the person who says *I*; by default, *I* may be any person.
+
+    Returns
+    -------
+    Recall
+        The answer, with the fluents that it rests on.
+
+    Raises
+    ------
+    RecallQuestionError
+        If the question is not understood; the message has wordings that would be.
+    """
+    ontology = ontology or default_ontology()
+    asked = board.seconds() if at is None else at
+    read = read_question(question, ontology)
+    return _Remembering(board, asked, ontology, speaker).answer(read)
+
+
+def moment_of(time: str) -> datetime:
+    """Return a time that is written in ISO 8601, in local time where it has no time zone.
+
+    Parameters
+    ----------
+    time
+        The time, such as ``2026-11-23T12:30``.
+
+    Returns
+    -------
+    datetime
+        The time with a time zone.
+
+    Raises
+    ------
+    SettingError
+        If it is not a time.
+    """
+    try:
+        found = datetime.fromisoformat(time)
+        return found if found.tzinfo else found.astimezone()
+    except (ValueError, OverflowError) as error:
+        raise SettingError(f"a time must be as in 2026-11-23T12:30, got {time!r}") from error
+
+
+class _NotKnownError(Exception):
+    """A question that nothing recorded can answer, with the reason."""
+
+
+class _Remembering:
+    """The blackboard at the time of a question: the names of its things, and the searches of questions."""
+
+    def __init__(self, board: Blackboard, asked: float, ontology: Ontology, speaker: str | None) -> None:
+        self.board, self.asked, self.ontology, self.speaker = board, asked, ontology, speaker
+        self.names: dict[str, list[tuple[float, str]]] = defaultdict(list)
+        self.things: set[str] = set()
+        self.predicates: set[str] = set()
+        relations = {relation.name for relation in ontology.relations.values()}
+        for each in board.holding():
+            said = each.statement
+            if said.predicate == IS_A and said.object is not None:
+                self.names[said.subject].append((each.start.lower, said.object))
+            if said.predicate in (AT, IS_A) or said.predicate in relations:
+                self.things.add(said.subject)
+                self.predicates.add(said.predicate)
+            if said.predicate in relations and said.object is not None:
+                self.things.add(said.object)
+        self.relations = frozenset(self.predicates & relations)
+        self.places = frozenset({AT}) if AT in self.predicates else self.relations
+
+    # ---- names
+
+    def name(self, thing: str, at: float = math.inf) -> str:
+        """Return the category that a thing had at a time, in words; else its id."""
+        known = sorted(self.names.get(thing, ()))
+        then = [category for start, category in known if start <= at] or [category for _, category in known]
+        return (then[-1] if then else thing).replace("_", " ")
+
+    def resolve(self, noun: str) -> frozenset[str] | None:
+        """Return the things that a noun stands for; None for all things."""
+        words = noun if noun in ANY else singular(noun)
+        if words in ANY:
+            return None
+        found = {thing for thing in self.things if thing.lower() in (noun, noun.replace(" ", "_"))}
+        found |= {thing for thing, kinds in self.names.items() if any(self._fits(kind, words) for _, kind in kinds)}
+        if not found:
+            known = sorted({self.name(thing) for thing in self.things})
+            has = f"; it has: {', '.join(known[:8])}{' …' if len(known) > 8 else ''}" if known else ", which is empty"
+            raise _NotKnownError(f"nothing on the blackboard is called '{noun}'{has}")
+        return frozenset(found)
+
+    def _fits(self, category: str, noun: str) -> bool:
+        plain, wanted = plain_name(category).replace("_", " ").lower(), noun.lower()
+        if plain == wanted or plain.endswith(f" {wanted}"):
+            return True
+        (own, _), (broader, rest) = self.ontology.kinds.head_noun(plain), self.ontology.kinds.head_noun(wanted)
+        return not rest and any(self.ontology.kinds.is_a(kind, each) for kind in own[:1] for each in broader)
+
+    # ---- times
+
+    def window(self, when: When, event: bool) -> tuple[float, float, Pick]:
+        """Return the window that a question asks about, and which of the fluents in it."""
+        now, kind = self.asked, when.kind
+        if kind == "unstated":
+            return (-math.inf, now, Pick.ALL) if event else (now, now, Pick.ALL)
+        if kind == "now":
+            return now, now, Pick.ALL
+        if kind == "before":
+            return -math.inf, now, Pick.LAST
+        if kind == "at_first":
+            return -math.inf, now, Pick.FIRST
+        spans = [self.span(moment) for moment in when.moments]
+        first, last = spans[0]
+        if kind in ("since", "within"):
+            return first, now, Pick.ALL
+        if kind == "after":
+            return (last, now, Pick.ALL) if event else (last + MOMENT, last + MOMENT, Pick.ALL)
+        if kind == "before_time":
+            return (-math.inf, first, Pick.ALL) if event else (first - MOMENT, first - MOMENT, Pick.ALL)
+        if kind == "between":
+            return first, spans[1][1], Pick.ALL
+        around = AROUND if event and first == last else 0.0
+        return first - around, min(last + around, max(now, first)), Pick.ALL
+
+    def span(self, moment: Moment) -> tuple[float, float]:
+        """Return the first and last second of a moment that a question names."""
+        if moment.kind == "ago":
+            then = self.asked - float(moment.value)
+            return then, then
+        if moment.kind in EVENTS:
+            return self._span_of_event(moment)
+        present = self.board.moment(self.asked).astimezone()
+        first, last = _local_span(moment, present)
+        return self.board.seconds(first), self.board.seconds(last)
+
+    def _span_of_event(self, moment: Moment) -> tuple[float, float]:
+        search = self.event_search(EVENTS[moment.kind], self.resolve(moment.value), -math.inf, self.asked, Pick.LAST)
+        found = search.run(self.board)
+        if not found:
+            raise _NotKnownError(f"nothing recorded says that the {moment.value} {_DID[moment.kind]}")
+        ends = [each.finish if search.edge is Edge.FINISHES else each.start for each in found]
+        return min(end.lower for end in ends), max(end.upper for end in ends)
+
+    # ---- searches
+
+    def event_search(
+        self, event: Event, things: frozenset[str] | None, start: float, end: float, pick: Pick = Pick.ALL
+    ) -> FluentSearch:
+        """Return the search of the times at which things come, go or move."""
+        edge = Edge.FINISHES if event is Event.GOES else Edge.STARTS
+        return FluentSearch(things, self.places, None, None, None, edge, start, end, pick, event, self.places)
+
+    def search(self, asked: RecallQuestion) -> FluentSearch:
+        """Return the search of the fluents that answer a question."""
+        kind = asked.kind
+        things = None if asked.thing is None else self.resolve(asked.thing)
+        if kind in EVENTS or kind == "when_did":
+            return self._search_of_event(asked, things)
+        if kind in ("shown", "said", "who", "happened"):
+            return self._search_of_statements(asked, things)
+        start, end, pick = self.window(asked.when, event=False)
+        edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
+        if kind == "when_held":
+            start, end, pick, edge = -math.inf, self.asked, Pick.ALL, Edge.HOLDS
+        found = FluentSearch(things, self.places, edge=edge, start=start, end=end, pick=pick)
+        if asked.relation is None:
+            if kind == "where" and self.relations:
+                by_relation = replace(found, predicates=self.relations)
+                found = by_relation if by_relation.run(self.board) else found
+            return found
+        related = replace(found, predicates=frozenset({asked.relation}))
+        if asked.other in SURFACES and asked.relation == "on" and not self._is_known(asked.other):
+            return related if related.run(self.board) else found
+        return replace(related, objects=None if asked.other is None else self.resolve(asked.other))
+
+    def _is_known(self, noun: str) -> bool:
+        try:
+            return bool(self.resolve(noun))
+        except _NotKnownError:
+            return False
+
+    def _search_of_event(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        start, end, pick = self.window(asked.when, event=True)
+        pick = Pick(asked.order) if asked.order else pick
+        if asked.kind == "when_did" and asked.event == "shown":
+            return FluentSearch(things, None, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
+        event = EVENTS[asked.event or asked.kind]
+        return self.event_search(event, things, start, end, pick)
+
+    def _search_of_statements(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        start, end, pick = self.window(asked.when, event=True)
+        pick = Pick(asked.order) if asked.order else pick
+        by = self._persons(asked)
+        if asked.kind == "happened":
+            return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
+        if asked.kind == "said":
+            return FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
+        origins = frozenset({Origin.SHOWN, Origin.SAID} if asked.kind == "who" else {Origin.SHOWN})
+        return FluentSearch(things, None, None, origins, by, Edge.STARTS, start, end, pick)
+
+    def _persons(self, asked: RecallQuestion) -> frozenset[str] | None:
+        wanted = asked.speaker or self.speaker
+        if wanted is None or asked.kind not in ("shown", "said"):
+            return None
+        origins = (Origin.SAID, Origin.SHOWN)
+        known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
+        named = frozenset(name for name in known if name.lower() == wanted.lower())
+        if not named:
+            raise _NotKnownError(f"nothing is recorded that '{wanted}' said or showed")
+        return named
+
+    # ---- answers
+
+    def answer(self, asked: RecallQuestion) -> Recall:
+        """Return the answer to a question."""
+        search = None
+        try:
+            search = self.search(asked)
+            found = search.run(self.board)
+            otherwise = self._otherwise(asked, search) if not found else ()
+            if not found and not otherwise:
+                raise _NotKnownError(self._reason(asked))
+        except _NotKnownError as error:
+            reason = str(error)
+            return Recall(asked, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
+        made = Recall(asked, self._named(found), search, "", None, self.asked, self.board.origin)
+        if otherwise:
+            told = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
+            return replace(made, answer=f"No: {told}.")
+        return replace(made, answer=_sentence(made))
+
+    def _named(self, found: Iterable[EpisodicFluent]) -> tuple[Recalled, ...]:
+        """Return fluents with the names that their things had."""
+        return tuple(
+            Recalled(
+                each,
+                self.name(each.statement.subject, each.start.lower),
+                None if each.statement.object is None else self.name(each.statement.object, each.start.lower),
+            )
+            for each in found
+        )
+
+    def _otherwise(self, asked: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
+        """Return where the thing of a yes-or-no question was instead, if that is recorded."""
+        if asked.kind != "whether":
+            return ()
+        return replace(search, predicates=self.relations, objects=None).run(self.board)
+
+    def _reason(self, asked: RecallQuestion) -> str:
+        """Return why nothing answers a question."""
+        if asked.kind == "where" and asked.when.kind in ("unstated", "now"):
+            gone = self.event_search(Event.GOES, self.resolve(asked.thing or ""), -math.inf, self.asked, Pick.LAST)
+            found = gone.run(self.board)
+            if found:
+                clock = _clock(self.board.moment(found[-1].finish.upper).astimezone(), self._present())
+                return f"the {asked.thing} is gone since {clock}"
+            return f"no place of the {asked.thing} is recorded"
+        if asked.kind == "where" and asked.when.kind == "before":
+            return f"no place of the {asked.thing} has ended; it is where it was at first"
+        what = _UNRECORDED.get(asked.kind, "nothing that answers it is recorded")
+        return what if asked.when.kind in ("unstated", "now") else f"{what} for that time"
+
+    def _present(self) -> datetime:
+        return self.board.moment(self.asked).astimezone()
+
+
+_DID = {"gone": "went", "come": "came", "moved": "moved"}
+
+_UNRECORDED = {
+    "gone": "nothing is recorded as taken away",
+    "come": "nothing is recorded as put down",
+    "moved": "nothing is recorded as moved",
+    "shown": "nothing is recorded as shown",
+    "said": "nothing is recorded as said",
+    "who": "no person is recorded as having shown or named it",
+    "present": "nothing is recorded as there",
+}
+
+
+def _local_span(moment: Moment, present: datetime) -> tuple[datetime, datetime]:
+    """Return the first and last moment of a named time, the last such time that is not after the present."""
+    midnight = present.replace(hour=0, minute=0, second=0, microsecond=0)
+    if moment.kind == "day":
+        first, last = {
+            "today": (0, 24),
+            "yesterday": (-24, 0),
+            "this morning": (0, 12),
+            "this afternoon": (12, 18),
+            "this evening": (18, 24),
+        }[moment.value]
+        return midnight + timedelta(hours=first), midnight + timedelta(hours=last)
+    try:
+        if moment.kind == "stamp":
+            found = datetime.fromisoformat(moment.value.upper())
+            found = found if found.tzinfo else found.replace(tzinfo=present.tzinfo)
+            return found, found + timedelta(days=1) if "t" not in moment.value else found
+        words = moment.value.split()
+        clock = {"noon": "12:00", "midnight": "00:00"}.get(words[0], words[0])
+        hour, minute, second = (*map(int, clock.split(":")), 0, 0)[:3]
+        if words[-1] in ("am", "pm"):
+            hour = hour % 12 + (12 if words[-1] == "pm" else 0)
+        then = midnight.replace(hour=hour, minute=minute, second=second)
+    except ValueError as error:
+        raise RecallQuestionError(f"'{moment.value}' is not a time; say it as in '12:30', '3 pm' or 'noon'") from error
+    then = then if then <= present else then - timedelta(days=1)
+    return then, then
+
+
+# ---- sentences
+
+
+def _sentence(found: Recall) -> str:
+    """Return the answer to a question in words."""
+    asked, facts = found.question, found.facts
+    kind = asked.kind
+    if kind in ("whether", "whether_there"):
+        return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
+    if kind == "how_many":
+        number = len({fact.fluent.statement.subject for fact in facts})
+        return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
+    if kind in ("gone", "come", "moved", "when_did"):
+        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[asked.event or kind]
+        edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
+        told = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
+                         for fact, end in zip(facts, edge, strict=True))  # fmt: skip
+        return _capital("; ".join(told))
+    if kind in ("shown", "who"):
+        told = _distinct(
+            f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
+            f"{fact.name} {_at(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
+            for fact in facts
+        )
+        return _capital("; ".join(told))
+    return _capital("; ".join(_distinct(_fact(found, fact) for fact in facts)))
+
+
+def _distinct(parts: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(parts))
+
+
+def _capital(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _fact(found: Recall, fact: Recalled) -> str:
+    """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
+    said, fluent = fact.fluent.statement, fact.fluent
+    verb = "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
+    if said.predicate == SAID:
+        return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {said.object}"
+    elif said.predicate == AT:
+        text = f"the {fact.name} {verb} there"
+    elif said.predicate == IS_A:
+        text = f"{said.subject} {verb} a {fact.other}"
+    else:
+        relation = default_ontology().relations.get(said.predicate)
+        words = relation.phrase if relation is not None else said.predicate.replace("_", " ")
+        other = "" if fact.other is None else f" the {fact.other}"
+        text = f"the {fact.name} {verb} {words}{other}"
+    start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"
+    finish = "" if fluent.is_open else f" to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
+    since = f" since {_time(found, fluent.start.lower, fluent.start.upper)}" if start and fluent.is_open else ""
+    return f"{text}{since or start + finish}{_source(fact)}"
+
+
+def _source(fact: Recalled) -> str:
+    sure = "" if fact.fluent.certainty == 1 else f", certainty {fact.fluent.certainty:.2g}"
+    source = fact.fluent.source
+    by = f" by {source.by}" if source.origin in (Origin.SAID, Origin.SHOWN) else ""
+    return f" ({source.origin.value}{by}{sure})"
+
+
+def _at(found: Recall, lower: float, upper: float) -> str:
+    return f"at {_time(found, lower, upper)}" if lower == upper else _time(found, lower, upper)
+
+
+def _time(found: Recall, lower: float, upper: float) -> str:
+    """Return a time within bounds in words."""
+    first, last = found.moment(lower), found.moment(upper)
+    present = found.moment(found.asked)
+    assert present is not None
+    if first is not None and last is not None:
+        earliest, latest = _clock(first, present), _clock(last, present)
+        return earliest if earliest == latest else f"between {earliest} and {latest}"
+    if last is not None:
+        return f"by {_clock(last, present)}"
+    return "an unknown time" if first is None else f"after {_clock(first, present)}"
+
+
+def _clock(moment: datetime, present: datetime) -> str:
+    """Return a moment as a clock time, with its date where that is not today."""
+    clock = moment.strftime("%H:%M:%S")
+    return clock if moment.date() == present.date() else f"{moment.date().isoformat()} {clock}"

@@ -1,0 +1,42 @@
+"""Read questions about then and now."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.grammar.recall.questions import WORDINGS, RecallQuestionError, read_question
+
+
+@pytest.mark.parametrize("wording", WORDINGS)
+def test_suggested_wordings_are_understood(wording: str) -> None:
+    assert read_question(wording).kind
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "thing", "other", "relation", "when"),
+    [
+        ("Where's the big red cup?", "where", "big red cup", None, None, "unstated"),
+        ("where was my knife an hour ago", "where", "knife", None, None, "ago"),
+        ("What's next to the bread plate now?", "related", None, "bread plate", "next_to", "now"),
+        ("which cups were to the left of the tray before 3 p.m.?", "related", "cups", "tray", "left", "before_time"),
+        ("What has been removed since 2026-11-23?", "gone", None, None, None, "since"),
+        ("what disappeared after the cup arrived?", "gone", None, None, None, "after"),
+        ("Which spoon was added between noon and 12:30:05?", "come", "spoon", None, None, "between"),
+        ("Was the fork in front of the candle at first?", "whether", "fork", "candle", "in_front", "at_first"),
+        ("how many glasses are in the sink", "how_many", "glasses", "sink", "inside", "unstated"),
+        ("Please tell me, since when is the island on the island?", "when_held", "island", "island", "on", "unstated"),
+    ],
+)
+def test_questions_are_read_with_their_parts(
+    text: str, kind: str, thing: str | None, other: str | None, relation: str | None, when: str
+) -> None:
+    read = read_question(text)
+    assert (read.kind, read.thing, read.other, read.relation, read.when.kind) == (kind, thing, other, relation, when)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "   ", "fork?", "where the fork", "why was the fork there?", "what is on?", "\0", "where " * 400]
+)
+def test_what_is_not_understood_gets_a_wording(text: str) -> None:
+    with pytest.raises(RecallQuestionError, match=r"say|at most"):
+        read_question(text)
