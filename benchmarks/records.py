@@ -115,6 +115,7 @@ RUNS = (
     Run("description_logic", "Reasoning", "engines of description logic"),
     Run("memory", "Memory", "bulk load and queries"),
     Run("perceptual", "Memory", "views in LevelDB"),
+    Run("blackboard", "Memory", "fluents on the blackboard, beside pyoxigraph and zenoh"),
     Run("growth", "Memory", "cost of a lesson after many lessons", options="--batch 0"),
     Run("kills", "Memory", "writes that are killed"),
     Run("shacl", "Memory", "validation of changed nodes"),

@@ -363,6 +363,83 @@ class Blackboard(Closing):
         """
         return self.write(Delete(id), by=by)
 
+    def finish_where(
+        self, pattern: Pattern, at: float | Bounds, by: str, start: float | None = None, end: float | None = None
+    ) -> int:
+        """State as one write when all fluents that match a pattern ceased to hold.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        at
+            Seconds since the origin, or bounds.
+        by
+            Name of the writer.
+        start, end
+            Only fluents that may hold in this window; by default all that have not finished.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change.
+        """
+        with self._lock:
+            found = self.now(pattern) if start is None and end is None else self.holding(pattern, start, end)
+            return self.write(*(Finish(each.id, at) for each in found if each.is_open), by=by)
+
+    def update_where(
+        self,
+        pattern: Pattern,
+        by: str,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        certainty: float | None = None,
+        source: Source | None = None,
+    ) -> int:
+        """Give all fluents that match a pattern a new certainty or source, as one write.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        by
+            Name of the writer.
+        start, end
+            Only fluents that may hold in this window; by default it has no end on that side.
+        certainty, source
+            New values; None leaves a value as it is.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change.
+        """
+        with self._lock:
+            found = self.holding(pattern, start, end)
+            return self.write(*(Update(each.id, certainty=certainty, source=source) for each in found), by=by)
+
+    def delete_where(self, pattern: Pattern, by: str, start: float | None = None, end: float | None = None) -> int:
+        """Remove all fluents that match a pattern, as one write.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        by
+            Name of the writer.
+        start, end
+            Only fluents that may hold in this window; by default it has no end on that side.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change.
+        """
+        with self._lock:
+            return self.write(*(Delete(each.id) for each in self.holding(pattern, start, end)), by=by)
+
     def fluent(self, id: str) -> EpisodicFluent | None:
         """Return one fluent.
 
@@ -493,14 +570,55 @@ class Blackboard(Closing):
         EpisodeError
             If another subscriber has the name.
         """
+        return self.attend(name, to_pattern(pattern), callback, since)
+
+    def attend(
+        self,
+        name: str,
+        concerns: Callable[[Logged], bool],
+        callback: Callback,
+        since: int | None = None,
+        report: Callable[[str], None] | None = None,
+    ) -> Subscription:
+        """Subscribe to the changes that a function chooses, such as those of one fluent or of one class of things.
+
+        Parameters
+        ----------
+        name
+            Name of the subscriber, which no other may have.
+        concerns
+            Function that says whether a change concerns the subscriber.
+        callback
+            Function that is called with each such change. If it raises, it is called again with the same change later.
+        since
+            Sequence number after which to begin; by default, after the last change so far.
+        report
+            Called with one line for each trouble of this subscriber, besides that of the blackboard.
+
+        Returns
+        -------
+        Subscription
+            The subscription; cancel it to end it.
+
+        Raises
+        ------
+        EpisodeError
+            If another subscriber has the name.
+        """
         check_text(name, "the name of a subscriber")
+
+        def trouble(line: str) -> None:
+            self._trouble(line)
+            if report is not None and report is not self._report:
+                report(line)
+
         with self._lock:
             self._check_open()
             if name in self._subscriptions:
                 raise EpisodeError(f"a subscriber named '{name}' is there already; cancel it, or choose another name")
             position = self._sequence if since is None else since
             subscription = Subscription(
-                name, to_pattern(pattern), callback, position, self._read_log, lambda: self._sequence, self._trouble
+                name, concerns, callback, position, self._read_log, lambda: self._sequence, trouble
             )
             self._subscriptions[name] = subscription
         subscription.begin()

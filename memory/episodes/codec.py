@@ -81,6 +81,23 @@ def encode_logged(last: int, by: str, written: float, kind: Kind, before: bytes 
     return b"%b,%b,%b]" % (head[:-1], before or b"null", after or b"null")
 
 
+def logged_bytes(change: Logged) -> bytes:
+    """Return a log entry as bytes, as :func:`encode_logged` does.
+
+    Parameters
+    ----------
+    change
+        The log entry.
+
+    Returns
+    -------
+    bytes
+        A JSON array, without the sequence number.
+    """
+    before, after = (None if each is None else encode_fluent(each) for each in (change.before, change.after))
+    return encode_logged(change.last, change.by, change.written, change.kind, before, after)
+
+
 def decode_logged(sequence: int, data: bytes) -> Logged:
     """Return the log entry that bytes stand for.
 

@@ -26,6 +26,7 @@ from typing import Any
 import plyvel
 
 from deixis.memory import owner as disk
+from deixis.memory.episodes.keys import Keys
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock, forked
@@ -48,7 +49,7 @@ _NUMBER = struct.Struct(">Q")
 _PROBE = 1 << 18  # bytes that must fit on the disk before the database is opened again after a failed write
 
 
-class DiskKeys:
+class DiskKeys(Keys):
     """An ordered store on disk. Its user must let only one thread in at a time.
 
     After a failed write, reading goes on. The next write opens the database again, as its log may end in half a write.
@@ -114,77 +115,24 @@ class DiskKeys:
             raise
 
     def get(self, key: bytes) -> bytes | None:
-        """Return the value of a key.
-
-        Parameters
-        ----------
-        key
-            The key.
-
-        Returns
-        -------
-        bytes or None
-            Its value; None if there is none.
-
-        Raises
-        ------
-        DamagedMemoryError
-            If the value differs from what was written.
-        """
+        """Return the value of a key."""
         with wrap_level_errors(self.folder):
             sealed = self._database().get(key)
         return None if sealed is None else self._unsealed(key, sealed)
 
     def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
-        """Iterate over keys in order.
-
-        Parameters
-        ----------
-        first
-            Smallest key.
-        stop
-            Smallest key that does not belong to the range.
-
-        Returns
-        -------
-        iterator of bytes
-            The keys, as they are at the time of the call.
-        """
+        """Iterate over keys in order."""
         with wrap_level_errors(self.folder), self._iterator(first, stop, False) as found:
             return iter(list(found))
 
     def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Iterate over keys and values in order.
-
-        Parameters
-        ----------
-        first
-            Smallest key.
-        stop
-            Smallest key that does not belong to the range.
-
-        Returns
-        -------
-        iterator of tuple
-            Pairs of key and value, as they are at the time of the call.
-        """
+        """Iterate over keys and values in order."""
         with wrap_level_errors(self.folder), self._iterator(first, stop, True) as found:
             pairs = list(found)
         return ((key, self._unsealed(key, sealed)) for key, sealed in pairs)
 
     def restored(self) -> bool:
-        """Open the database again after a failed write, if the disk has room now.
-
-        Returns
-        -------
-        bool
-            True if it was opened again; its content may then differ from what was read before.
-
-        Raises
-        ------
-        MemoryWriteError
-            If the disk is still full or fails; reading goes on.
-        """
+        """Open the database again after a failed write, if the disk has room now."""
         if self._failed is None:
             return False
         probe = self.folder / "probe"
@@ -203,18 +151,7 @@ class DiskKeys:
         return True
 
     def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
-        """Write keys with their values, and delete those without, all or nothing.
-
-        Parameters
-        ----------
-        pairs
-            Values by key; None to delete.
-
-        Raises
-        ------
-        MemoryWriteError
-            If the disk is full or fails; nothing is written then.
-        """
+        """Write keys with their values, and delete those without, all or nothing."""
         db = self._database()
         number = _NUMBER.pack(self._writes + 1)
         try:

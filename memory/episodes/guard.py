@@ -7,7 +7,6 @@ constraints that cannot be compiled are checked by pyshacl alone, which is slowe
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -18,15 +17,27 @@ import pyoxigraph as ox
 from deixis.answers import count
 from deixis.errors import OntologyError
 from deixis.memory.episodes.episode import EpisodicFluent
-from deixis.memory.episodes.rdf import TYPE, fluent_iri, fluent_triples, statement_triple, thing_iri
+from deixis.memory.episodes.rdf import (
+    TYPE,
+    Values,
+    fluent_iri,
+    fluent_triples,
+    fluent_values,
+    statement_triple,
+    thing_iri,
+)
 from deixis.memory.errors import RejectedWriteError, ShapesError
 from deixis.memory.semantic.validation.compiled_shapes import Shapes, compile_shapes
 from deixis.memory.semantic.validation.shacl import violations
 from deixis.ontology.tbox import TBOX_FILES
+from deixis.reasoning.temporal.fluent import Statement
 
 if TYPE_CHECKING:
     from deixis.memory.semantic.rdf.after import Node
     from deixis.memory.semantic.validation.focus_data import FocusData
+
+MAX_STATEMENTS = 10_000
+"""Maximum number of statements whose verdict is kept."""
 
 SHIPPED = TBOX_FILES[0].with_name("episode_shapes.ttl")
 """Shapes that every fluent must conform to."""
@@ -38,6 +49,7 @@ class Guard:
     def __init__(self, file: Path) -> None:
         self._file = file
         self._compiled: Shapes | None = None
+        self._statements: dict[Statement, bool] = {}
         try:
             self._compiled = compile_shapes(file)
         except OntologyError:
@@ -79,13 +91,23 @@ class Guard:
         bool
             False if pyshacl must decide.
         """
-        if self._compiled is None:
+        if self._compiled is None or self._compiled.objects_of:
             return False
-        view = cast("FocusData", _Description(_described(fluent)))
-        nodes: tuple[Node, ...] = (fluent_iri(fluent.id), thing_iri(fluent.statement.subject))
-        return all(
-            shape.sure(view, node) for node in nodes for shape in self._compiled.shapes if shape.targets(view, node)
-        ) and not any(shape.objects_of for shape in self._compiled.shapes)
+        statement = fluent.statement
+        known = self._statements.get(statement)
+        if known is None:
+            if len(self._statements) >= MAX_STATEMENTS:
+                self._statements.clear()
+            triple = statement_triple(statement)
+            known = self._sure(thing_iri(statement.subject), {triple.predicate: [triple.object]})
+            self._statements[statement] = known
+        return known and self._sure(fluent_iri(fluent.id), fluent_values(fluent))
+
+    def _sure(self, node: ox.NamedNode, values: Values) -> bool:
+        """Return whether a node with these values certainly conforms to each shape that targets it."""
+        assert self._compiled is not None
+        view = cast("FocusData", _Description(node, values))
+        return all(shape.sure(view, node) for shape in self._compiled.shapes if shape.targets(view, node))
 
 
 @lru_cache(maxsize=1)
@@ -99,29 +121,27 @@ def _described(fluent: EpisodicFluent) -> list[ox.Triple]:
 
 
 class _Description:
-    """The triples of one fluent, with the methods of ``FocusData`` that compiled checks call."""
+    """The triples of one node, with the methods of ``FocusData`` that compiled checks call."""
 
-    def __init__(self, triples: Sequence[ox.Triple]) -> None:
-        self._said: dict[Node, dict[ox.NamedNode, list[Node]]] = defaultdict(lambda: defaultdict(list))
-        for triple in triples:
-            self._said[triple.subject][triple.predicate].append(triple.object)
+    def __init__(self, node: ox.NamedNode, values: Values) -> None:
+        self._node, self._values = node, values
 
-    def values(self, node: Node, predicate: ox.NamedNode) -> list[Node]:
-        return self._said[node].get(predicate, [])
+    def values(self, node: Node, predicate: ox.NamedNode) -> Sequence[Node]:
+        return self._values.get(predicate, ()) if node == self._node else ()
 
     fresh = values
 
-    def some(self, node: Node, predicate: ox.NamedNode, number: int) -> list[Node]:
+    def some(self, node: Node, predicate: ox.NamedNode, number: int) -> Sequence[Node]:
         return self.values(node, predicate)[:number]
 
     def classes(self, node: Node) -> frozenset[Node]:
         return frozenset(self.values(node, TYPE))
 
     def is_a(self, node: Node, kind: Node) -> bool:
-        return kind in self.classes(node)
+        return kind in self.values(node, TYPE)
 
     def subjects(self, predicate: ox.NamedNode, node: Node) -> set[Node]:
-        return {subject for subject in self._said if node in self.values(subject, predicate)}
+        return {self._node} if node in self.values(self._node, predicate) else set()
 
     def leads_here(self, predicate: ox.NamedNode, node: Node) -> bool:
         return bool(self.subjects(predicate, node))

@@ -17,40 +17,6 @@ class Keys(Protocol):
     """An ordered store. A write is atomic, and what it wrote survives the end of the process unless it is transient."""
 
     def get(self, key: bytes) -> bytes | None:
-        """Return the value of a key, or None."""
-        ...
-
-    def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
-        """Iterate over the keys from ``first`` up to ``stop``, without ``stop``, in order."""
-        ...
-
-    def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Iterate over keys and values from ``first`` up to ``stop``, without ``stop``, in order."""
-        ...
-
-    def restored(self) -> bool:
-        """Open the store again if a write failed; return whether its content may differ from what was read before."""
-        ...
-
-    def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
-        """Write keys with their values, and delete those with None, all or nothing."""
-        ...
-
-    def close(self) -> None:
-        """Release all resources; a second call does nothing."""
-        ...
-
-
-class TransientKeys:
-    """Keys and values in memory. Keys are sorted when they are first read after a write."""
-
-    def __init__(self) -> None:
-        self._values: dict[bytes, bytes] = {}
-        self._sorted: list[bytes] = []
-        self._new: list[bytes] = []
-        self._deleted = False
-
-    def get(self, key: bytes) -> bytes | None:
         """Return the value of a key.
 
         Parameters
@@ -63,7 +29,7 @@ class TransientKeys:
         bytes or None
             Its value; None if there is none.
         """
-        return self._values.get(key)
+        ...
 
     def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
         """Iterate over keys in order.
@@ -80,8 +46,7 @@ class TransientKeys:
         iterator of bytes
             The keys.
         """
-        keys = self._in_order()
-        return iter(keys[bisect_left(keys, first) : bisect_left(keys, stop)])
+        ...
 
     def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
         """Iterate over keys and values in order.
@@ -98,23 +63,7 @@ class TransientKeys:
         iterator of tuple
             Pairs of key and value.
         """
-        return iter([(key, self._values[key]) for key in self.between(first, stop)])
-
-    def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
-        """Write keys with their values, and delete those without.
-
-        Parameters
-        ----------
-        pairs
-            Values by key; None to delete.
-        """
-        for key, value in pairs.items():
-            if value is None:
-                self._deleted |= self._values.pop(key, None) is not None
-            else:
-                if key not in self._values:
-                    self._new.append(key)
-                self._values[key] = value
+        ...
 
     def restored(self) -> bool:
         """Return False: a write in memory does not fail.
@@ -124,6 +73,57 @@ class TransientKeys:
         bool
             False.
         """
+        ...
+
+    def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
+        """Write keys with their values, and delete those without.
+
+        Parameters
+        ----------
+        pairs
+            Values by key; None to delete.
+        """
+        ...
+
+    def close(self) -> None:
+        """Do nothing: the content ends with the object."""
+        ...
+
+
+class TransientKeys(Keys):
+    """Keys and values in memory. Keys are sorted when they are first read after a write."""
+
+    def __init__(self) -> None:
+        self._values: dict[bytes, bytes] = {}
+        self._sorted: list[bytes] = []
+        self._new: list[bytes] = []
+        self._deleted = False
+
+    def get(self, key: bytes) -> bytes | None:
+        """Return the value of a key."""
+        return self._values.get(key)
+
+    def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
+        """Iterate over keys in order."""
+        keys = self._in_order()
+        return iter(keys[bisect_left(keys, first) : bisect_left(keys, stop)])
+
+    def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
+        """Iterate over keys and values in order."""
+        return iter([(key, self._values[key]) for key in self.between(first, stop)])
+
+    def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
+        """Write keys with their values, and delete those without."""
+        for key, value in pairs.items():
+            if value is None:
+                self._deleted |= self._values.pop(key, None) is not None
+            else:
+                if key not in self._values:
+                    self._new.append(key)
+                self._values[key] = value
+
+    def restored(self) -> bool:
+        """Return False: a write in memory does not fail."""
         return False
 
     def close(self) -> None:

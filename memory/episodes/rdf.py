@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 import pyoxigraph as ox
 
-from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.ontology.triples import category_iri
 from deixis.reasoning.temporal.fluent import Statement
 
@@ -38,6 +38,7 @@ _THING, _TEXT = ox.NamedNode(SOSA + "hasResult"), ox.NamedNode(SOSA + "hasSimple
 _BY, _FROM = ox.NamedNode(_PROV + "wasAttributedTo"), ox.NamedNode(_PROV + "wasDerivedFrom")
 _ENDS = tuple(ox.NamedNode(EP + name) for name in ("earliestStart", "latestStart", "earliestFinish", "latestFinish"))
 _DOUBLE = ox.NamedNode("http://www.w3.org/2001/XMLSchema#double")
+_ORIGINS = {origin: ox.Literal(origin.value) for origin in Origin}
 _TRUE = ox.Literal(True)
 _NAME = re.compile(r"[\w.:-]+")
 
@@ -45,7 +46,6 @@ TEXTS = {"at", "said"}
 """Predicates whose objects are texts, not things."""
 
 
-@lru_cache(maxsize=100_000)
 def fluent_iri(id: str) -> ox.NamedNode:
     """Return the IRI of a fluent.
 
@@ -133,6 +133,45 @@ def statement_triple(statement: Statement) -> ox.Triple:
     return ox.Triple(thing_iri(statement.subject), predicate_iri(statement.predicate), thing)
 
 
+Values = dict[ox.NamedNode, list[ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple]]
+"""Objects of the triples about one node, by predicate."""
+
+
+def fluent_values(fluent: EpisodicFluent) -> Values:
+    """Return the description of a fluent by predicate.
+
+    Parameters
+    ----------
+    fluent
+        The fluent.
+
+    Returns
+    -------
+    dict
+        Objects by predicate; an unknown bound of a time has none.
+    """
+    said, source = fluent.statement, fluent.source
+    found: Values = {
+        TYPE: [_FLUENT, _OBSERVATION],
+        _IDENTIFIER: [ox.Literal(fluent.id)],
+        _SUBJECT: [thing_iri(said.subject)],
+        _PREDICATE: [predicate_iri(said.predicate)],
+        _CERTAINTY: [_double(fluent.certainty)],
+        _ORIGIN: [_ORIGINS[source.origin]],
+        _BY: [resource_iri("agent", source.by)],
+    }
+    if said.object is not None:
+        value = _object(said.predicate, said.object)
+        found[_TEXT if isinstance(value, ox.Literal) else _THING] = [value]
+    start, finish = fluent.start, fluent.finish
+    for predicate, time in zip(_ENDS, (start.lower, start.upper, finish.lower, finish.upper), strict=True):
+        if math.isfinite(time):
+            found[predicate] = [_double(time)]
+    if source.event is not None:
+        found[_FROM] = [resource_iri("event", source.event)]
+    return found
+
+
 def fluent_triples(fluent: EpisodicFluent) -> list[ox.Triple]:
     """Return the description of a fluent.
 
@@ -146,33 +185,17 @@ def fluent_triples(fluent: EpisodicFluent) -> list[ox.Triple]:
     list of Triple
         Its triples; an unknown bound of a time has none.
     """
-    node, said, source = fluent_iri(fluent.id), fluent.statement, fluent.source
-    found = [
-        ox.Triple(node, TYPE, _FLUENT),
-        ox.Triple(node, TYPE, _OBSERVATION),
-        ox.Triple(node, _IDENTIFIER, ox.Literal(fluent.id)),
-        ox.Triple(node, _SUBJECT, thing_iri(said.subject)),
-        ox.Triple(node, _PREDICATE, predicate_iri(said.predicate)),
-        ox.Triple(node, _CERTAINTY, _double(fluent.certainty)),
-        ox.Triple(node, _ORIGIN, ox.Literal(source.origin.value)),
-        ox.Triple(node, _BY, resource_iri("agent", source.by)),
+    node = fluent_iri(fluent.id)
+    return [
+        ox.Triple(node, predicate, value) for predicate, values in fluent_values(fluent).items() for value in values
     ]
-    if said.object is not None:
-        value = _object(said.predicate, said.object)
-        found.append(ox.Triple(node, _TEXT if isinstance(value, ox.Literal) else _THING, value))
-    start, finish = fluent.start, fluent.finish
-    for predicate, time in zip(_ENDS, (start.lower, start.upper, finish.lower, finish.upper), strict=True):
-        if math.isfinite(time):
-            found.append(ox.Triple(node, predicate, _double(time)))
-    if source.event is not None:
-        found.append(ox.Triple(node, _FROM, resource_iri("event", source.event)))
-    return found
 
 
 def _double(number: float) -> ox.Literal:
     return ox.Literal(repr(float(number)), datatype=_DOUBLE)
 
 
+@lru_cache(maxsize=10_000)
 def resource_iri(kind: str, name: str) -> ox.NamedNode:
     """Return the IRI of something that fluents refer to.
 

@@ -66,10 +66,11 @@ class Subscription:
         read: Callable[[int], Iterator[Logged]],
         last: Callable[[], int],
         trouble: Callable[[str], None],
+        moved: Callable[[int], object] = lambda position: None,
     ) -> None:
         self.name = name
         self._concerns, self._callback, self._read, self._last = concerns, callback, read, last
-        self._trouble = trouble
+        self._trouble, self._told = trouble, moved
         self._position = position
         self._wake = threading.Event()
         self._ended = threading.Event()
@@ -158,6 +159,7 @@ class Subscription:
         with self._moved:
             self._position = max(self._position, position)
             self._moved.notify_all()
+        self._told(self._position)
 
     def _accepted(self, change: Logged) -> bool:
         """Call the callback until it returns; return False if the subscription ended before."""

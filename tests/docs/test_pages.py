@@ -28,6 +28,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/recall",
     "guides/unlearn",
     "guides/pointing",
+    "guides/blackboard",
     "guides/testing",
     "guides/robot",
     "reference/english",

@@ -54,6 +54,7 @@ COMMAND_GROUPS = {
         "category": "category_app",
         "recall": "recall",
         "unlearn": "unlearn",
+        "episodes": "episodes_app",
         "memory": "memory_app",
     },
     "Reasoning": {"reason": "reason", "validate": "validate", "solve": "solve", "time": "time_command"},

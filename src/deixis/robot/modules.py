@@ -1,0 +1,393 @@
+"""Modules of the robot: each knows only the blackboard, and only what it declares.
+
+A module declares which statements it reads and which it writes, as patterns. Its board shows it the former, and refuses
+other writes. The same module runs in a thread or in a process of its own; see :mod:`deixis.robot.runtime`.
+
+>>> from deixis.memory.episodes.blackboard import Blackboard
+>>> from deixis.memory.episodes.changes import Add
+>>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> class Greeter(Module):
+...     name, reads, writes = "greeter", (Pattern(predicate="entered"),), (Pattern(predicate="greeted"),)
+>>> with Blackboard.transient() as whole:
+...     board = ModuleBoard(whole, Greeter())
+...     source = Source(Origin.SEEN, "door")
+...     board.write(Add(episodic("f1", ("anna", "entered"), start=0.0, source=source)))
+Traceback (most recent call last):
+    ...
+deixis.robot.modules.AccessError: the module 'greeter' must not write entered(anna); it declares greeted
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from datetime import datetime
+from importlib import import_module
+from typing import Any, ClassVar, NamedTuple, Protocol
+
+from deixis.errors import DeixisError
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Add, Change, Logged, Update
+from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
+
+PAUSE = 0.2
+"""Pause in seconds before a module whose run method raised is run again; it doubles each time, up to 10 s."""
+
+
+class AccessError(DeixisError, PermissionError):
+    """A statement that a module reads or writes without declaring it."""
+
+
+class ModuleError(DeixisError, ValueError):
+    """A module that cannot be run: of an unknown class, with wrong settings, or with the name of another."""
+
+
+class Board(Protocol):
+    """The methods of the blackboard that a module may call, limited to what it declares."""
+
+    def write(self, *changes: Change) -> int:
+        """Write changes as one: all of them or, if one is refused, nothing.
+
+        Parameters
+        ----------
+        changes
+            Changes of statements that the module declares to write.
+
+        Returns
+        -------
+        int
+            Sequence number of the last change.
+
+        Raises
+        ------
+        AccessError
+            If a statement is not declared.
+        """
+        ...
+
+    def holding(
+        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what may have held in a window of time, as far as the module declares to read it.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        start, end
+            Ends of the window in seconds; by default it has no end on that side.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts.
+
+        Raises
+        ------
+        AccessError
+            If the pattern matches nothing that the module declares.
+        """
+        ...
+
+    def now(self, pattern: Pattern = ANYTHING) -> tuple[EpisodicFluent, ...]:
+        """Return the fluents that have not finished, as far as the module declares to read them.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts.
+
+        Raises
+        ------
+        AccessError
+            If the pattern matches nothing that the module declares.
+        """
+        ...
+
+    def new_id(self, prefix: str) -> str:
+        """Return an id that this memory has never given before.
+
+        Parameters
+        ----------
+        prefix
+            Beginning of the id.
+
+        Returns
+        -------
+        str
+            The id.
+        """
+        ...
+
+    def seconds(self) -> float:
+        """Return the present time, which never goes back.
+
+        Returns
+        -------
+        float
+            Seconds since the origin of the memory.
+        """
+        ...
+
+
+class Module:
+    """Base class of modules.
+
+    ``reads`` and ``writes`` are the patterns of the statements that it may read and write; it may read what it may
+    write, too.
+    """
+
+    name: ClassVar[str]
+    reads: ClassVar[tuple[Pattern, ...]] = ()
+    writes: ClassVar[tuple[Pattern, ...]] = ()
+
+    def changed(self, change: Logged, board: Board) -> None:
+        """React to a change of a fluent that the module reads; called with each, in order.
+
+        Parameters
+        ----------
+        change
+            The change. If this method raises, it is called again with the same change later.
+        board
+            The module's board.
+        """
+
+    def run(self, board: Board, stopped: threading.Event) -> None:
+        """Work until the module is stopped, such as reading a camera; by default, only wait.
+
+        Parameters
+        ----------
+        board
+            The module's board.
+        stopped
+            Set when the module must end.
+        """
+        stopped.wait()
+
+
+class Runner(Protocol):
+    """One running module."""
+
+    def position(self) -> int:
+        """Return the position in the log.
+
+        Returns
+        -------
+        int
+            Sequence number up to which the module has handled it.
+        """
+        ...
+
+    def wait(self, sequence: int, timeout: float) -> bool:
+        """Wait until the module has handled the log up to a sequence number.
+
+        Parameters
+        ----------
+        sequence
+            The sequence number.
+        timeout
+            Longest time to wait in seconds.
+
+        Returns
+        -------
+        bool
+            True if it has.
+        """
+        ...
+
+    def stop(self) -> None:
+        """End both threads; one that hangs is left behind."""
+        ...
+
+
+class ModuleSpec(NamedTuple):
+    """A module by the name of its class, ``package.module:Class``, and its settings, which JSON can hold."""
+
+    factory: str
+    settings: dict[str, Any] = {}  # noqa: RUF012  # a named tuple, whose default is never changed
+
+    def module(self) -> Module:
+        """Return a new module.
+
+        Returns
+        -------
+        Module
+            The module.
+
+        Raises
+        ------
+        ModuleError
+            If there is no such class, it is not a module, or it refuses the settings.
+        """
+        place, _, name = self.factory.partition(":")
+        try:
+            made = getattr(import_module(place), name)(**self.settings)
+        except (ImportError, AttributeError, TypeError, ValueError) as error:
+            raise ModuleError(f"the module '{self.factory}' cannot be made: {error}") from error
+        if not isinstance(made, Module):
+            raise ModuleError(f"'{self.factory}' must be a subclass of Module, got {type(made).__name__}")
+        return made
+
+
+class ModuleBoard(Board):
+    """The blackboard as one module may use it."""
+
+    def __init__(self, board: Blackboard, module: Module, clock: Clock | None = None) -> None:
+        self._board, self._name = board, module.name
+        self._reads, self._writes = (*module.reads, *module.writes), module.writes
+        self._clock = clock or Clock(board.origin)
+
+    def write(self, *changes: Change) -> int:
+        """Write changes as one: all of them or, if one is refused, nothing."""
+        for change in changes:
+            known = None if isinstance(change, Add) else self._board.fluent(change.id)
+            said = [None if known is None else known.statement]
+            said += [change.fluent.statement] if isinstance(change, Add) else []
+            said += [change.statement] if isinstance(change, Update) else []
+            for statement in said:
+                if statement is not None and not _declared(self._writes, statement):
+                    raise AccessError(
+                        f"the module '{self._name}' must not write {statement}; it declares {_texts(self._writes)}"
+                    )
+        return self._board.write(*changes, by=self._name)
+
+    def holding(
+        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what may have held in a window of time, as far as the module declares to read it."""
+        self._check_readable(pattern)
+        return tuple(filter(self._readable, self._board.holding(pattern, start, end)))
+
+    def now(self, pattern: Pattern = ANYTHING) -> tuple[EpisodicFluent, ...]:
+        """Return the fluents that have not finished, as far as the module declares to read them."""
+        self._check_readable(pattern)
+        return tuple(filter(self._readable, self._board.now(pattern)))
+
+    def new_id(self, prefix: str) -> str:
+        """Return an id that this memory has never given before."""
+        return self._board.new_id(prefix)
+
+    def seconds(self) -> float:
+        """Return the present time, which never goes back."""
+        return self._clock.seconds()
+
+    def concerns(self, change: Logged) -> bool:
+        """Return whether the module declares to read a changed fluent; its own writes do not concern it.
+
+        Parameters
+        ----------
+        change
+            The change.
+
+        Returns
+        -------
+        bool
+            True if the module gets the change.
+        """
+        return change.by != self._name and any(change.concerns(pattern) for pattern in self._reads)
+
+    def _readable(self, fluent: EpisodicFluent) -> bool:
+        return _declared(self._reads, fluent.statement)
+
+    def _check_readable(self, pattern: Pattern) -> None:
+        if not any(_meet(pattern, declared) for declared in self._reads):
+            raise AccessError(
+                f"the module '{self._name}' must not read {_text(pattern)}; it declares {_texts(self._reads)}"
+            )
+
+
+class Clock:
+    """A clock in seconds since an origin that never goes back, and reports when the system's clock does."""
+
+    def __init__(
+        self,
+        origin: datetime,
+        report: Callable[[str], None] | None = None,
+        present: Callable[[], datetime] | None = None,
+    ) -> None:
+        self._origin, self._report = origin, report
+        self._present = present or (lambda: datetime.now(origin.tzinfo))
+        self._last = float("-inf")
+        self._behind = False
+        self._lock = threading.Lock()
+
+    def seconds(self) -> float:
+        """Return the present time, or the last one that was returned if the system's clock is behind it.
+
+        Returns
+        -------
+        float
+            Seconds since the origin.
+        """
+        with self._lock:
+            now = (self._present() - self._origin).total_seconds()
+            if now < self._last:
+                if not self._behind and self._report is not None:
+                    self._report(f"the clock went back by {self._last - now:.3g} s; times stay at {self._last:.6f} s")
+                self._behind = True
+                return self._last
+            self._behind, self._last = False, now
+            return now
+
+
+def distinct(modules: Sequence[Module]) -> None:
+    """Raise ModuleError if two modules have one name.
+
+    Parameters
+    ----------
+    modules
+        The modules.
+    """
+    names = [module.name for module in modules]
+    for name in names:
+        if names.count(name) > 1:
+            raise ModuleError(f"two modules have the name '{name}'; give each its own")
+
+
+def run_until_stopped(module: Module, board: Board, stopped: threading.Event, report: Callable[[str], None]) -> None:
+    """Call the run method of a module until it returns or the module is stopped; after an error, call it again.
+
+    Parameters
+    ----------
+    module
+        The module.
+    board
+        Its board.
+    stopped
+        Set when the module must end.
+    report
+        Called with one line for each error.
+    """
+    pause = PAUSE
+    while not stopped.is_set():
+        try:
+            return module.run(board, stopped)
+        except Exception as error:  # whatever a module raises, the robot goes on
+            report(f"the module '{module.name}' failed and is run again: {type(error).__name__}: {error}")
+            stopped.wait(pause)
+            pause = min(2 * pause, 10.0)
+
+
+def _declared(patterns: Sequence[Pattern], statement: Statement) -> bool:
+    return any(pattern.matches(statement) for pattern in patterns)
+
+
+def _meet(first: Pattern, second: Pattern) -> bool:
+    pairs = ((first.subject, second.subject), (first.predicate, second.predicate), (first.object, second.object))
+    return all(one is None or other is None or one == other for one, other in pairs)
+
+
+def _texts(patterns: Sequence[Pattern]) -> str:
+    return ", ".join(map(_text, patterns)) or "nothing"
+
+
+def _text(pattern: Pattern) -> str:
+    if pattern.subject is None and pattern.object is None:
+        return pattern.predicate or "everything"
+    return f"{pattern.predicate or '*'}({pattern.subject or '*'}, {pattern.object or '*'})"

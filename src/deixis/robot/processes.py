@@ -1,0 +1,443 @@
+"""Modules in processes of their own, which reach the blackboard of their owner by zenoh over the loopback interface.
+
+The owner answers calls and sends each module a notice of each change; there is no daemon and no discovery. A notice
+holds the log entry if the module reads it, so that the module needs no call; where notices are missing, it reads the
+log. All keys begin with a random token, which only the processes of one runtime know. Nothing is stored in zenoh: the
+log stays the truth.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from datetime import datetime
+from typing import Any
+
+from deixis import extras
+from deixis.errors import DeixisError
+from deixis.memory import errors as memory_errors
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Logged, Update
+from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, logged_bytes
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, at
+from deixis.memory.episodes.subscription import Subscription
+from deixis.memory.errors import MemoryWriteError
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
+from deixis.robot.modules import AccessError, Board, Clock, Module, ModuleBoard, ModuleSpec, Runner, run_until_stopped
+
+CALL_TIMEOUT = 10.0
+"""Time in seconds for one call to the owner of the blackboard."""
+
+PAGE = 256
+"""Maximum number of log entries in one answer."""
+
+
+class Hub:
+    """The owner's side: answers the calls of module processes, and publishes changes to them."""
+
+    def __init__(self, board: Blackboard, clock: Clock, report: Callable[[str], None]) -> None:
+        self._board, self._clock, self._report = board, clock, report
+        self._token = secrets.token_hex(16)
+        self._boards: dict[str, ModuleBoard] = {}
+        self._runners: dict[str, ProcessRunner] = {}
+        self._endpoint = f"tcp/127.0.0.1:{_free_port()}"
+        self._session = _open(listen=[self._endpoint])
+        self._calls = self._session.declare_queryable(f"deixis/{self._token}/call/*", self._answer)
+        self._positions = self._session.declare_subscriber(f"deixis/{self._token}/position/*", self._moved)
+        self._subscriptions: list[Subscription] = []
+
+    def start(self, spec: ModuleSpec, module: Module) -> ProcessRunner:
+        """Start a module in a process.
+
+        Parameters
+        ----------
+        spec
+            The module by the name of its class.
+        module
+            The same module, made here, which says what it declares.
+
+        Returns
+        -------
+        ProcessRunner
+            The running process.
+        """
+        own = self._boards[module.name] = ModuleBoard(self._board, module, self._clock)
+        notices = self._session.declare_publisher(f"deixis/{self._token}/log/{module.name}")
+
+        def publish(change: Logged) -> None:
+            data = logged_bytes(change) if own.concerns(change) else b""  # empty: the module does not read it
+            notices.put(b"%d " % change.sequence + data)
+
+        self._subscriptions.append(self._board.attend(module.name, lambda change: True, publish))
+        where = {"endpoint": self._endpoint, "token": self._token, "factory": spec.factory, "settings": spec.settings}
+        runner = self._runners[module.name] = ProcessRunner(module.name, where, self._board.sequence, self._report)
+        return runner
+
+    def close(self) -> None:
+        """End the publication of changes and close the connection."""
+        for subscription in self._subscriptions:
+            self._board.unsubscribe(subscription.name)
+        self._session.close()
+
+    def _moved(self, sample: Any) -> None:
+        runner = self._runners.get(str(sample.key_expr).rpartition("/")[2])
+        if runner is not None:
+            runner.move(int(bytes(sample.payload)))
+
+    def _answer(self, query: Any) -> None:
+        name = str(query.key_expr).rpartition("/")[2]
+        try:
+            answer = {"answer": self._called(self._boards[name], json.loads(bytes(query.payload)))}
+        except Exception as error:  # whatever a call raises goes to the caller
+            answer = {"error": type(error).__name__, "message": str(error)}
+        query.reply(query.key_expr, json.dumps(answer).encode())
+
+    def _called(self, board: ModuleBoard, call: dict[str, Any]) -> Any:
+        match call["method"]:
+            case "write":
+                return board.write(*map(_change, call["changes"]))
+            case "holding":
+                found = board.holding(Pattern(*call["pattern"]), call["start"], call["end"])
+                return [encode_fluent(each).decode() for each in found]
+            case "now":
+                return [encode_fluent(each).decode() for each in board.now(Pattern(*call["pattern"]))]
+            case "new_id":
+                return board.new_id(call["prefix"])
+            case "origin":
+                return [self._board.origin.isoformat(), self._board.sequence]
+            case "log":
+                return self._log(board, call["since"])
+            case other:
+                raise ValueError(f"there is no method '{other}'")
+
+    def _log(self, board: ModuleBoard, since: int) -> dict[str, Any]:
+        """Return a page of the log: the entries that the module reads, and the position after them."""
+        last = min(self._board.sequence, since + PAGE)
+        entries = []
+        for change in self._board.changes(since):
+            if change.sequence > last:
+                break
+            if board.concerns(change):
+                entries.append([change.sequence, logged_bytes(change).decode()])
+        return {"entries": entries, "last": last}
+
+
+class ProcessRunner(Runner):
+    """A module in a process, which is started again if it dies."""
+
+    def __init__(self, name: str, where: dict[str, Any], position: int, report: Callable[[str], None]) -> None:
+        self._name, self._where, self._report = name, where, report
+        self._position = position
+        self._moving = threading.Condition()
+        self._stopped = threading.Event()
+        self._ready = threading.Event()
+        self._process = self._begin()
+        self._watch = threading.Thread(target=self._watching, name=f"process {name}", daemon=True)
+        self._watch.start()
+        self._ready.wait(CALL_TIMEOUT)
+
+    @property
+    def pid(self) -> int:
+        """Number of the process."""
+        return self._process.pid
+
+    def position(self) -> int:
+        """Return the position in the log."""
+        return self._position
+
+    def move(self, position: int) -> None:
+        """Note how far the module has come.
+
+        Parameters
+        ----------
+        position
+            Sequence number up to which it has handled the log.
+        """
+        with self._moving:
+            self._position = max(self._position, position)
+            self._moving.notify_all()
+
+    def wait(self, sequence: int, timeout: float) -> bool:
+        """Wait until the module has handled the log up to a sequence number."""
+        with self._moving:
+            return self._moving.wait_for(lambda: self._position >= sequence, timeout)
+
+    def stop(self) -> None:
+        """End the process, and kill it if it does not end within two seconds."""
+        self._stopped.set()
+        process = self._process
+        if process.stdin is not None:
+            process.stdin.close()  # the process ends at the end of its input
+        try:
+            process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        self._watch.join(2.0)
+
+    def _begin(self) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, "-c", "from deixis.robot.processes import main; main()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        )
+        assert process.stdin is not None
+        process.stdin.write(json.dumps({**self._where, "since": self._position}) + "\n")
+        process.stdin.flush()
+        return process
+
+    def _watching(self) -> None:
+        pause = 0.2
+        while True:
+            assert self._process.stdout is not None
+            for line in self._process.stdout:
+                if line.rstrip("\n") == "ready":
+                    self._ready.set()
+                else:
+                    self._report(line.rstrip("\n"))
+            code = self._process.wait()
+            self._process.stdout.close()
+            if self._process.stdin is not None:
+                with contextlib.suppress(OSError):
+                    self._process.stdin.close()
+            if self._stopped.is_set():
+                return
+            self._report(f"the process of the module '{self._name}' ended with {code} and is started again")
+            if self._stopped.wait(pause):
+                return
+            pause = min(2 * pause, 10.0)
+            self._process = self._begin()
+
+
+class RemoteBoard(Board):
+    """The module's side: calls the owner of the blackboard."""
+
+    def __init__(self, session: Any, token: str, name: str) -> None:
+        self._session, self._key = session, f"deixis/{token}/call/{name}"
+        self._clock: Clock | None = None
+
+    def write(self, *changes: Change) -> int:
+        """Write changes as one: all of them or, if one is refused, nothing."""
+        return int(self._call(method="write", changes=[_to_json(change) for change in changes]))
+
+    def holding(
+        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what may have held in a window of time, as far as the module declares to read it."""
+        found = self._call(method="holding", pattern=_parts(pattern), start=start, end=end)
+        return tuple(decode_fluent(each.encode()) for each in found)
+
+    def now(self, pattern: Pattern = ANYTHING) -> tuple[EpisodicFluent, ...]:
+        """Return the fluents that have not finished, as far as the module declares to read them."""
+        found = self._call(method="now", pattern=_parts(pattern))
+        return tuple(decode_fluent(each.encode()) for each in found)
+
+    def new_id(self, prefix: str) -> str:
+        """Return an id that this memory has never given before."""
+        return str(self._call(method="new_id", prefix=prefix))
+
+    def seconds(self) -> float:
+        """Return the present time, which never goes back."""
+        if self._clock is None:
+            origin, _ = self._call(method="origin")
+            self._clock = Clock(datetime.fromisoformat(origin), _say)
+        return self._clock.seconds()
+
+    def log(self, since: int) -> tuple[list[Logged], int]:
+        """Return a page of the log.
+
+        Parameters
+        ----------
+        since
+            Sequence number after which it begins.
+
+        Returns
+        -------
+        tuple
+            The entries that the module reads, and the sequence number up to which the page goes.
+        """
+        page = self._call(method="log", since=since)
+        return [decode_logged(number, data.encode()) for number, data in page["entries"]], int(page["last"])
+
+    def _call(self, **call: Any) -> Any:
+        for reply in self._session.get(self._key, payload=json.dumps(call).encode(), timeout=CALL_TIMEOUT):
+            if reply.ok is not None:
+                answer = json.loads(bytes(reply.ok.payload))
+                if "error" in answer:
+                    raise _error(answer["error"], answer["message"])
+                return answer["answer"]
+        raise MemoryWriteError("the owner of the blackboard did not answer; is it running?")
+
+
+class _Feed:
+    """The log as a module process sees it: from notices where they follow on, otherwise by calls."""
+
+    def __init__(self, board: RemoteBoard, since: int) -> None:
+        self._board = board
+        self._noticed: dict[int, bytes] = {}
+        self._lock = threading.Lock()
+        self.last = since
+        self.wake: Callable[[], None] = lambda: None
+
+    def notice(self, sample: Any) -> None:
+        """Keep a notice."""
+        number, _, data = bytes(sample.payload).partition(b" ")
+        with self._lock:
+            if len(self._noticed) < 10 * PAGE:  # a slow module reads the rest from the log
+                self._noticed[int(number)] = data
+            self.last = max(self.last, int(number))
+        self.wake()
+
+    def read(self, since: int) -> Iterator[Logged]:
+        """Yield the changes after a position that concern the module."""
+        with self._lock:
+            self._noticed = {number: kept for number, kept in self._noticed.items() if number > since}
+        while since < self.last:
+            with self._lock:
+                data = self._noticed.get(since + 1)
+            if data is None:
+                entries, since = self._board.log(since)
+                yield from entries
+            else:
+                since += 1
+                if data:
+                    yield decode_logged(since, data)
+
+
+def main() -> None:
+    """Run one module in this process until its standard input ends; the first line of the input says which."""
+    where = json.loads(sys.stdin.readline())
+    module = ModuleSpec(where["factory"], where["settings"]).module()
+    session, token = _open(connect=[where["endpoint"]]), where["token"]
+    board = RemoteBoard(session, token, module.name)
+    _wait_for_owner(board)
+    positions = session.declare_publisher(f"deixis/{token}/position/{module.name}")
+    feed = _Feed(board, where["since"])
+    subscription = Subscription(
+        module.name,
+        lambda change: True,  # the owner leaves out what does not concern the module
+        lambda change: module.changed(change, board),
+        where["since"],
+        feed.read,
+        lambda: feed.last,
+        _say,
+        lambda position: positions.put(b"%d" % position),
+    )
+    feed.wake = subscription.notify
+    notices = session.declare_subscriber(f"deixis/{token}/log/{module.name}", feed.notice)
+    feed.last = max(feed.last, board._call(method="origin")[1])
+    subscription.begin()
+    subscription.notify()
+    stopped = threading.Event()
+    threading.Thread(target=run_until_stopped, args=(module, board, stopped, _say), daemon=True).start()
+    _say("ready")
+    sys.stdin.read()
+    stopped.set()
+    subscription.cancel()
+    notices.undeclare()
+    session.close()
+    os._exit(0)  # a module that hangs must not keep the process
+
+
+def _wait_for_owner(board: RemoteBoard) -> None:
+    """Call the owner until it answers: the connection takes a moment."""
+    end = time.monotonic() + CALL_TIMEOUT
+    while True:
+        try:
+            board.seconds()
+            return
+        except MemoryWriteError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.02)
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)
+
+
+def _open(listen: list[str] | None = None, connect: list[str] | None = None) -> Any:
+    extras.require("zenoh", "running modules as processes")
+    import zenoh
+
+    settings = {
+        "mode": "peer",
+        "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}},
+        "listen": {"endpoints": listen or []},
+        "connect": {"endpoints": connect or []},
+    }
+    return zenoh.open(zenoh.Config.from_json5(json.dumps(settings)))
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def _parts(pattern: Pattern) -> list[str | None]:
+    return [pattern.subject, pattern.predicate, pattern.object]
+
+
+def _to_json(change: Change) -> list[Any]:
+    match change:
+        case Add():
+            return ["add", encode_fluent(change.fluent).decode()]
+        case Finish():
+            return ["finish", change.id, _ends(change.at)]
+        case Delete():
+            return ["delete", change.id]
+        case Update():
+            said, source = change.statement, change.source
+            return [
+                "update",
+                change.id,
+                None if said is None else [said.subject, said.predicate, said.object],
+                None if change.start is None else _ends(change.start),
+                None if change.finish is None else _ends(change.finish),
+                change.certainty,
+                None if source is None else [source.origin.value, source.by, source.event],
+            ]
+
+
+def _change(data: list[Any]) -> Change:
+    match data:
+        case ["add", fluent]:
+            return Add(decode_fluent(fluent.encode()))
+        case ["finish", id, ends]:
+            return Finish(id, Bounds(*ends))
+        case ["delete", id]:
+            return Delete(id)
+        case ["update", id, said, start, finish, certainty, source]:
+            return Update(
+                id,
+                None if said is None else Statement(*said),
+                None if start is None else Bounds(*start),
+                None if finish is None else Bounds(*finish),
+                certainty,
+                None if source is None else Source(Origin(source[0]), *source[1:]),
+            )
+    raise ValueError("a change of an unknown kind")
+
+
+def _ends(time: float | Bounds) -> list[Any]:
+    bounds = at(time)
+    return [bounds.lower, bounds.upper, bounds.lower_open, bounds.upper_open]
+
+
+def _error(name: str, message: str) -> DeixisError:
+    """Return an error of the owner as one of the same class, or as a DeixisError for a class that is not known."""
+    kind = AccessError if name == AccessError.__name__ else getattr(memory_errors, name, DeixisError)
+    known = isinstance(kind, type) and issubclass(kind, DeixisError)
+    return kind(message) if known else DeixisError(f"{name}: {message}")

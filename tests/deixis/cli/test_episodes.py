@@ -1,0 +1,75 @@
+"""The commands ``deixis episodes …``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from commands import deixis
+
+
+@pytest.fixture
+def memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Folder of a memory with two statements on its blackboard."""
+    monkeypatch.setenv("DEIXIS_MEMORY", str(tmp_path / "m"))
+    assert deixis("episodes", "add", "t1", "on", "table", "--start", "1")[0] == 0
+    assert deixis("episodes", "add", "t1", "isA", "fork", "--start", "2", "--by", "anna", "--origin", "shown")[0] == 0
+    return tmp_path
+
+
+def test_statements_are_finished_updated_and_deleted(memory: Path) -> None:
+    assert deixis("episodes", "finish", "f1", "--at", "5")[1] == "1 fluents finished.\n"
+    updated = deixis("episodes", "update", "--pattern", "*", "isA", "*", "--certainty", "0.5")
+    assert updated[1] == "1 fluents were updated.\n"
+    assert deixis("episodes", "list", "--window", "3", "4")[1].splitlines() == [
+        "f1: on(t1, table) from [1, 1] to [5, 5], certainty 1, said by user",
+        "f2: isA(t1, fork) from [2, 2] to (-∞, ∞), certainty 0.5, shown by anna",
+    ]
+    assert len(deixis("episodes", "list", "--now")[1].splitlines()) == 1
+    assert deixis("episodes", "delete", "--window", "0", "9")[1] == "2 fluents were deleted.\n"
+    assert deixis("episodes", "list")[1] == "Nothing is known to hold.\n"
+    assert len(deixis("episodes", "changes", "--since", "2")[1].splitlines()) == 4
+
+
+def test_exported_file_is_read_by_time_and_imported_again(memory: Path) -> None:
+    file = memory / "x.fluents.json"
+    assert deixis("episodes", "export", "-o", str(file))[0] == 0
+    assert "on(t1, table)" in deixis("time", str(file))[1]
+    other = str(memory / "other")
+    code, out, _ = deixis("episodes", "import", str(file), "--name", "lunch", "--memory", other)
+    assert (code, out) == (0, "2 fluents were added.\n")
+    assert len(deixis("episodes", "list", "--experience", "lunch", "--memory", other)[1].splitlines()) == 2
+
+
+def test_contradiction_in_space_is_the_answer_no(memory: Path) -> None:
+    assert deixis("episodes", "check")[0] == 0
+    for pair in (("t1", "left", "t2"), ("t2", "left", "t1")):
+        deixis("episodes", "add", *pair, "--start", "3")
+    code, out, _ = deixis("episodes", "check")
+    assert code == 1
+    assert "cannot be both left of and right of" in out
+
+
+def test_experience_is_recorded_and_shown_by_its_memory(memory: Path) -> None:
+    deixis("episodes", "record", "lunch", "--at", "0")
+    deixis("episodes", "record", "lunch", "--stop", "--at", "9")
+    assert deixis("episodes", "memory", "episodic")[1] == "lunch: from 0 to 9 s\n"
+    assert deixis("episodes", "memory", "procedural")[1] == "The procedural memory is empty.\n"
+    assert deixis("episodes", "classes", "--used")[1] == "Fork < Cutlery, Tableware, Thing: t1\n"
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (("add", "t1"), "at most one object, got 1 words"),
+        (("add", "t1", "at", "--start", "1"), "box of a thing"),
+        (("add", "t1", "on", "t2", "--start", "5", "--finish", "4"), "must start before it finishes"),
+        (("finish",), "by their ids, or else by --pattern"),
+        (("delete", "f9"), "no fluent 'f9'"),
+        (("record", "lunch", "--stop"), "no experience 'lunch'"),
+    ],
+)
+def test_bad_input_is_explained(memory: Path, command: tuple[str, ...], message: str) -> None:
+    code, _, error = deixis("episodes", *command)
+    assert code == 2
+    assert message in error
