@@ -380,6 +380,16 @@ class Assembly:
             return False
         waiting: list[NounPhrase] = []
         for member in phrase.members:
+            beside = any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
+            if beside and waiting:  # 'a toaster, a kettle next to it'
+                thing = replace(waiting[-1], determiner="the", count=None)
+                made = tuple(
+                    replace(p, arguments=tuple(thing if a.pronoun == "it" else a for a in p.arguments))
+                    for p in member.predicates
+                )
+                for one in waiting:
+                    self._append(Clause(one, (), one.span, mood, existential=True, step=self.raw.step), link)
+                member, waiting = replace(member, predicates=made), []
             waiting.append(replace(member, predicates=()))
             if not member.predicates:
                 continue
@@ -395,6 +405,10 @@ class Assembly:
         """Take in a list after a colon: *from left to right: a cup, a jug*, *in front of it, a row: a cup, a jug*."""
         if self.front:
             said, self.front = (*self.front, *more), ()
+            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            return True
+        if self.fragments and [p.relation for p in self.fragments[-1].predicates] == ["row"]:
+            said = (*self.fragments.pop().predicates, *more)  # 'shelf, left to right: …'
             self._append(Clause(phrase, said, span, step=self.raw.step), ":")
             return True
         if self.fragments and self.fragments[-1].head in ("row", "line", "circle", "list", "stack"):

@@ -465,7 +465,9 @@ class Builder(Transformer[Any, Built]):
         if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
-        if noun.phrase.head in NOT_PLACES and noun.phrase.determiner in (None, "a") and not noun.phrase.adjectives:
+        manner = relation == "by" and noun.phrase.head in _MANNERS
+        plain = noun.phrase.determiner in (None, "a") and not noun.phrase.adjectives
+        if plain and (noun.phrase.head in NOT_PLACES or manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
@@ -1166,6 +1168,8 @@ _STAYING = word_set(
     " lean prop nestle perch find see go come wait live stop linger belong be"
 )
 """Verbs after which *by* means *near*."""
+_MANNERS = word_set("colour color size hand name age height type kind length weight shape date number order brand")
+"""Nouns after which *by* says how and not where: *sorted by colour*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _TELLING = word_set(
     "mention describe list show note picture record state name quote illustrate explain depict photograph"

@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any
 
 from deixis.grammar.english.known_nouns import KnownNouns
+from deixis.grammar.english.nouns import PEOPLE, last_word
 from deixis.grammar.english.phrases import NounChunker, is_known
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
@@ -249,6 +250,9 @@ class Chunker:
             return Chunk("ADVERB", at, end, norm)
         if self.nouns.number(at) is not None and self.norms[at + 1] in _LAYERS and self._previous() in ("PART", "ADV"):
             return Chunk("ADVERB", at, at + 2, "layers")  # 'stacked two high'
+        ends = self.norms[at + 1] in prepositions() or self.norms[at + 1] in ("", ",", ".", "and")
+        if norm in ("later", "earlier") and ends and self._previous() in FINITE | {"PART", "TPART", "NP"}:
+            return Chunk("ADVERB", at, at + 1, norm)
         if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
             return Chunk("ADVERB", at, at + 2, "in first")
         if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
@@ -844,7 +848,7 @@ class Chunker:
                     i += self.norms[i + 1] == "to"
             elif norm in ("do", "does", "did") and self._auxiliary(i):
                 past = past or norm == "did"
-            elif (norm == "no" and self.norms[i + 1] == "longer") or (
+            elif (norm == "no" and self.norms[i + 1] in ("longer", "more") and i > first) or (
                 tuple(self.norms[i : i + 3]) in (("by", "no", "means"), ("in", "no", "way")) and i > first
             ):
                 positive, i = False, i + (1 if norm == "no" else 2)
@@ -1013,7 +1017,10 @@ class Chunker:
             subject = self.chunks[-1].value
             if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
                 return self._finite(at, end, found)  # 'I hung the mirror on the pole'
-        owned = self.norms[end] in ("it", "them", "him", "us") and form.form == "past" and self._previous() == "NP"
+        subject = self.chunks[-1].value if self._previous() == "NP" else None
+        person = subject is not None and last_word(subject.head) in PEOPLE and self.nouns.is_determiner(end)
+        handled = person or self.norms[end] in ("it", "them", "him", "us")
+        owned = handled and form.form == "past" and subject is not None
         if owned or (
             form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
         ):
@@ -1021,6 +1028,14 @@ class Chunker:
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
+            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS
+            if (
+                self._previous() in ("", "COMMA")
+                and form.form == "past"
+                and named
+                and not self.nouns.is_determiner(end)
+            ):
+                return None  # 'finished pieces are on it'
             if not self._previous() and form.form == "past" and is_adjective(norm) and self.nouns.is_noun(end):
                 return None  # 'used tea bags'
             if norm in ("lay", "put", "set") and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT"):
@@ -1132,6 +1147,8 @@ class Chunker:
 
     def _takes_object(self, kind: str, at: int) -> bool:
         if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:
+            return False
+        if self.norms[at] in ("later", "earlier") and self.norms[at + 1] in prepositions():
             return False
         if self._relator(at) is not None or self._measure(at) is not None:
             return False
@@ -1266,6 +1283,9 @@ class Chunker:
             and (self.norms[at + 1] in prepositions() and self.norms[at + 1] not in ("of", "to"))
         ):
             return Chunk("ADVERB", at, at + 1, "back")
+        if self.norms[at + 1] in ("quarters", "quarter", "thirds", "third") and self.norms[at + 2] in _HALF_STATES:
+            span = self.words[at].start, self.words[at + 2].end
+            return Chunk("ADJP", at, at + 3, (Adjective(f"partly {self.norms[at + 2]}", "state", Degree.PLAIN, span),))
         if self.norms[at] == "half" and self.norms[at + 1] in _HALF_STATES | ADVERBS:
             span = self.words[at].start, self.words[at + 1].end
             return Chunk("ADJP", at, at + 2, (Adjective(f"half {self.norms[at + 1]}", "state", Degree.PLAIN, span),))

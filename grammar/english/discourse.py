@@ -59,6 +59,7 @@ UNREAL = re.compile(
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
     r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
     r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
+    r"|\b(?:i|we|you|he|she|they)\s+(?:was|were|are|am|is)\s+(?:asked|told|supposed|reminded|instructed|ordered)\s+to\b"
     r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
     r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b",
     re.IGNORECASE,
@@ -264,6 +265,10 @@ class Discourse:
             if predicate.relation == "row":
                 self.order = predicate.part or self.order
         listed = phrase.members or (phrase,)
+        label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
+        if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
+            self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            return
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
         if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
@@ -282,6 +287,8 @@ class Discourse:
                 self._one_each(subject, part)
                 continue
             subject = self._introduce(replace(part, predicates=()))
+            if not self.story and PAST_RELATIVE.search(self.text[slice(*part.span)]):
+                self.how = replace(self.how, past=True)
             if subject is not None and part.predicates:
                 self._say(subject, part.predicates, part)
         if phrase.members and phrase.predicates:
@@ -342,6 +349,7 @@ class Discourse:
             or weight == 0.5
             or not RARE.isdisjoint(clause.hedges)
         )
+        uncertain = uncertain or (modal == "must" and clause.past)  # 'it must have lain there'
         none = clause.subject is not None and clause.subject.pronoun == "none"
         self.how = Qualification(
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,

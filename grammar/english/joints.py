@@ -135,7 +135,7 @@ def _cuts(
         return complete or "AND" in kinds
     if following == "NP":
         return _subject_follows(chunks, types, start, at, end, kinds, complete)
-    if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(types, end):
+    if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
         return True
     if following == "PREP" and "AND" in kinds and types[end : end + 3] == ["PREP", "NP", "NP"]:
         beside = chunks[end + 1].value.pronoun in ("it", "they")
@@ -216,7 +216,10 @@ def _list_of_with(types: list[str], start: int, at: int) -> bool:
 
 def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, end: int) -> bool:
     """Return True if the verb is left out: *nappies are kept in the drawer and wipes on the shelf*."""
-    if types[start] != "NP" or not chunks[start].value.head or types[at - 1] != "NP" or not chunks[end].value.head:
+    subject = chunks[start].value if types[start] == "NP" else None
+    if subject is None or not (subject.head or subject.pronoun == "one") or types[at - 1] != "NP":
+        return False
+    if not (chunks[end].value.head or (chunks[end].value.pronoun == "one" and chunks[end].value.adjectives)):
         return False
     while types[end + 1 : end + 3] == ["AND", "NP"]:
         end += 2
@@ -330,12 +333,27 @@ def _inversion_follows(types: list[str], at: int) -> bool:
     return False
 
 
-def _turned_clause_follows(types: list[str], at: int) -> bool:
-    """Return True for a place, a verb and a subject: 'to the right of the plate lay a knife'."""
-    i = at + 2
-    while types[i : i + 2] == ["OF", "NP"] or types[i : i + 3] == ["COMMA", "PREP", "NP"]:
-        i += 2 if types[i] == "OF" else 3
-    return types[at : at + 2] == ["PREP", "NP"] and types[i : i + 1] in (["VERB"], ["BE"]) and "NP" in types[i : i + 3]
+_OF_PLACES = frozenset(
+    {
+        ("PREP", "NP"), ("OF", "NP"), ("COMMA", "PREP"), ("COMMA", "MEASURE"), ("MEASURE", "PREP"), ("COMMA", "PART"),
+        ("PART", "PREP"),
+    }
+)  # fmt: skip
+"""Pairs of chunks in places that follow one another."""
+
+
+def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bool:
+    """Return True for places and then a clause: 'to the right of the plate lay a knife', 'behind it we found a cup'."""
+    i = at
+    while tuple(types[i : i + 2]) in _OF_PLACES:
+        i += 2 if types[i] in ("PREP", "OF") else 1
+    if i == at:
+        return False
+    i += types[i : i + 1] == ["COMMA"]
+    if types[i : i + 1] in (["VERB"], ["BE"]):
+        return "NP" in types[i : i + 3]
+    person = types[i : i + 2] == ["NP", "TVERB"] and chunks[i].value.pronoun in ("me", "you", "we", "they", "someone")
+    return person and types[i + 2 : i + 3] == ["NP"]
 
 
 def _clause_of_with(types: list[str], at: int) -> bool:

@@ -66,7 +66,7 @@ def _closed() -> frozenset[str]:
         (_NEVER_NOUNS | CHAT_WORDS | single | IS_FORMS | NEGATIONS | ADVERBS | HEDGES | MODALS.keys() | DETERMINERS
          | PRONOUNS.keys() | POSSESSIVES.keys())
         - _NOUN_OR_PREPOSITION - {"can", "will", "may", "need", "back", "flat", "well", "down", "over", "in"}
-        | {"in", "over", "down"}
+        - {"till"} | {"in", "over", "down"}
     )  # fmt: skip
 
 
@@ -518,7 +518,7 @@ class NounChunker:
         return (self.norms[at] in SAYING and self.norms[at + 1] in ("it", "they", "he", "she", "there")) or (
             self.norms[at] in REPORTS
             and self.norms[at + 1] == "that"
-            and (self.is_determiner(at + 2) or following in PRONOUNS or following in prepositions())
+            and (self.is_determiner(at + 2) or following in PRONOUNS | prepositions().keys() | {"there"})
         )
 
     def _predicate_follows(self, at: int) -> bool:
@@ -761,7 +761,10 @@ class NounChunker:
             ):
                 i += 1
                 continue
-            if norm.endswith("ly") and norm not in self._adjectives and is_adjective(norms[i + 1]):
+            described = is_adjective(norms[i + 1]) or (
+                determined and norm not in ADVERBS and norm not in HEDGES and self._nounish(i + 1)
+            )  # 'an oily rag'
+            if norm.endswith("ly") and norm not in self._adjectives and described and not self._nouns.knows(norm):
                 i += 1
                 continue
             if norms[i + 1] in (

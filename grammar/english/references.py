@@ -22,9 +22,15 @@ from deixis.grammar.english.nouns import (
 )
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.words import prepositions
+from deixis.ontology.inflection import singulars
 
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
+NAMED = re.compile(
+    r"\b(?:the|a|an|your|my)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])",
+    re.IGNORECASE,
+)
+"""Noun phrase at the end of a clause."""
 MIN_LOST = 12
 """Number of characters from which a phrase that was not understood can name a thing."""
 REGIONS = frozenset(
@@ -262,10 +268,12 @@ class References:
         said = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
         stem = last_word(phrase.head)
         if not stem:
-            return said.strip(" ,;:.")
-        place = said.casefold().find(
-            stem[: max(2, len(stem) - 2)].casefold(), said.casefold().find(phrase.head.split()[0][:2])
-        )
+            one = re.match(r".*?\bones?\b", said, re.IGNORECASE) if phrase.pronoun == "one" else None
+            return (said if one is None else one[0]).strip(" ,;:.")
+        first = max(said.casefold().find(phrase.head.split()[0][:2]), 0)
+        start = re.escape(stem[: max(2, len(stem) - 2)].casefold())
+        whole = re.search(rf"\b{start}", said.casefold()[first:]) or re.search(start, said.casefold()[first:])
+        place = first + whole.start() if whole is not None else -1
         if place < 0:
             return said.strip(" ,;:.")
         end = next((i for i in range(place, len(said)) if said[i] in " ,;:."), len(said))
@@ -460,9 +468,11 @@ class References:
             return (self.member(group, phrase) or next(group.leaves())) if group.members else group
         if word in ("it", "they") and self._is_lost(phrase):
             return None
+        if word == "they" and (left_out := self._left_out(phrase)) is not None:
+            return left_out
         if word in ("they", "both", "all", "each", "these", "those"):
             return self._plural(relation, besides, word == "both")
-        if word in ("it", "itself") and (left_out := self._left_out(phrase)) is not None:
+        if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
             return left_out
         if word in ("it", "this", "that", "itself"):
             chosen = self._singular(relation, besides)
@@ -483,9 +493,7 @@ class References:
 
     def _is_lost(self, phrase: NounPhrase) -> bool:
         """Return True for a pronoun after a clause of its sentence that was not understood, which it may go back to."""
-        if any(focus.sentence == self.sentence for focus in self.recent) or (
-            phrase.pronoun == "it" and self._left_out(phrase) is not None
-        ):
+        if any(focus.sentence == self.sentence for focus in self.recent) or (self._left_out(phrase) is not None):
             return False
         return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
 
@@ -494,24 +502,29 @@ class References:
         if any(focus.sentence == self.sentence for focus in self.recent):
             return None
         before = self.text[self.start : phrase.span[0]]
-        nouns = re.findall(
-            r"\b(?:the|a|an|your|my)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;])",
-            before,
-            re.IGNORECASE,
-        )
-        if (
-            not nouns
-            or len(nouns[-1].split()) > 3
-            or not prepositions().keys().isdisjoint(nouns[-1].casefold().split())
-        ):
+        named = list(NAMED.finditer(before))
+        words = named[-1][1].casefold().split() if named else []
+        if not words or len(words) > 3 or not prepositions().keys().isdisjoint(words):
             return None
-        return self.find(NounPhrase(phrase.span, head=nouns[-1].casefold(), determiner="the"))
+        one = singulars(words[-1])[0]
+        if (phrase.pronoun == "they") is not (one != words[-1]):
+            return None
+        span = (self.start + named[-1].start(1), self.start + named[-1].end(1))
+        head = " ".join([*words[:-1], one])
+        return self.find(NounPhrase(span, head=head, determiner="the", plural=one != words[-1]))
 
     def _ellipsis(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
         two = phrase.count == 2 and phrase.determiner in ("the", "these", "those") and not phrase.adjectives
         if two and phrase.of is None and (pair := self._plural(None, besides)) is not None and pair.size == 2:
             return pair  # 'behind the two'
         group = self.find(phrase.of, None, besides) if phrase.of is not None else None
+        if (
+            phrase.of is None
+            and phrase.pronoun == "one"
+            and phrase.determiner in ("this", "that")
+            and not phrase.adjectives
+        ):
+            return self._singular(relation, besides)  # 'behind that one'
         if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
             contrasted = self._contrasted(phrase)
             if contrasted is not None:
@@ -525,6 +538,7 @@ class References:
                 group = self.last_group(besides)
                 if group is None or not _same_noun(group.noun, noun):
                     entity = Entity(noun, born=self.sentence)
+                    entity.plural = phrase.plural
                     entity.adjectives = {("colour", c) for c in colours}
                     self.entities.append(entity)
                     return self._seen(entity, phrase)
@@ -539,6 +553,11 @@ class References:
             like = [e for e in self._known() if e.noun == besides.noun and not e.members and e is not besides.itself]
             if like and besides.itself.group is None:
                 return self._seen(like[0], phrase)  # 'the second panel opposite the first one'
+        some = (
+            group is not None and not group.members and phrase.of is not None and 1 < (phrase.count or 0) <= MAX_COUNTED
+        )
+        if some and phrase.of is not None and phrase.of.head and phrase.of.plural:
+            return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
         group = group or self.last_group(besides)
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
         if further and group is not None and group.noun and phrase.of is None:

@@ -34,8 +34,8 @@ def rewritten(chunks: list[Chunk]) -> list[Chunk]:
         _without_vocatives, _without_times, _without_beneficiaries, _without_bare_superlatives, _without_free_places,
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
         _without_searches, _without_infinitives, _without_counts_apart, _with_relative_places,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
-        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps,
+        _with_measures_denied, _with_destinations, _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns,
+        _with_telegraphic_places, _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -388,16 +388,46 @@ def _is_described_place(phrase: NounPhrase) -> bool:
     return bool(phrase.adjectives) or phrase.head in _MIDDLES
 
 
+def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *never more than 10 cm from it* as an upper bound, and *you keep it there* as a statement."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        if chunk.type == "NOT" and following is not None and following.type == "MEASURE" and following.value[2]:
+            metres, hedge, bound = following.value
+            following.value = (metres, hedge, "<" if bound == ">" else ">")
+            continue
+        told = chunk.type == "PUT" and _type(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
+        if told and _type(chunks, i + 1) == "NP" and _type(chunks, i - 2) == "NP":
+            chunk = Chunk("TVERB", chunk.start, chunk.end, chunk.value, chunk.span)
+        found.append(chunk)
+    return found
+
+
+def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *she moved the pen to the drawer* as *in the drawer*."""
+    for i, chunk in enumerate(chunks[:-3]):
+        moved = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
+        if moved and chunks[i + 2].type == "PREP" and chunks[i + 2].value.preposition.phrase == "to":
+            noun = last_word(chunks[i + 3].value.head) if chunks[i + 3].type == "NP" else ""
+            relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+            chunks[i + 2].value = Relator(Preposition("to", relation))
+    return chunks
+
+
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
     """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
-        if chunk.type != "COMMA" or [_type(chunks, i + k) for k in (-2, -1, 1)] != ["PREP", "NP", "NP"]:
+        beside = [_type(chunks, i + k) for k in (-1, 1)] == ["NP", "NP"] and _type(chunks, i - 2) in ("PREP", "OF")
+        if chunk.type != "COMMA" or not beside:
             continue
         part = chunks[i + 1].value
         told = _type(chunks, i + 2) in ("PART", "ADJP") and _type(chunks, i + 3) in _ENDS
         verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
         other = not part.head and (part.pronoun == "one" or part.count is not None) and _type(chunks, i + 2) == "PART"
-        if verbless and other:
+        hangs = [_type(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and _type(chunks, i + 5) in _ENDS
+        hangs = hangs and part.determiner is None and chunks[i + 4].value.pronoun == "it"
+        if verbless and (other or hangs):
             chunks[i] = Chunk("CUT", chunk.start, chunk.end, None, chunk.span)  # 'four chairs around it, one fallen'
         if told and verbless and part.determiner is None and part.owner is None and not part.adjectives:
             chunks[i] = Chunk("CUT", chunk.start, chunk.end, None, chunk.span)
@@ -446,6 +476,7 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+_MOVING = frozenset({"move", "shift", "transfer", "relocate", "return"})
 _MIDDLES = frozenset({"centre", "center", "middle"})
 _ENDEARMENTS = word_set(
     "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"

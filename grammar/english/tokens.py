@@ -12,9 +12,11 @@ from deixis.grammar.english.words import (
     DIRECTION_WORDS,
     IS_FORMS,
     ORDINALS,
+    PRONOUNS,
     TYPOS,
     adjectives,
     degree_of,
+    prepositions,
     verb_forms,
     word_set,
 )
@@ -35,6 +37,7 @@ _CODES = re.compile(
     r"|(?<=\w)\s\d+\s?[\u2013-]\s?\d+(?=[\s,;.])(?!\s*(?:cm|mm|m|inch|feet|ft)\b)"
 )
 """Codes of things, which say nothing of places: *(inv. 112)*, *samples 1\u20136*."""
+_IN_BRACKETS = re.compile(r"\(([^()\n]{3,60})\)")
 _ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
 _RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
@@ -224,6 +227,12 @@ def _deny_contrasts(words: list[Word]) -> None:
             words[i].norm, words[i + 1].norm = ",", "not"
 
 
+def _says_no_place(words: str) -> bool:
+    """Return True for a list of properties in brackets: *(chrome, lead frayed)*."""
+    said = words.casefold().replace(",", " ").split()
+    return "," in words and (prepositions().keys() | PRONOUNS.keys() | IS_FORMS).isdisjoint(said)
+
+
 def words_of(text: str, span: Span) -> list[Word]:
     """Return the words and the punctuation marks of a sentence.
 
@@ -247,6 +256,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     """
     found: list[Word] = []
     struck = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
+    struck += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()

@@ -141,6 +141,8 @@ IDIOMS = tuple(
         "in the long run",
         "in the meantime",
         "in place",
+        "right then",
+        "well now",
         "on end",
         "in any case",
         "in other words",
@@ -429,7 +431,7 @@ APPROXIMATE = word_set("about around roughly approximately approx almost nearly"
 ADVERBS = word_set(
     "directly immediately right just slightly very quite rather really too so exactly precisely straight fairly pretty"
     " somewhat far much well also still already now currently actually again only even both either simply closely"
-    " yesterday today tomorrow tonight later earlier afterwards recently meanwhile"
+    " yesterday today tomorrow tonight afterwards recently meanwhile"
     " halfway midway partway mostly completely fully partially partly"
     " totally barely clearly diagonally vertically horizontally upright flat"
     " neatly carefully gently loosely tightly firmly evenly centrally all up down back out off along there here"
