@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -114,6 +115,8 @@ MAX_COORDINATE = 1e9
 """Maximum absolute value of a coordinate, in metres or pixels."""
 
 UNKNOWN_VIEWPOINT = "unknown"
+PLACED_VIEWER = "viewer"
+"""Viewpoint of a scene that says where its viewer stands."""
 """Viewpoint of a scene whose x axis does not point to the right of any viewer."""
 
 
@@ -231,12 +234,16 @@ class Scene(Answer):
         Result of the detection, if the objects were detected in a cloud; it does not count in comparisons.
     speaker, addressee
         Places (x, y) of those who talk about the scene, *me* and *you*; None if they are unknown.
+    viewer
+        Place (x, y) of the viewer, who looks at the middle of the scene; None if y points away from the viewer. The
+        viewpoint is then called :data:`PLACED_VIEWER`.
 
     Raises
     ------
     SceneError
-        If two objects share an id, a corner is not finite, a lower corner is above the upper one, a colour or a
-        confidence is out of range, a front has no direction, or 2-D and 3-D boxes are mixed.
+        If the viewer stands in the middle of the scene, two objects share an id, a corner is not finite, a lower corner
+        is above the upper one, a colour or a confidence is out of range, a front has no direction, or 2-D and 3-D boxes
+        are mixed.
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -247,6 +254,7 @@ class Scene(Answer):
     detection: Detected | None = field(default=None, compare=False, repr=False)
     speaker: tuple[float, float] | None = None
     addressee: tuple[float, float] | None = None
+    viewer: tuple[float, float] | None = None
     _relations: dict[tuple[int, float], SceneRelations] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -258,6 +266,11 @@ class Scene(Answer):
                 raise SceneError(f"{self.file}: the id '{thing.id}' is used twice; give each object its own id")
             seen.add(thing.id)
             _require_box(thing, self.file)
+        if self.viewer is not None and self.objects and not any(self._sight):
+            raise SceneError(
+                f"{self.file}: 'viewpoint': the viewer must stand beside the middle of the scene, got"
+                f' [{self.viewer[0]:g}, {self.viewer[1]:g}]; move the viewer or write "unknown"'
+            )
         if len({len(thing.minimum) for thing in self.objects}) > 1:
             raise SceneError(f"{self.file}: some boxes have heights and others do not; give all of them 2 or 3 axes")
 
@@ -448,6 +461,8 @@ class Scene(Answer):
         axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
         labels = f", {labelled} labelled" if labelled else ""
         side = "from an unknown side" if self.viewpoint == UNKNOWN_VIEWPOINT else f"from the {self.viewpoint}"
+        if self.viewer is not None:
+            side = f"from ({self.viewer[0]:g}, {self.viewer[1]:g})"
         return f"{self.file}: {count(len(self.objects), 'object')}{labels}{axes}, seen {side}"
 
     @property
@@ -496,12 +511,78 @@ class Scene(Answer):
         from deixis.reasoning.grounding.reference.query import Person
         from deixis.reasoning.grounding.reference.room import Room
 
+        if self.viewer is not None:
+            return self.from_viewer().room
         known = {Person.SPEAKER: self.speaker, Person.ADDRESSEE: self.addressee}
         places = {person: np.array(place) for person, place in known.items() if place is not None}
         labels = [thing.label for thing in self.objects]
         viewer = self.viewpoint != UNKNOWN_VIEWPOINT
         named = [dict(thing.candidates) for thing in self.objects]
-        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer, places, named)
+        sure = np.array([thing.confidence for thing in self.objects])
+        return Room.of(self.ids, self.boxes, labels, self.colours, self.fronts, viewer, places, named, sure)
+
+    @property
+    def _sight(self) -> tuple[float, float]:
+        """Direction from the viewer to the middle of the scene, not normalised."""
+        low = np.min([thing.minimum[:2] for thing in self.objects], axis=0)
+        high = np.max([thing.maximum[:2] for thing in self.objects], axis=0)
+        x, y = (low + high) / 2 - np.array(self.viewer)
+        return float(x), float(y)
+
+    def from_viewer(self) -> Scene:
+        """Return the scene turned so that y points away from a viewer whose place is known.
+
+        Returns
+        -------
+        Scene
+            The turned scene without a place of the viewer, or the scene itself if no place is known. Boxes are turned
+            as in :func:`deixis.reasoning.geometry.turning.turned`; oriented boxes are left out.
+
+        Examples
+        --------
+        >>> cup, jug = PerceivedObject("cup", (0, 0), (1, 1)), PerceivedObject("jug", (4, 0), (5, 1))
+        >>> Scene((cup, jug), viewer=(9.0, 0.5)).from_viewer()["cup"].minimum
+        (-1.0, 0.0)
+        """
+        if self.viewer is None or not self.objects:
+            return self
+        x, y = self._sight
+        angle = math.pi / 2 - math.atan2(y, x)
+        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        people = {
+            name: None if place is None else tuple((np.array(place) @ turn).tolist())
+            for name, place in (("speaker", self.speaker), ("addressee", self.addressee))
+        }
+        return replace(self.turned(angle), viewer=None, **people)  # type: ignore[arg-type]
+
+    def turned(self, angle: float, mirrored: bool = False) -> Scene:
+        """Return the scene with its boxes and fronts turned about the origin.
+
+        Parameters
+        ----------
+        angle
+            Angle in radians, counterclockwise seen from above.
+        mirrored
+            Mirror the scene left to right before turning it.
+
+        Returns
+        -------
+        Scene
+            The scene without oriented boxes; the places of people stay.
+        """
+        from deixis.reasoning.geometry.turning import turned
+
+        boxes = turned(self.boxes, angle, mirrored)
+        cosine, sine = math.cos(angle), math.sin(angle)
+        fronts = self.fronts * (-1.0 if mirrored else 1.0, 1.0) @ np.array([[cosine, sine], [-sine, cosine]])
+        things = [
+            replace(
+                thing, minimum=tuple(box[0].tolist()), maximum=tuple(box[1].tolist()), oriented=None,
+                front=None if thing.front is None else (float(front[0]), float(front[1])),
+            )
+            for thing, box, front in zip(self.objects, boxes, fronts, strict=True)
+        ]  # fmt: skip
+        return replace(self, objects=tuple(things))
 
     def __getitem__(self, name: str) -> PerceivedObject:
         return next(thing for thing in self.objects if thing.id == name)

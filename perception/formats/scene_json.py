@@ -21,7 +21,7 @@ from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import PLACED_VIEWER, OrientedBox, PerceivedObject, Scene
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
 """Function from parsed JSON, the name of the file and the chosen image (or None) to a scene; raises SceneError."""
@@ -149,13 +149,17 @@ def scene_from_dict(data: Any, file: str, image: str | int | None = None) -> Sce
     unit = text(found.get("unit", "m"), f"{file}: 'unit'")
     if unit not in UNITS:
         raise SceneError(f"{file}: unknown unit '{unit}'; use one of {', '.join(UNITS)}")
+    given = found.get("viewpoint", "chair")
+    viewer = _place(given, f"{file}: 'viewpoint'", UNITS[unit]) if isinstance(given, list | tuple) else None
+    viewpoint = PLACED_VIEWER if viewer is not None else text(given, f"{file}: 'viewpoint'")
     scene = Scene(
         objects=tuple(
             _object(entry, f"{file}: objects[{position}]", UNITS[unit])
             for position, entry in enumerate(found["objects"])
         ),
         frame=text(found.get("frame", "table"), f"{file}: 'frame'"),
-        viewpoint=text(found.get("viewpoint", "chair"), f"{file}: 'viewpoint'"),
+        viewpoint=viewpoint,
+        viewer=viewer,
         unit="px" if unit == "px" else "m",
         file=file,
         speaker=_place(found.get("speaker"), f"{file}: 'speaker'", UNITS[unit]),
@@ -297,7 +301,8 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
         objects.append(entry)
     people = {"speaker": scene.speaker, "addressee": scene.addressee}
     placed = {person: list(place) for person, place in people.items() if place is not None}
-    return {"frame": scene.frame, "viewpoint": scene.viewpoint, "unit": scene.unit, **placed, "objects": objects}
+    viewpoint = scene.viewpoint if scene.viewer is None else list(scene.viewer)
+    return {"frame": scene.frame, "viewpoint": viewpoint, "unit": scene.unit, **placed, "objects": objects}
 
 
 def scene_text(scene: Scene) -> str:

@@ -122,3 +122,18 @@ def test_a_front_without_a_direction_is_refused(front: tuple[float, ...]) -> Non
 
 def test_the_summary_says_that_the_side_is_unknown() -> None:
     assert Scene((FORK,), viewpoint="unknown").summary().endswith("seen from an unknown side")
+
+
+def test_a_placed_viewer_turns_boxes_fronts_and_people() -> None:
+    cup = PerceivedObject("cup", (0.0, 0.0), (1.0, 1.0), front=(1.0, 0.0))
+    scene = Scene((cup, PerceivedObject("jug", (4.0, 0.0), (5.0, 1.0))), viewer=(9.0, 0.5), speaker=(9.0, 0.5))
+    seen = scene.from_viewer()
+    assert seen["cup"].minimum[1] > seen["jug"].minimum[1]  # the jug is nearer
+    np.testing.assert_allclose(seen.fronts[0], (0.0, -1.0), atol=1e-12)
+    np.testing.assert_allclose(seen.speaker, (0.5, -9.0), atol=1e-12)
+    assert seen.viewer is None and scene["cup"] == cup
+
+
+def test_a_viewer_in_the_middle_of_the_scene_is_refused() -> None:
+    with pytest.raises(SceneError, match="beside the middle"):
+        Scene((PerceivedObject("cup", (0.0, 0.0), (1.0, 1.0)),), viewer=(0.5, 0.5))

@@ -43,6 +43,9 @@ class Room:
     candidates
         Possible names of each object with their probabilities, the sum at most 1; only those of objects without a label
         count.
+    confidences
+        Probability that each label is right, shape (n,); empty for labels that are certain. What it leaves over is
+        that of an unknown class.
     """
 
     ids: tuple[str, ...]
@@ -53,6 +56,7 @@ class Room:
     viewer: bool = False
     places: Mapping[Person, Array] = field(default_factory=dict)
     candidates: tuple[Mapping[str, float], ...] = ()
+    confidences: Array = field(default_factory=lambda: np.zeros(0))
 
     @classmethod
     def of(
@@ -65,6 +69,7 @@ class Room:
         viewer: bool = False,
         places: Mapping[Person, Array] | None = None,
         candidates: Sequence[Mapping[str, float]] | None = None,
+        confidences: Array | None = None,
     ) -> Room:
         """Return a room of boxes with 2 or 3 axes, with unknown colours and fronts where none are given.
 
@@ -86,6 +91,8 @@ class Room:
             Places of the speaker and the addressee in the plane, shape (2,) each, where known.
         candidates
             Possible names of each object with their probabilities; only those of objects without a label count.
+        confidences
+            Probability that each label is right, shape (n,); by default all labels are certain.
 
         Returns
         -------
@@ -106,6 +113,7 @@ class Room:
             viewer,
             places or {},
             tuple(candidates or ({},) * n),
+            np.ones(n) if confidences is None else confidences,
         )
 
     def __len__(self) -> int:
@@ -113,14 +121,17 @@ class Room:
 
     @cached_property
     def unlabelled(self) -> NDArray[np.bool_]:
-        """True for objects without a label, shape (n,)."""
-        return np.array([label is None for label in self.labels], dtype=np.bool_)
+        """True for objects without a label that is certain, shape (n,)."""
+        without = np.array([label is None for label in self.labels], dtype=np.bool_)
+        return without | (self.confidences < 1) if len(self.confidences) else without
 
     @cached_property
     def names(self) -> tuple[Mapping[str, float], ...]:
         """Possible names of each object with their probabilities: its label, or else its candidates."""
+        sure = self.confidences.tolist() or [1.0] * len(self)
         return tuple(
-            each if label is None else {label: 1.0} for label, each in zip(self.labels, self.candidates, strict=True)
+            each if label is None else {label: confidence}
+            for label, each, confidence in zip(self.labels, self.candidates, sure, strict=True)
         )
 
     @cached_property

@@ -151,7 +151,7 @@ def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
     across, along = f"to the right as seen from the {scene.viewpoint}", f"away from the {scene.viewpoint}"
     if scene.frame == "image" or (scene.unit == "px" and scene.viewpoint != Scene(()).viewpoint):
         across, along = "to the right", "up"  # the image need not be a plan
-    elif scene.viewpoint == UNKNOWN_VIEWPOINT:
+    elif scene.viewpoint == UNKNOWN_VIEWPOINT or scene.viewer is not None:
         across, along = "along x", "along y"
     unit = "pixels" if scene.unit == "px" else "metres"
     axes.set_xlabel(f"{unit}, {across}", color=INK, fontsize=8.5)

@@ -364,13 +364,14 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
 
     deadline, contradiction = request.due, _contradiction(request)
     notes = viewpoint_notes(request.script.viewpoint, request.scene) + unit_notes(request.script, request.scene)
+    stated = request.scene.from_viewer()
     side = None
     if request.viewpoint != ViewpointName.STATED:
         any_angle = request.viewpoint == ViewpointName.UNKNOWN
         with stage("looking from other sides"):
             side = recover_scene(request.evidence, request.scene, any_angle, deadline.share(0.5))
     if request.ask is not None:
-        seen = request.scene if side is None else side.scene
+        seen = stated if side is None else side.scene
         found = _answer_with_questions(request, request.ask, seen, deadline.left)
         if side is None:
             found = found.noting(notes)
@@ -382,9 +383,9 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
         with stage("grounding"):
             if side is None:
                 engine = engine_named(request.engine, select)
-                found = ground_evidence(request.evidence(request.scene), engine, deadline, contradiction).noting(notes)
+                found = ground_evidence(request.evidence(stated), engine, deadline, contradiction).noting(notes)
                 if request.surface is not None and not found.matches:
-                    known = request.evidence(request.scene, keep_surface_free=False)
+                    known = request.evidence(stated, keep_surface_free=False)
                     found = ground_evidence(known, engine, deadline, contradiction).noting(notes)
             else:
                 found = ground_from_sides(request.evidence, side, request.engine, select, deadline, contradiction)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.perception.scene import Scene
-from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
@@ -200,16 +199,7 @@ def scene_from(scene: Scene, view: Viewpoint) -> Scene:
     Scene
         The turned scene.
     """
-    seen = _with_boxes(scene, turned(scene.boxes, view.angle, view.mirrored))
-    if all(thing.front is None for thing in scene.objects):
-        return seen
-    cosine, sine = np.cos(view.angle), np.sin(view.angle)
-    fronts = scene.fronts * (-1.0 if view.mirrored else 1.0, 1.0) @ np.array([[cosine, sine], [-sine, cosine]])
-    things = [
-        thing if thing.front is None else replace(thing, front=(float(front[0]), float(front[1])))
-        for thing, front in zip(seen.objects, fronts, strict=True)
-    ]
-    return replace(seen, objects=tuple(things))
+    return scene.turned(view.angle, view.mirrored)
 
 
 def _with_boxes(scene: Scene, boxes: NDArray[np.float64]) -> Scene:

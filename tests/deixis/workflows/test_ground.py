@@ -188,3 +188,15 @@ def test_a_scene_in_centimetres_without_its_unit_is_noted() -> None:
     objects = [{"id": name, "min": box[:2], "max": box[2:]} for name, box in boxes.items()]
     assert any('check the "unit"' in note for note in package.ground(script, {"objects": objects}).notes)
     assert not any("unit" in note for note in package.ground(script, {"objects": objects, "unit": "cm"}).notes)
+
+
+@pytest.mark.parametrize(("viewpoint", "cup"), [([0.6, -2], "west"), ([0.6, 2.1], "east")])
+def test_left_is_as_the_placed_viewer_sees_it(viewpoint: list[float], cup: str, tmp_path: Path) -> None:
+    script = tmp_path / "cups.layout"
+    script.write_text("cup left of plate\n", encoding="utf-8")
+    boxes = (("west", 0.0, "cup"), ("plate", 0.5, "plate"), ("east", 1.0, "cup"))
+    objects = [{"id": i, "min": [x, 0, 0], "max": [x + 0.2, 0.2, 0.1], "label": label} for i, x, label in boxes]
+    scene = read_scene({"viewpoint": viewpoint, "objects": objects})
+    found = package.ground(script, scene)
+    assert found.matches["cup"].perceived == cup
+    assert found.scene == scene

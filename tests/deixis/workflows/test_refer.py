@@ -284,3 +284,27 @@ def test_candidates_are_evidence_of_the_class(partly: deixis.Scene) -> None:
     assert (mug.target, glass.target) == ("o12", "o12")
     assert mug.probability > glass.probability > deixis.refer("the glass", partly).probability
     assert fork.target != "o12"
+
+
+def cups(**settings: object) -> deixis.Scene:
+    boxes = {"west": (0.0, "cup"), "plate": (0.5, "plate"), "east": (1.0, "cup")}
+    objects = [
+        {"id": name, "min": [x, 0, 0], "max": [x + 0.2, 0.2, 0.1], "label": label} for name, (x, label) in boxes.items()
+    ]
+    return deixis.read_scene({"objects": objects, **settings})
+
+
+@pytest.mark.parametrize(("viewpoint", "left"), [("chair", "west"), ([0.6, -2], "west"), ([0.6, 2.1], "east")])
+def test_left_is_as_the_placed_viewer_sees_it(viewpoint: object, left: str) -> None:
+    scene = cups(viewpoint=viewpoint)
+    assert deixis.refer("the cup to the left of the plate", scene).target == left
+    assert scene_to_dict(scene)["viewpoint"] == viewpoint
+    assert deixis.read_scene(scene_to_dict(scene)) == scene
+
+
+def test_a_doubtful_label_counts_less_than_a_certain_one() -> None:
+    scene = cups()
+    doubtful = replace(scene, objects=(replace(scene["west"], confidence=0.3), *scene.objects[1:]))
+    assert deixis.refer("the cup", scene).probability == pytest.approx(0.5, abs=0.03)
+    found = deixis.refer("the cup", doubtful)
+    assert found.target == "east" and found.probability > 0.6
