@@ -23,6 +23,7 @@ from typing import NamedTuple
 import pyoxigraph as ox
 
 from deixis.memory import folder as files
+from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState
 from deixis.memory.owner import OwnerLock, ReaderLock
@@ -99,7 +100,18 @@ def verify(memory: Path, progress: Progress | None = None, stale: Stale | None =
             lock.release(undo=True)
     else:
         findings += (_lessonless(view, lesson) for view, lesson in sorted(views.lessons.items()))
-    return Verified(semantic, perceptual, (*findings, *views.findings))
+    return Verified(semantic, perceptual, (*findings, *views.findings, *_verify_episodes(memory)))
+
+
+def _verify_episodes(memory: Path) -> Iterator[Finding]:
+    """Find where the log, the fluents and the index of times of the blackboard disagree, if there is one."""
+    if not has_episodes(memory):
+        return
+    try:
+        with Blackboard.open(memory) as board:
+            yield from (Finding(files.EPISODES, line) for line in board.verify())
+    except DamagedMemoryError as error:
+        yield Finding(files.EPISODES, files.one_line(error))
 
 
 def _lock(memory: Path) -> OwnerLock | ReaderLock:

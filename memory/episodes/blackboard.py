@@ -29,7 +29,7 @@ from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
 from deixis.memory.episodes.guard import Guard, shipped_guard
 from deixis.memory.episodes.intervals import endings_meeting, interval_keys
 from deixis.memory.episodes.keys import Keys, TransientKeys
-from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription, to_pattern
+from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription
 from deixis.memory.errors import EpisodeError
 from deixis.memory.folder import EPISODES, inspect
 from deixis.memory.owner import Closing, ThreadLock
@@ -546,15 +546,19 @@ class Blackboard(Closing):
             if change.concerns(pattern):
                 yield change
 
-    def subscribe(self, name: str, pattern: Pattern, callback: Callback, since: int | None = None) -> Subscription:
-        """Call a function with each change that concerns a pattern, in order, in a thread of its own.
+    def subscribe(
+        self, name: str, what: Pattern | str | Path, callback: Callback, since: int | None = None
+    ) -> Subscription:
+        """Call a function with each change of what it asks for, in order, in a thread of its own.
 
         Parameters
         ----------
         name
             Name of the subscriber, which no other may have.
-        pattern
-            Subject, predicate and object; None matches everything.
+        what
+            A pattern of statements, whose parts None match everything; the id of a fluent; or the path of a Turtle file
+            of SHACL shapes, for the fluents that a shape targets and that conform to the shapes. A change counts if the
+            fluent is one of these before it or after it.
         callback
             Function that is called with each change. If it raises, it is called again with the same change later.
         since
@@ -569,8 +573,25 @@ class Blackboard(Closing):
         ------
         EpisodeError
             If another subscriber has the name.
+        ShapesError
+            If the file of shapes cannot be read.
         """
-        return self.attend(name, to_pattern(pattern), callback, since)
+        if isinstance(what, Pattern):
+            pattern = what
+
+            def concerns(change: Logged) -> bool:
+                return change.concerns(pattern)
+        elif isinstance(what, Path):
+            guard = Guard(what)
+
+            def concerns(change: Logged) -> bool:
+                return any(each is not None and guard.selects(each) for each in (change.before, change.after))
+        else:
+
+            def concerns(change: Logged) -> bool:
+                return change.id == what
+
+        return self.attend(name, concerns, callback, since)
 
     def attend(
         self,
@@ -661,6 +682,34 @@ class Blackboard(Closing):
         self._troubles.append(line)
         if self._report is not None:
             self._report(line)
+
+    def verify(self) -> Iterator[str]:
+        """Yield a line for each place where log, fluents and index of times disagree; damage raises an error.
+
+        Yields
+        ------
+        str
+            A problem.
+        """
+        if isinstance(self._keys, DiskKeys) and self._keys.lost:
+            yield f"{self._keys.lost} acknowledged writes are missing"
+        replayed: dict[str, EpisodicFluent] = {}
+        expected = 1
+        for change in self.changes():
+            if change.sequence != expected:
+                yield f"the changes {expected} to {change.sequence - 1} are missing in the log"
+            expected = change.sequence + 1
+            replayed.pop(change.id, None)
+            if change.after is not None:
+                replayed[change.id] = change.after
+        held = {each.id: each for each in self.holding()}
+        for id in sorted(held.keys() | replayed.keys()):
+            if held.get(id) != replayed.get(id):
+                yield f"the fluent '{id}' differs from the log"
+        with self._lock:
+            indexed = {ending.decode() for ending in endings_meeting(self._keys, -math.inf, math.inf)}
+        for id in sorted(held.keys() ^ indexed):
+            yield f"the index of times and the fluents disagree about '{id}'"
 
     def _begin(self, origin: datetime) -> datetime:
         if origin.tzinfo is None:

@@ -213,5 +213,8 @@ def episodic(
     FluentError
         If the bounds leave no start before a finish.
     """
-    said = statement if isinstance(statement, Statement) else Statement(*statement)
+    if isinstance(statement, Statement):
+        said = statement
+    else:
+        said = Statement(statement[0], statement[1], statement[2] if len(statement) == 3 else None)
     return EpisodicFluent(Fluent(id, said, at(start), at(finish)), certainty, source)

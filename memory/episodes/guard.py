@@ -78,6 +78,35 @@ class Guard:
                     f"nothing was written: it breaks the shapes in {count(len(results), 'place')}", results
                 )
 
+    def selects(self, fluent: EpisodicFluent) -> bool:
+        """Return whether a shape of the file targets a fluent or its statement, and the fluent conforms to the shapes.
+
+        Parameters
+        ----------
+        fluent
+            The fluent.
+
+        Returns
+        -------
+        bool
+            True if both hold.
+
+        Raises
+        ------
+        ShapesError
+            If the shapes have constraints that only pyshacl knows; subscriptions need those that are compiled.
+        """
+        if self._compiled is None or self._compiled.objects_of:
+            raise ShapesError(f"{self._file}: a subscription needs shapes of the constraints that can be compiled")
+        triple = statement_triple(fluent.statement)
+        nodes: tuple[tuple[ox.NamedNode, Values], ...] = (
+            (fluent_iri(fluent.id), fluent_values(fluent)),
+            (thing_iri(fluent.statement.subject), {triple.predicate: [triple.object]}),
+        )
+        views = [(node, cast("FocusData", _Description(node, values))) for node, values in nodes]
+        targeted = any(shape.targets(view, node) for node, view in views for shape in self._compiled.shapes)
+        return targeted and self.accepts(fluent)
+
     def accepts(self, fluent: EpisodicFluent) -> bool:
         """Return whether the compiled checks are certain that a fluent conforms.
 

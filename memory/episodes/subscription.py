@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from enum import Enum
 
 from deixis.memory.episodes.changes import Logged
-from deixis.reasoning.temporal.fluent import Pattern
 
 Callback = Callable[[Logged], object]
 """Function that is called with each change."""
@@ -180,19 +179,3 @@ class Subscription:
             self._ended.wait(pause)
             pause = min(2 * pause, MAX_PAUSE)
         return False
-
-
-def to_pattern(pattern: Pattern) -> Callable[[Logged], bool]:
-    """Return the function that says whether a change concerns subscribers to a pattern.
-
-    Parameters
-    ----------
-    pattern
-        Subject, predicate and object; None matches everything.
-
-    Returns
-    -------
-    function
-        From a change to True or False.
-    """
-    return lambda change: change.concerns(pattern)

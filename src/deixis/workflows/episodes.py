@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
@@ -15,9 +15,10 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.formats.fluents import FluentFile, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
+from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.experiences import CONSOLIDATED, episode, experiences
+from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, episode, experiences
+from deixis.memory.episodes.subscription import Subscription
 from deixis.ontology.facts import Fact
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
@@ -447,3 +448,30 @@ def consolidate(board: Blackboard, session: _Learner, by: str = "consolidation")
         marker = episodic(board.new_id("c"), (each.name, CONSOLIDATED, lesson), start=each.finish, source=source)
         board.write(Add(marker), by=by)
     return Consolidation(lessons, left_out)
+
+
+def consolidate_in_background(
+    board: Blackboard, session: _Learner, done: Callable[[Consolidation], object] = lambda result: None
+) -> Subscription:
+    """Consolidate each experience when its recording finishes, in a thread of its own.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    session
+        The session that learns; its methods must be safe to call from threads.
+    done
+        Called with each result.
+
+    Returns
+    -------
+    Subscription
+        The subscription; cancel it to end the task.
+    """
+
+    def recorded(change: Logged) -> None:
+        if change.after is not None and not change.after.is_open:
+            done(consolidate(board, session))
+
+    return board.subscribe("consolidation", Pattern(predicate=RECORDED), recorded)

@@ -15,6 +15,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Finish
 from deixis.memory.errors import DamagedMemoryError, EpisodeError, MemoryBusyError, MemoryFormatError
 from deixis.memory.semantic.store import SemanticMemory
+from deixis.memory.verify import verify
 from deixis.reasoning.temporal.fluent import Pattern
 
 
@@ -73,6 +74,19 @@ def test_damaged_value_is_reported(tmp_path: Path) -> None:
         board._keys._db.put(b"ff1", b"something else")  # type: ignore[attr-defined]
         with pytest.raises(DamagedMemoryError, match="differs from what was written"):
             board.holding(Pattern("cup"))
+
+
+def test_verify_finds_a_fluent_that_differs_from_the_log(tmp_path: Path) -> None:
+    with Blackboard.open(tmp_path, create=True) as board:
+        board.write(Add(on("f1", 1.0)), Add(on("f2", 1.0)), Finish("f1", 2.0), by="test")
+        assert list(board.verify()) == []
+    assert verify(tmp_path).findings == ()
+    with Blackboard.open(tmp_path) as board:
+        board._keys.write({b"ff1": None})
+    assert [each.what for each in verify(tmp_path).findings] == [
+        "the fluent 'f1' differs from the log",
+        "the index of times and the fluents disagree about 'f1'",
+    ]
 
 
 WRITER = """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from pathlib import Path
 
 import pytest
 from episodic_fluents import SEEN, on
@@ -109,3 +110,25 @@ def test_two_subscribers_cannot_have_one_name() -> None:
             board.subscribe("tracker", Pattern(), print)
         board.unsubscribe("tracker")
         board.subscribe("tracker", Pattern(), print)
+
+
+def test_subscribers_to_a_fluent_and_to_a_shape_get_only_those(tmp_path: Path) -> None:
+    shapes = tmp_path / "shapes.ttl"
+    shapes.write_text(
+        "@prefix sh: <http://www.w3.org/ns/shacl#> .\n@prefix ep: <https://w3id.org/deixis/episodes#> .\n"
+        "<urn:sure> a sh:NodeShape ; sh:targetClass ep:Fluent ; sh:property <urn:half> .\n"
+        "<urn:half> sh:path ep:certainty ; sh:maxExclusive 0.5 .\n"
+    )
+    of_fluent: list[str] = []
+    unsure: list[str] = []
+    with Blackboard.transient() as board:
+        one = board.subscribe("one", "f1", lambda change: of_fluent.append(change.kind))
+        other = board.subscribe("unsure", shapes, lambda change: unsure.append(f"{change.kind} {change.id}"))
+        board.write(Add(on("f1", 0.0)), Add(on("f2", 0.0)), by="test")
+        board.update("f2", by="test", certainty=0.25)
+        board.finish("f1", 3.0, by="test")
+        board.delete("f2", by="test")
+        assert one.wait(board.sequence, 10)
+        assert other.wait(board.sequence, 10)
+    assert of_fluent == ["add", "finish"]
+    assert unsure == ["update f2", "delete f2"]
