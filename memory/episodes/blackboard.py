@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Self
 
 from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
-from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, encode_logged
+from deixis.memory.episodes.codec import decode_fluent, decode_if_matching, decode_logged, encode_fluent, encode_logged
 from deixis.memory.episodes.disk import STORE, DiskKeys
 from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
 from deixis.memory.episodes.guard import Guard, shipped_guard
@@ -36,8 +36,11 @@ from deixis.memory.owner import Closing, ThreadLock
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
-FLUENT, LOG, SUBJECT, COUNTER, HEAD = b"f", b"l", b"s", b"n", b"#"
-"""First bytes of the keys: fluents by id, log entries by sequence number, ids by subject, counters, and the head."""
+FLUENT, LOG, SUBJECT, PREDICATE, COUNTER, HEAD = b"f", b"l", b"s", b"p", b"n", b"#"
+"""First bytes of the keys: fluents by id, log by sequence number, ids by subject and by predicate, counters, head."""
+
+MAX_LOOKED_UP = 500
+"""Number of fluents of one subject or predicate from which on a window is looked up by its times instead."""
 
 _PAGE = 256  # log entries read at once
 
@@ -492,21 +495,13 @@ class Blackboard(Closing):
             raise EpisodeError(f"a window must not end before it starts, got {first:g} to {last:g} s")
         with self._lock:
             self._check_open()
-            endings: Iterator[bytes]
-            if pattern.subject is not None:
-                endings = self._of_subject(pattern.subject)
-            elif math.isinf(first) and math.isinf(last):
-                endings = (key[1:] for key in self._keys.between(FLUENT, _end(FLUENT)))
-            else:
-                endings = endings_meeting(self._keys, first, last)
+            endings = self._endings(pattern, first, last)
             data = [self._keys.get(FLUENT + ending) for ending in endings]
-        fluents = (decode_fluent(each) for each in data if each is not None)
+        fluents = (decode_if_matching(each, pattern) for each in data if each is not None)
         return _in_order(
             found
             for found in fluents
-            if pattern.matches(found.statement)
-            and found.may_hold(first, last)
-            and (not certainly or found.must_hold(first, last))
+            if found is not None and found.may_hold(first, last) and (not certainly or found.must_hold(first, last))
         )
 
     def now(self, pattern: Pattern = ANYTHING) -> tuple[EpisodicFluent, ...]:
@@ -741,10 +736,21 @@ class Blackboard(Closing):
         data = self._keys.get(FLUENT + ending)
         return None if data is None else decode_fluent(data)
 
-    def _of_subject(self, subject: str) -> Iterator[bytes]:
-        first = _subject_key(subject, b"")
-        for key in self._keys.between(first, _end(first)):
-            yield key[len(first) :]
+    def _endings(self, pattern: Pattern, first: float, last: float) -> Iterator[bytes]:
+        """Return the ids of all fluents that may match, by the index that leaves the fewest.
+
+        A word with few fluents is looked up by itself; otherwise a window with an end is looked up by its times.
+        """
+        windowed = not (math.isinf(first) and math.isinf(last))
+        for kind, word in ((SUBJECT, pattern.subject), (PREDICATE, pattern.predicate)):
+            if word is not None:
+                prefix = _word_key(kind, word, b"")
+                found = list(self._keys.between(prefix, _end(prefix), MAX_LOOKED_UP if windowed else None))
+                if not windowed or len(found) < MAX_LOOKED_UP:
+                    return (key[len(prefix) :] for key in found)
+        if windowed:
+            return endings_meeting(self._keys, first, last)
+        return (key[1:] for key in self._keys.between(FLUENT, _end(FLUENT)))
 
     def _read_log(self, since: int) -> Iterator[Logged]:
         while True:
@@ -803,11 +809,12 @@ def has_episodes(memory: Path) -> bool:
 
 def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:
     ends = interval_keys(fluent.start.lower, fluent.finish.upper, ending)
-    return *ends, _subject_key(fluent.statement.subject, ending)
+    said = fluent.statement
+    return *ends, _word_key(SUBJECT, said.subject, ending), _word_key(PREDICATE, said.predicate, ending)
 
 
-def _subject_key(subject: str, ending: bytes) -> bytes:
-    return SUBJECT + subject.encode() + b"\0" + ending
+def _word_key(kind: bytes, word: str, ending: bytes) -> bytes:
+    return kind + word.encode() + b"\0" + ending
 
 
 def _log_key(sequence: int) -> bytes:

@@ -20,6 +20,7 @@ import contextlib
 import os
 import struct
 from collections.abc import Iterator, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -120,10 +121,10 @@ class DiskKeys(Keys):
             sealed = self._database().get(key)
         return None if sealed is None else self._unsealed(key, sealed)
 
-    def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
+    def between(self, first: bytes, stop: bytes, most: int | None = None) -> Iterator[bytes]:
         """Iterate over keys in order."""
         with wrap_level_errors(self.folder), self._iterator(first, stop, False) as found:
-            return iter(list(found))
+            return iter(list(islice(found, most)))
 
     def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
         """Iterate over keys and values in order."""

@@ -31,7 +31,7 @@ class Keys(Protocol):
         """
         ...
 
-    def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
+    def between(self, first: bytes, stop: bytes, most: int | None = None) -> Iterator[bytes]:
         """Iterate over keys in order.
 
         Parameters
@@ -40,6 +40,8 @@ class Keys(Protocol):
             Smallest key.
         stop
             Smallest key that does not belong to the range.
+        most
+            Maximum number of keys; no limit by default.
 
         Returns
         -------
@@ -103,10 +105,10 @@ class TransientKeys(Keys):
         """Return the value of a key."""
         return self._values.get(key)
 
-    def between(self, first: bytes, stop: bytes) -> Iterator[bytes]:
+    def between(self, first: bytes, stop: bytes, most: int | None = None) -> Iterator[bytes]:
         """Iterate over keys in order."""
         keys = self._in_order()
-        return iter(keys[bisect_left(keys, first) : bisect_left(keys, stop)])
+        return iter(keys[bisect_left(keys, first) : bisect_left(keys, stop)][:most])
 
     def items(self, first: bytes, stop: bytes) -> Iterator[tuple[bytes, bytes]]:
         """Iterate over keys and values in order."""

@@ -243,6 +243,9 @@ def record(
 def check(
     pattern: Triple = (ANY, ANY, ANY),
     window: Window = None,
+    ontology: Annotated[
+        bool, typer.Option("--ontology/--no-ontology", help="Check kinds and relations by the ontology, which is slow.")
+    ] = True,
     time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer within this time.")] = 30.0,
     memory: MemoryDir = None,
 ) -> None:
@@ -252,7 +255,7 @@ def check(
 
     with _board(memory) as board:
         fluents = board.holding(_pattern(*pattern), *(window or (None, None)))
-    found = check_consistency(fluents, default_ontology(), time_limit)
+    found = check_consistency(fluents, default_ontology(), time_limit, logical=ontology)
     for kind, lines in (("time", found.temporal), ("space", found.spatial), ("ontology", found.logical)):
         print_lines(f"{kind}: {line}" for line in lines)
     for note in found.undecided:

@@ -9,6 +9,7 @@ from episodic_fluents import SEEN, on, some_fluents
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deixis.memory.episodes import blackboard as module
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Delete, Finish, Update
 from deixis.memory.episodes.episode import EpisodicFluent, episodic
@@ -24,7 +25,7 @@ def test_window_finds_what_a_scan_of_all_fluents_finds(
 ) -> None:
     with Blackboard.transient() as board:
         board.write(*map(Add, fluents), by="test")
-        for pattern in (Pattern(), Pattern("a"), Pattern(predicate="on", object="b")):
+        for pattern in (Pattern(), Pattern("a"), Pattern(predicate="near"), Pattern(predicate="on", object="b")):
             found = board.holding(pattern, start, start + length, certainly=certainly)
             wanted = {
                 each.id
@@ -129,3 +130,11 @@ def test_times_are_counted_from_the_origin() -> None:
     with Blackboard.transient(origin) as board:
         assert board.seconds(board.moment(90.5)) == 90.5
         assert board.origin == origin
+
+
+def test_subjects_of_many_fluents_are_found_in_a_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MAX_LOOKED_UP", 3)
+    with Blackboard.transient() as board:
+        board.write(*(Add(on(f"f{n}", float(n), n + 1.0)) for n in range(9)), by="test")
+        assert [each.id for each in board.holding(Pattern("cup"), 4.5, 5.5)] == ["f4", "f5"]
+        assert len(board.holding(Pattern("cup"))) == len(board.holding(Pattern(predicate="on"))) == 9
