@@ -893,6 +893,8 @@ class Discourse:
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
             if subject.role is not Role.SURFACE and relation in ("on", "inside"):
                 self._add("on", (subject,), ())
+                if not self.how.positive and not swapped:
+                    self._is_not_here(subject)
             elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
                 self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
             elif subject.role is not Role.SURFACE and not swapped:
@@ -1101,6 +1103,15 @@ class Discourse:
         for leaf in subject.leaves():
             leaf.absent = True
             self._add("count", (leaf,), (), value="0", how=replace(self.how, positive=True))
+
+    def _is_not_here(self, subject: Entity) -> None:
+        """Take a thing that is not on the surface, and is said to be nowhere else, as absent."""
+        plain = not (self.how.condition or self.how.past or self.how.uncertain or self.how.optional)
+        entity = subject.itself
+        placed = any(entity in d.subjects and d.arguments and d.how.positive and not d.how.past for d in self.drafts)
+        if plain and not placed and not entity.members and entity.role is Role.THING:
+            entity.absent = True
+            self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True))
 
     def _found_elsewhere(self, entity: Entity) -> None:
         """Take back that a thing is absent: *it isn't here, it is in the trunk*."""

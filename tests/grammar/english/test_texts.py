@@ -85,6 +85,20 @@ def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[st
 
 
 @pytest.mark.parametrize(
+    ("text", "absent"),
+    [
+        ("The cup is on the tray. The jug is not on the tray.", ("jug",)),
+        ("The cup is on the tray. The jug is next to the cup and not on the tray.", ()),
+        ("The cup is on the tray. The jug was not on the tray.", ()),
+    ],
+)
+def test_what_is_not_on_the_surface_and_nowhere_else_is_absent(text: str, absent: tuple[str, ...]) -> None:
+    reading = read_english(text).reading
+    assert reading is not None
+    assert reading.absent == absent
+
+
+@pytest.mark.parametrize(
     ("text", "metres"),
     [
         ("The jar is a hand's width from the pot.", 0.1),
