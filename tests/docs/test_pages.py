@@ -25,6 +25,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/refer",
     "guides/tell",
     "guides/habits",
+    "guides/activities",
     "guides/recall",
     "guides/unlearn",
     "guides/pointing",

@@ -80,6 +80,8 @@ CASES = [
     ("solve", "solve {e}/place_setting.csp --calculus ra --explain 2 4"),
     ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
     ("taught", "teach {t}/table.scene.json o1 napkin"),
+    ("activity_grounding", "activity ground 'first the cup, then the plate' --memory {t}/watched"),
+    ("recognised_activity", "activity recognise --known {t}/known.json --memory {t}/watched"),
     ("recall", "recall 'what is on the table?' --memory {t}/watched"),
     ("recall", "recall 'where was the spoon before?' --memory {t}/watched"),
     ("unlearned", "unlearn --table {t}/table.scene.json --dry-run"),
@@ -116,6 +118,8 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     deixis_command("simulate", script, "--seed", 7, "-o", folder / "table.pcd")
     deixis_command("perceive", folder / "table.pcd", "-o", folder / "table.scene.json")
     deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
+    served = EXAMPLES / "serving.fluents.json"
+    deixis_command("activity", "learn", "serving", served, "--known", folder / "known.json")
     with Blackboard.open(folder / "watched", create=True) as board:
         seen = Source(Origin.SEEN, "tracker")
         board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, source=seen), by="tracker")

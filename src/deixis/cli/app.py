@@ -57,7 +57,13 @@ COMMAND_GROUPS = {
         "episodes": "episodes_app",
         "memory": "memory_app",
     },
-    "Reasoning": {"reason": "reason", "validate": "validate", "solve": "solve", "time": "time_command"},
+    "Reasoning": {
+        "reason": "reason",
+        "validate": "validate",
+        "solve": "solve",
+        "time": "time_command",
+        "activity": "activity_app",
+    },
     "Experiments": {"demo": "demo", "experiment": "experiment"},
 }
 """Commands by group, in the order of ``--help``; each with its function in the module of ``deixis.cli`` for it."""

@@ -66,6 +66,8 @@ RENDERERS = {
     ),
     "Telling": Renderer("report.tell:telling_to_dict", "report.tell:telling_lines"),
     "Placements": Renderer("report.habits:habits_to_dict", "report.habits:habits_lines", "report.habits:habits_rows"),
+    "ActivityGrounding": Renderer("report.activities:grounded_to_dict", "report.activities:grounded_lines"),
+    "RecognisedActivity": Renderer("report.activities:recognised_to_dict", "report.activities:recognised_lines"),
     "Recall": Renderer("report.recall:recall_to_dict", "report.recall:recall_lines"),
     "Unlearned": Renderer("report.unlearn:unlearned_to_dict", "report.unlearn:unlearned_lines"),
     "Shown": Renderer("report.point:shown_to_dict", "report.point:shown_lines", "report.point:shown_rows"),

@@ -139,6 +139,30 @@ def recall(
     return _Remembering(board, asked, ontology, speaker).answer(read)
 
 
+def arrivals(
+    board: Blackboard, start: float | None = None, end: float | None = None
+) -> tuple[tuple[EpisodicFluent, str], ...]:
+    """Return the fluents with which things came, each with the category of its thing.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    start, end
+        Window in seconds since the origin of the memory; without them, all that is recorded.
+
+    Returns
+    -------
+    tuple of tuple
+        Fluents of place and names of things, one for each time that a thing came, in order of time.
+    """
+    last = math.inf if end is None else end
+    known = _Remembering(board, last, default_ontology(), None)
+    search = known.event_search(Event.COMES, None, -math.inf if start is None else start, last)
+    found = {(each.statement.subject, each.start): each for each in reversed(search.run(board))}
+    return tuple((each, known.name(each.statement.subject)) for each in reversed(found.values()))
+
+
 def moment_of(time: str) -> datetime:
     """Return a time that is written in ISO 8601, in local time where it has no time zone.
 

@@ -1,0 +1,194 @@
+"""Read told activities, *first the plate, then the forks*, and files of learned ones.
+
+>>> [[str(item) for item in group] for group in read_activity("First the plate, then two forks. Finally the knife.")]
+[['plate'], ['fork (2)'], ['knife']]
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from deixis.errors import DeixisError
+from deixis.grammar.files import read_text
+from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.inflection import is_plural, singular
+from deixis.ontology.strict_json import parse_json
+from deixis.reasoning.activities.activity import RELATIONS, Activity, Step, StepSequence, kind_of
+
+_NUMBERS = {word: number for number, word in enumerate(("one", "two", "three", "four", "five", "six"), 1)}
+_NEXT = r"(?:and )?(?:then|next|after that|afterwards|after this|finally|at last|lastly|last|at the end|in the end)"
+_FIRST = r"(?:first of all|at first|first|firstly|to begin with)"
+_BREAK = re.compile(rf"[.;!\n]+|,?\s*\b{_NEXT}\b,?", re.IGNORECASE)
+_LEAD = re.compile(rf"^(?:{_FIRST})\b,?\s*", re.IGNORECASE)
+_VERBS = re.compile(
+    r"\b(?:i|you|we|she|he|they|one)\b|\b(?:put|puts|lay|lays|laid|place|places|placed|set|sets|bring|brings|brought|"
+    r"add|adds|added|comes?|goes|go|is|are|follows?|take|takes|taken|down|on|onto|to|the table|table|in place)\b",
+    re.IGNORECASE,
+)
+_ITEM = re.compile(
+    r"^(?:(?P<det>the|a|an|my|your|all|all the|both|both the|(?:the )?(?:one|two|three|four|five|six|\d))\s+)?"
+    r"(?P<noun>[a-z][a-z _-]*?)$",
+    re.IGNORECASE,
+)
+
+
+class ActivityTextError(DeixisError, ValueError):
+    """A told activity, or a file of activities, that cannot be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToldItem:
+    """Things of a told activity: their kind, and how many; None for all that there are."""
+
+    kind: str
+    count: int | None
+
+    def __str__(self) -> str:
+        return self.kind if self.count == 1 else f"{self.kind} ({'all' if self.count is None else self.count})"
+
+
+def read_activity(text: str) -> list[list[ToldItem]]:
+    """Read a told activity.
+
+    Parameters
+    ----------
+    text
+        Things in the order in which they are laid, with words such as *first*, *then*, *finally*, *before*, *after*.
+
+    Returns
+    -------
+    list of list of ToldItem
+        Groups of things; nothing is said of the order within a group.
+
+    Raises
+    ------
+    ActivityTextError
+        If a part is not understood.
+    """
+    if not isinstance(text, str) or not text.strip():
+        raise ActivityTextError("an activity must be a text, as in 'first the plate, then the forks'")
+    groups: list[list[ToldItem]] = []
+    for clause in _BREAK.split(text):
+        rest = _LEAD.sub("", clause.strip())
+        if not rest:
+            continue
+        before = re.split(r"\bbefore\b", rest, maxsplit=1, flags=re.IGNORECASE)
+        after = re.match(r"^after (?P<first>[^,]+),(?P<second>.+)$", rest, re.IGNORECASE)
+        parts = [after["first"], after["second"]] if after else before
+        groups += [_items(part, text) for part in parts]
+    kinds = [item.kind for group in groups for item in group]
+    twice = next((kind for kind in kinds if kinds.count(kind) > 1), None)
+    if twice is not None:
+        raise ActivityTextError(f"the told activity names '{twice}' twice; name each kind of thing once")
+    return groups
+
+
+def _items(part: str, text: str) -> list[ToldItem]:
+    items = []
+    for phrase in re.split(r",|\band\b", _VERBS.sub(" ", part)):
+        words = " ".join(phrase.split())
+        if not words:
+            continue
+        found = _ITEM.match(words)
+        if found is None or not found["noun"].strip():
+            raise ActivityTextError(f"'{words}' in the told activity '{text.strip()[:60]}' is not a thing")
+        noun, number = found["noun"].strip(), (found["det"] or "").split()[-1:]
+        said = _NUMBERS.get(number[0].lower(), int(number[0]) if number[0].isdigit() else None) if number else None
+        items.append(ToldItem(kind_of(singular(noun)), said or (None if is_plural(noun) else 1)))
+    if not items:
+        raise ActivityTextError(f"the told activity '{text.strip()[:60]}' names no thing in '{part.strip()}'")
+    return items
+
+
+def told_activity(text: str, seen: StepSequence, name: str = "told") -> Activity:
+    """Return a told activity with as many steps as a sequence has things of the told kinds.
+
+    Parameters
+    ----------
+    text
+        The told activity.
+    seen
+        The sequence, in which *the forks* are counted.
+    name
+        Name of the activity.
+
+    Returns
+    -------
+    Activity
+        The activity; a thing of which there is none is one step.
+    """
+    groups = []
+    for group in read_activity(text):
+        steps = []
+        for item in group:
+            there = sum(step.thing == item.kind for step in seen.steps)
+            steps += [Step(item.kind, number=number) for number in range(1, (item.count or max(there, 1)) + 1)]
+        groups.append(steps)
+    return Activity.in_order(name, groups)
+
+
+def read_activities(path: str | Path) -> tuple[Activity, ...]:
+    """Read a file of learned activities.
+
+    Parameters
+    ----------
+    path
+        The file, which :func:`write_activities` wrote.
+
+    Returns
+    -------
+    tuple of Activity
+        The activities.
+
+    Raises
+    ------
+    ActivityTextError
+        If the file is not one of activities.
+    """
+    try:
+        data = parse_json(read_text(Path(path), str(path)), str(path), ActivityTextError, "is not a number")
+        return tuple(_activity(entry) for entry in data["activities"])
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise ActivityTextError(f"{path}: not a file of activities ({str(error).splitlines()[0]})") from error
+
+
+def _activity(entry: dict[str, Any]) -> Activity:
+    steps = tuple(Step(*step) for step in entry["steps"])
+    n = len(steps)
+    counts = np.zeros((n, n, RELATIONS))
+    for a, b, relation, number in entry["counts"]:
+        counts[a, b, relation] = number
+    present = np.array(entry["present"], dtype=np.float64)
+    if present.shape != (n,) or (counts < 0).any() or not int(entry["examples"]) > 0:
+        raise ValueError("its numbers do not fit its steps")
+    told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+    return Activity(str(entry["name"]), steps, told, present, counts, int(entry["examples"]))
+
+
+def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None:
+    """Write learned activities to a file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    activities
+        The activities.
+    """
+    entries = [
+        {
+            "name": each.name,
+            "examples": each.examples,
+            "steps": [[step.thing, step.predicate, step.object, step.number] for step in each.steps],
+            "present": each.present.tolist(),
+            "counts": [[*map(int, at), float(each.counts[tuple(at)])] for at in np.argwhere(each.counts > 0)],
+        }
+        for each in activities
+    ]
+    Path(path).write_text(json.dumps({"activities": entries}, indent=1) + "\n", encoding="utf-8")

@@ -1,0 +1,311 @@
+"""Activities as temporal relation graphs: steps, and for each pair of steps the Allen relations that it may have.
+
+A told activity states sets of relations; a learned one counts, over its examples, how often each relation held and how
+often each step was there. The counts are sums, so the order of the examples does not matter.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.ontology.allen import ALL_ALLEN
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks, distances_from_bounds
+from deixis.reasoning.temporal.fluent import Fluent
+
+RELATIONS = 13
+
+TOLD_PRESENT, TOLD_HOLDS = 0.95, 0.97
+"""Probabilities that a told step is carried out, and that a told relation between two steps holds."""
+
+PRIOR = 1.0
+"""Number of examples that the prior of the relations of a pair counts as."""
+
+STARTS_FIRST = 0b0000000011111
+"""Mask of the Allen relations in which the first fluent starts before the second one."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Step:
+    """A kind of fluent: of a thing, with a predicate and an object, where these are not None.
+
+    ``number`` counts equal steps of one activity in the order in which they start, from 1.
+    """
+
+    thing: str
+    predicate: str | None = None
+    object: str | None = None
+    number: int = 1
+
+    def fits(self, other: Step) -> bool:
+        """Return whether a step of a sequence is one of this kind.
+
+        Parameters
+        ----------
+        other
+            Step of a sequence.
+
+        Returns
+        -------
+        bool
+            True if the thing is equal, and predicate and object are where they are given.
+        """
+        return (
+            self.thing == other.thing
+            and self.predicate in (None, other.predicate)
+            and self.object in (None, other.object)
+        )
+
+    def __str__(self) -> str:
+        said = " ".join(part for part in (self.thing, self.predicate, self.object) if part)
+        return f"{said} {self.number}" if self.number > 1 else said
+
+
+@dataclass(frozen=True, eq=False)
+class StepSequence:
+    """Fluents in the order of their starts, with the step that each is and the relations that each pair may have."""
+
+    fluents: tuple[Fluent, ...]
+    steps: tuple[Step, ...]
+
+    @classmethod
+    def of(cls, fluents: Iterable[Fluent]) -> StepSequence:
+        """Return the sequence of some fluents.
+
+        Parameters
+        ----------
+        fluents
+            The fluents, in any order. The things in their statements are named by kinds, with or without numbers.
+
+        Returns
+        -------
+        StepSequence
+            The sequence.
+        """
+        ordered = tuple(sorted(fluents, key=lambda each: (each.start.lower, each.start.upper, each.id)))
+        seen: Counter[tuple[str, str, str | None]] = Counter()
+        steps = []
+        for each in ordered:
+            said = each.statement
+            other = None if said.object is None else kind_of(said.object)
+            key = (kind_of(said.subject), said.predicate, other)
+            seen[key] += 1
+            steps.append(Step(*key, seen[key]))
+        return cls(ordered, tuple(steps))
+
+    @cached_property
+    def masks(self) -> NDArray[np.uint16]:
+        """Allen relations that each pair may have by the bounds of its ends, shape (n, n)."""
+        n = len(self.fluents)
+        if n == 0:
+            return np.zeros((0, 0), np.uint16)
+        distances = distances_from_bounds([each.start for each in self.fluents], [each.finish for each in self.fluents])
+        return allen_masks(distances, np.arange(1, n + 1), np.arange(n + 1, 2 * n + 1))
+
+    @cached_property
+    def members(self) -> NDArray[np.float64]:
+        """Relations of the masks as numbers 0 and 1, shape (n, n, 13)."""
+        return members_of(self.masks)
+
+
+def kind_of(name: str) -> str:
+    """Return the kind in the name of a thing: without its number, and with underscores.
+
+    Parameters
+    ----------
+    name
+        The name.
+
+    Returns
+    -------
+    str
+        The kind.
+
+    Examples
+    --------
+    >>> kind_of("Wine glass 2"), kind_of("fork_1")
+    ('wine_glass', 'fork')
+    """
+    words = name.replace("_", " ").lower().split()
+    return "_".join(words[:-1] if len(words) > 1 and words[-1].isdigit() else words)
+
+
+def members_of(masks: NDArray[np.uint16]) -> NDArray[np.float64]:
+    """Return masks as arrays over the thirteen relations.
+
+    Parameters
+    ----------
+    masks
+        Masks of any shape.
+
+    Returns
+    -------
+    ndarray
+        1 where the relation is in the mask, else 0; one axis of length 13 more.
+    """
+    return ((masks[..., None] >> np.arange(RELATIONS)) & 1).astype(np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Activity:
+    """A kind of activity.
+
+    Attributes
+    ----------
+    name
+        Its name.
+    steps
+        Its steps, in order of their names.
+    told
+        Masks of the relations that a person stated, shape (n, n); all relations for other pairs.
+    present
+        Number of examples that have each step, shape (n,).
+    counts
+        Expected number of examples in which each relation held, shape (n, n, 13).
+    examples
+        Number of examples; 0 for a told activity.
+    """
+
+    name: str
+    steps: tuple[Step, ...]
+    told: NDArray[np.uint16]
+    present: NDArray[np.float64]
+    counts: NDArray[np.float64]
+    examples: int = 0
+
+    @classmethod
+    def in_order(cls, name: str, groups: Sequence[Sequence[Step]]) -> Activity:
+        """Return a told activity: the steps of each group start before those of the next one.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        groups
+            Groups of steps; the order within a group is free.
+
+        Returns
+        -------
+        Activity
+            The activity.
+
+        Raises
+        ------
+        SettingError
+            If there is no step, or a step occurs twice.
+        """
+        place = {step: number for number, group in enumerate(groups) for step in group}
+        if not place or len(place) < sum(map(len, groups)):
+            raise SettingError("an activity must have at least one step, and each step once")
+        steps = tuple(sorted(place))
+        told = np.full((len(steps),) * 2, ALL_ALLEN, dtype=np.uint16)
+        for a, first in enumerate(steps):
+            for b, second in enumerate(steps):
+                if place[first] < place[second]:
+                    told[a, b] = STARTS_FIRST
+        order = np.array([place[step] for step in steps])
+        told = np.where(order[:, None] > order[None], converse_masks(told.T), told).astype(np.uint16)
+        n = len(steps)
+        return cls(name, steps, told, np.zeros(n), np.zeros((n, n, RELATIONS)))
+
+    @classmethod
+    def learned(cls, name: str, examples: Iterable[StepSequence]) -> Activity:
+        """Return an activity that was learned from examples, in any order.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        examples
+            One or more sequences of fluents.
+
+        Returns
+        -------
+        Activity
+            The activity.
+
+        Raises
+        ------
+        SettingError
+            If there is no example, or no example has a fluent.
+        """
+        examples = list(examples)
+        if not any(example.steps for example in examples):
+            raise SettingError("an activity is learned from one or more sequences with at least one fluent")
+        steps = tuple(sorted({step for example in examples for step in example.steps}))
+        place, n = {step: number for number, step in enumerate(steps)}, len(steps)
+        present, counts = np.zeros(n), np.zeros((n, n, RELATIONS))
+        for example in examples:
+            at = np.array([place[step] for step in example.steps], dtype=np.int64)
+            present[at] += 1
+            share = example.members / example.members.sum(axis=2, keepdims=True) if len(at) else example.members
+            counts[np.ix_(at, at)] += share
+        told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+        return cls(name, steps, told, present, counts, len(examples))
+
+    def __add__(self, other: Activity) -> Activity:
+        """Return the activity of the examples of two learned activities."""
+        steps = tuple(sorted({*self.steps, *other.steps}))
+        place, n = {step: number for number, step in enumerate(steps)}, len(steps)
+        present, counts = np.zeros(n), np.zeros((n, n, RELATIONS))
+        for each in (self, other):
+            at = np.array([place[step] for step in each.steps], dtype=np.int64)
+            present[at] += each.present
+            counts[np.ix_(at, at)] += each.counts
+        told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+        return Activity(self.name, steps, told, present, counts, self.examples + other.examples)
+
+    @property
+    def presence(self) -> NDArray[np.float64]:
+        """Probability that each step is carried out, shape (n,)."""
+        if not self.examples:
+            return np.full(len(self.steps), TOLD_PRESENT)
+        return (self.present + 0.5) / (self.examples + 1.0)
+
+    def relations(self, chance: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the probability of each relation of each pair of steps.
+
+        Parameters
+        ----------
+        chance
+            Probability of each relation of a pair of fluents in general, shape (13,).
+
+        Returns
+        -------
+        ndarray
+            Shape (n, n, 13).
+        """
+        told = members_of(self.told)
+        inside = told * chance
+        inside /= inside.sum(axis=2, keepdims=True)
+        outside = (1 - told) * chance
+        rest = outside.sum(axis=2, keepdims=True)
+        outside = np.divide(outside, rest, out=np.zeros_like(outside), where=rest > 0)
+        holds = np.where(rest > 0, TOLD_HOLDS, 1.0)
+        prior = holds * inside + (1 - holds) * outside
+        total = self.counts.sum(axis=2, keepdims=True)
+        found: NDArray[np.float64] = (self.counts + PRIOR * prior) / (total + PRIOR)
+        return found
+
+    def usual_order(self) -> tuple[tuple[Step, Step], ...]:
+        """Return the pairs of steps of which the first always started first, as told or in all examples.
+
+        Returns
+        -------
+        tuple of tuple
+            Pairs of steps.
+        """
+        first = members_of(np.array([STARTS_FIRST], np.uint16))[0]
+        pairs = []
+        for a, b in zip(*np.nonzero(~np.eye(len(self.steps), dtype=bool)), strict=True):
+            of = self.counts[a, b].sum()
+            told = self.told[a, b] != ALL_ALLEN and not int(self.told[a, b]) & ~STARTS_FIRST
+            if told or (of > 1 and (self.counts[a, b] @ first) >= of - 1e-9):
+                pairs.append((self.steps[a], self.steps[b]))
+        return tuple(pairs)

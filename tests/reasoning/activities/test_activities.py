@@ -1,0 +1,99 @@
+"""Ground, learn and recognise activities."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.grammar.activities import ActivityTextError, read_activities, read_activity, told_activity
+from deixis.reasoning.activities.activity import Activity, StepSequence
+from deixis.reasoning.activities.grounding import ground_activity, recognise_activity
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.fluent import Fluent, Statement
+from deixis.workflows.activities import learn, recognise
+
+
+def laid(words: str) -> StepSequence:
+    """Return the sequence in which things are laid, one a second; they all stay."""
+    fluents = [Fluent(f"f{at}", Statement(word, "laid"), Bounds(at, at)) for at, word in enumerate(words.split())]
+    return StepSequence.of(reversed(fluents))
+
+
+@pytest.mark.parametrize(
+    ("told", "groups"),
+    [
+        ("first the plate, then the forks", [["plate"], ["fork (all)"]]),
+        ("Put the plate on the table. Then two forks and a knife; finally, the wine glass.",
+         [["plate"], ["fork (2)", "knife"], ["wine_glass"]]),
+        ("the plate before the forks", [["plate"], ["fork (all)"]]),
+        ("After the plate, the cup comes. Lay the spoon last", None),
+        ("first the plate, next the cup, after that the spoon", [["plate"], ["cup"], ["spoon"]]),
+    ],
+)  # fmt: skip
+def test_told_orders_are_read(told: str, groups: list[list[str]] | None) -> None:
+    read = [[str(item) for item in group] for group in read_activity(told)]
+    assert groups is None or read == groups
+
+
+@pytest.mark.parametrize("told", ["", "then", "first the 12 #, then", "the plate, then the plate"])
+def test_what_names_no_things_is_refused(told: str) -> None:
+    with pytest.raises((ActivityTextError, SettingError)):
+        told_activity(told, laid("plate"))
+
+
+def test_a_told_activity_is_grounded_with_its_faults() -> None:
+    seen = laid("fork cup plate fork")
+    found = ground_activity(told_activity("first the plate, then the forks, then the knife", seen), seen)
+    matched = {str(match.step): match.fluent for match in found.matches}
+    assert matched["plate"] == "f2" and {matched["fork"], matched["fork 2"]} == {"f0", "f3"}
+    assert [str(step) for step in found.missing] == ["knife"] and found.other == ("f1",)
+    assert {str(second) for _, second in found.swapped} <= {"fork", "fork 2"} and len(found.swapped) == 1
+
+
+orders = st.permutations(["plate", "fork", "knife", "cup"]).map(lambda words: laid(" ".join(words)))
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.lists(orders, min_size=1, max_size=4), st.randoms(use_true_random=False))
+def test_the_order_of_examples_does_not_matter(examples: list[StepSequence], order: random.Random) -> None:
+    shuffled = order.sample(examples, len(examples))
+    first, second = Activity.learned("dinner", examples), Activity.learned("dinner", shuffled)
+    parts = [Activity.learned("dinner", [example]) for example in shuffled]
+    joined = sum(parts[1:], start=parts[0])
+    for other in (second, joined):
+        assert first.steps == other.steps and first.examples == other.examples
+        np.testing.assert_allclose(first.counts, other.counts, atol=1e-9)
+        np.testing.assert_allclose(first.present, other.present)
+
+
+def test_learned_activities_are_recognised_with_noise(tmp_path: Path) -> None:
+    known = tmp_path / "known.json"
+    learn("dinner", [laid("plate fork knife cup"), laid("plate knife fork cup")], known)
+    learn("supper", [laid("cup knife fork plate")], known)
+    learn("supper", [laid("cup fork knife plate")], known)
+    assert [(each.name, each.examples) for each in read_activities(known)] == [("dinner", 2), ("supper", 2)]
+    assert recognise(laid("plate candle fork cup"), known).name == "dinner"
+    assert recognise(laid("cup fork plate"), known).name == "supper"
+    assert recognise(laid("hat coat"), known).name is None
+
+
+def test_a_broken_file_of_activities_is_refused(tmp_path: Path) -> None:
+    for text in (
+        "{",
+        "{}",
+        '{"activities": [{"name": "x", "steps": [["a"]], "counts": [], "present": [], "examples": 1}]}',
+    ):
+        (tmp_path / "known.json").write_text(text)
+        with pytest.raises(ActivityTextError, match="not a file of activities"):
+            read_activities(tmp_path / "known.json")
+
+
+def test_an_empty_sequence_is_none_of_the_activities() -> None:
+    dinner = Activity.learned("dinner", [laid("plate fork")])
+    assert recognise_activity([dinner], laid("")).name is None
