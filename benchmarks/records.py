@@ -100,6 +100,7 @@ RUNS = (
     Run("subgraphs", "Grounding", "similarity of all sub-graphs of a script"),
     Run("detection", "Perception", "objects segmented in point clouds", data=True),
     Run("clouds", "Perception", "reading of point clouds"),
+    Run("tracking", "Perception", "things followed while a hand moves them"),
     Run("recognition", "Perception", "search of the nearest views"),
     Run("recognition-tables", "Perception", "objects named on laid tables", "recognition", "--tables"),
     Run("naming", "Perception", "meshes of unseen objects named", data=True),

@@ -22,6 +22,7 @@ from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.shown import Shows, is_large, is_one_object, is_small
 from deixis.perception.detection.supervoxels import supervoxels
 from deixis.perception.detection.surface import Surface, surface_of
+from deixis.perception.detection.table_top import table_top
 from deixis.perception.detection.tables import FoundTable, tables
 from deixis.perception.detection.viewpoint import (
     View,
@@ -182,6 +183,32 @@ def detect(
     if len(seen) > settings.table:
         return replace(found, shows=Shows.TABLES, notes=(*found.notes, _more(settings.table)))
     return found if settings.table == 1 else replace(found, shows=Shows.TABLES)
+
+
+def detect_above(cloud: PointCloud, plane: Plane, settings: DetectionSettings | None = None) -> Detection | None:
+    """Detect the objects on a table whose plane is known.
+
+    Parameters
+    ----------
+    cloud
+        Points in metres; its labels are ignored.
+    plane
+        Plane of the table, in the frame of the cloud.
+    settings
+        Options and thresholds; the default ones if None.
+
+    Returns
+    -------
+    Detection or None
+        Objects above the plane, with the frame of the part of the table that is in view; None if no point of the cloud
+        is finite, or the plane does not show a table.
+    """
+    settings = settings or DetectionSettings()
+    kept = np.flatnonzero(cloud.finite)
+    if not len(kept):
+        return None
+    view = View(cloud.points[kept].astype(np.float64), kept, cloud.organised, camera_pose_of(cloud, settings))
+    return _on_table(cloud, FoundTable(plane, table_top(view, plane, settings), view), settings)
 
 
 def _has_objects(found: Detection | None, seen: list[FoundTable], settings: DetectionSettings) -> bool:

@@ -11,11 +11,11 @@ from deixis.perception.simulator.tableware import Colour
 
 SKIN: Colour = (206, 160, 132)
 
-ARM_RISE = np.deg2rad(28.0)
+ARM_RISE = np.deg2rad(15.0)
 """Angle in radians of the forearm above the table's plane."""
 
-ARM_LENGTH = 0.42
-"""Length of the forearm with the hand, in metres."""
+ARM_LENGTH = 1.2
+"""Length of the arm with the hand, in metres."""
 
 
 def hand() -> Mesh:

@@ -22,7 +22,7 @@ from deixis.perception.errors import SimulationError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.simulator.camera import Camera, chair_camera
 from deixis.perception.simulator.depth import DepthSensor, coloured, measured_look
-from deixis.perception.simulator.hand import ARM_LENGTH, SKIN, hand
+from deixis.perception.simulator.hand import SKIN, hand
 from deixis.perception.simulator.laying import (
     LaidTable,
     LaidThing,
@@ -39,10 +39,16 @@ from deixis.perception.simulator.rays import Hits, RayCaster
 from deixis.perception.tracking.frame import Frame
 
 HAND_SPEED = 0.5
-"""Mean speed of the hand in metres per second."""
+"""Mean speed of the hand in metres per second, without the time for starting and stopping."""
+
+START_SECONDS = 0.3
+"""Time for starting and stopping on each part of the hand's way, in seconds."""
 
 CARRY_CLEARANCE = 0.04
 """Height in metres at which a carried thing passes over the things below its way."""
+
+OUTSIDE = 0.5
+"""Distance in metres from the things at which the hand appears and vanishes."""
 
 GRIP_SECONDS = 0.25
 """Time in which the hand closes or opens around a thing, in seconds."""
@@ -175,9 +181,9 @@ class FilmedFrame(Frame):
         Number of points that show the hand.
     """
 
-    things: tuple[ThingTruth, ...]
-    camera: Camera
-    hand_points: int
+    things: tuple[ThingTruth, ...] = ()
+    camera: Camera = field(default_factory=lambda: Camera(np.eye(4)))
+    hand_points: int = 0
 
     def scene(self) -> Scene:
         """Return the true scene: the things with their boxes, in the table's frame.
@@ -485,7 +491,7 @@ class Film:
             if thing.name in poses
             for pose, held in [poses[thing.name]]
         )
-        return FilmedFrame(cloud, at, number, truth, camera, int(counts[self.hand_label + 1]))
+        return FilmedFrame(cloud, at, number, None, truth, camera, int(counts[self.hand_label + 1]))
 
 
 def film(
@@ -788,7 +794,7 @@ class Stage:
         towards = np.array([np.sin(arm), -np.cos(arm)])
         plans = [plan_box(thing.mesh) for thing in self._ever] or [(np.zeros(2), np.zeros(2))]
         corners = np.array([(x, y) for low, high in plans for x in (low[0], high[0]) for y in (low[1], high[1])])
-        reach = max(float((corners @ towards).max()) - float(place[:2] @ towards), 0.0) + ARM_LENGTH
+        reach = max(float((corners @ towards).max()) - float(place[:2] @ towards), 0.0) + OUTSIDE
         return np.append(place[:2] + reach * towards, max(place[2], 0.25))
 
     def _approach(self, grip: NDArray[np.float64], arm: float) -> None:
@@ -841,7 +847,7 @@ class Stage:
         tilt: NDArray[np.float64] | None = None,
     ) -> None:
         way = float(np.linalg.norm(end - start)) / HAND_SPEED + abs(turns[1] - turns[0]) / 2.0
-        taken = max(way, GRIP_SECONDS) if seconds is None else seconds
+        taken = (START_SECONDS + way if way > 0 else GRIP_SECONDS) if seconds is None else seconds
         places = np.stack([start, end]).astype(np.float64)
         self._legs.append(HandLeg(self.at, self.at + taken, places, arm, turns, np.zeros(3) if tilt is None else tilt))
         self.at += taken

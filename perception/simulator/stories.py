@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from deixis.perception.simulator.laying import (
 from deixis.perception.simulator.motion import Action, Bring, Film, HeadMotion, Move, PassOver, Rest, Stage, TakeAway
 from deixis.perception.simulator.scatter import KINDS, scattered
 from deixis.perception.simulator.tableware import drawn_plan, kind_named
+from deixis.perception.tracking.frame import Frame
 
 ROOM = 0.22
 """Distance in metres by which the table extends beyond the things that are on it at the start."""
@@ -41,6 +42,7 @@ def random_film(
     shares: dict[str, float] | None = None,
     kinds: Sequence[str] = KINDS,
     head: HeadMotion | None = None,
+    sure_pass: bool = False,
     ontology: Ontology | None = None,
 ) -> Film:
     """Return a film of a random table on which a hand carries out random actions.
@@ -63,6 +65,8 @@ def random_film(
         Words for the kinds of things.
     head
         Movement of the camera, or None for a camera that stands still.
+    sure_pass
+        True for a forearm that hides a thing for two seconds first, in addition to the actions.
     ontology
         Kinds and their sizes; by default :func:`~deixis.ontology.tbox.default_ontology`.
 
@@ -89,14 +93,16 @@ def random_film(
     chances = shares or ACTIONS
     names, weights = list(chances), np.array(list(chances.values()), dtype=np.float64)
     stage.carry_out(Rest(pause))
+    if sure_pass:
+        stage.carry_out(_pass_over(stage, top, rng))
+        stage.carry_out(Rest(pause))
     for number in range(actions):
         kind = str(rng.choice(names, p=weights / weights.sum()))
         action: Action | None = _action(kind, stage, top, rng, number, most, kinds, ontology)
+        arm = float(rng.choice([0.0, 0.0, -1.2, 1.2]))
         if action is None:
-            target = _any(stage, rng)
-            middle = np.zeros(2) if target is None else np.mean(plan_box(target.mesh), axis=0)
-            action = PassOver(float(middle[0]), float(middle[1]))
-        stage.carry_out(action, float(rng.choice([0.0, 0.0, -1.2, 1.2])))
+            action, arm = _pass_over(stage, top, rng), 0.0
+        stage.carry_out(action, arm)
         stage.carry_out(Rest(pause))
     return stage.film(top, head=head)
 
@@ -156,6 +162,14 @@ def _action(
     return None
 
 
+def _pass_over(stage: Stage, top: TableTop, rng: np.random.Generator) -> PassOver:
+    """Return a hand whose forearm hides a random thing from a person at the table."""
+    target = _any(stage, rng)
+    x, y = np.zeros(2) if target is None else np.mean(plan_box(target.mesh), axis=0)
+    eye = (top.low[0] + top.high[0]) / 2
+    return PassOver(float(x + (eye - x) / 3), float(y) + 0.1)
+
+
 def _any(stage: Stage, rng: np.random.Generator, but: str | None = None) -> LaidThing | None:
     left = _others(stage, but)
     return left[int(rng.integers(len(left)))] if left else None
@@ -184,3 +198,30 @@ def _within(box: PlanBox, top: TableTop) -> bool:
 
 def _apart(box: PlanBox, other: PlanBox, gap: float) -> bool:
     return bool((box[0] > other[1] + gap).any() or (other[0] > box[1] + gap).any())
+
+
+class FilmSource:
+    """Frames of a film as a source of clouds.
+
+    Parameters
+    ----------
+    film
+        The film.
+    rate
+        Frames per second.
+    seed
+        Seed of the noise of the sensor.
+    """
+
+    def __init__(self, film: Film, rate: float = 10.0, seed: int = 0) -> None:
+        self._film, self._rate, self._seed = film, rate, seed
+
+    def frames(self) -> Iterator[Frame]:
+        """Yield the frames of the film.
+
+        Yields
+        ------
+        Frame
+            Cloud in the camera's frame; a :class:`~deixis.perception.simulator.motion.FilmedFrame` with the truth.
+        """
+        yield from self._film.frames(self._rate, self._seed)

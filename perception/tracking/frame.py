@@ -19,8 +19,11 @@ class Frame:
         Time in seconds since the start of the stream or of a memory.
     number
         Number of the frame in its stream, from 0; numbers of dropped frames are missing.
+    problem
+        Why the cloud could not be read, in one line; the cloud is then empty. None if all is well.
     """
 
     cloud: PointCloud
     at: float
     number: int
+    problem: str | None = None

@@ -26,6 +26,9 @@ PAGE = ROOT / "docs" / "reference" / "json.md"
 RUN_ELSEWHERE = {"experiment figure6", "experiment scoreboard", "experiment open-ended", "experiment apprentice"}
 """Commands whose answers the tests of the experiments validate, since running them takes long."""
 
+LINES = {"reference_line", "situation"}
+"""Schemas of the lines of commands that print several answers."""
+
 CASES = [
     ("categories", "category list"),
     ("check", "check {e}/formal_dinner.layout {e}/second_table.scene.json"),
@@ -90,6 +93,7 @@ CASES = [
     ("time", "time {e}/serving.fluents.json --relate fetch served"),
     ("time", "time {e}/serving.fluents.json --explain fetch.start served.start"),
     ("time", "time {t}/wrong.fluents.json"),
+    ("tracking", "track simulator --things 1 --actions 0"),
     ("validation", "validate"),
     ("validation", "validate {t}/wrong.ttl"),
 ]
@@ -162,7 +166,7 @@ def _listed() -> dict[str, set[str]]:
     """Return the schemas of each command, as the table on the page of JSON answers has them."""
     section = PAGE.read_text(encoding="utf-8").partition("## Schemas\n")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| `([a-z0-9 -]+)` +\| (.*?) +\|$", section, flags=re.MULTILINE)
-    return {command: set(re.findall(r"`(\w+)`", schemas)) - {"reference_line"} for command, schemas in rows}
+    return {command: set(re.findall(r"`(\w+)`", schemas)) - LINES for command, schemas in rows}
 
 
 def test_every_command_with_json_has_a_schema_on_the_page() -> None:
@@ -172,7 +176,7 @@ def test_every_command_with_json_has_a_schema_on_the_page() -> None:
         if "--json" in options(command, context)
     }
     assert known and _listed().keys() == known
-    assert set().union(*_listed().values()) | {"fact", "claim", "reference_line", *OF_INPUT} == SCHEMAS.keys()
+    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT} == SCHEMAS.keys()
 
 
 def test_answers_of_every_command_are_validated() -> None:

@@ -42,6 +42,7 @@ COMMAND_GROUPS = {
         "point": "point",
         "relate": "relate",
         "simulate": "simulate",
+        "track": "track",
     },
     "Grounding and checking": {"ground": "ground", "refer": "refer", "check": "check", "retrieve": "retrieve"},
     "Memory and queries": {

@@ -56,8 +56,8 @@ def test_thing_never_jumps_while_it_is_carried() -> None:
 def test_carried_thing_takes_its_load_along() -> None:
     story = film([PLATE, FORK, MUG], [Move("plate", -0.2, 0.1)])
     before, after = story.poses(0.0), story.poses(story.seconds)
-    relative = [np.linalg.inv(poses["plate"][0]) @ poses["fork"][0] for poses in (before, after)]
-    assert np.allclose(*relative, atol=1e-9)
+    first, last = (np.linalg.inv(poses["plate"][0]) @ poses["fork"][0] for poses in (before, after))
+    assert np.allclose(first, last, atol=1e-9)
     assert np.array_equal(before["mug"][0], after["mug"][0])
 
 
@@ -76,11 +76,11 @@ def test_taken_thing_goes_and_brought_thing_comes() -> None:
 
 
 def test_passing_hand_hides_a_thing_for_two_seconds() -> None:
-    story = film([MUG], [Rest(0.2), PassOver(0.3, 0.15), Rest(0.2)])
+    story = film([PLATE, MUG], [Rest(0.2), PassOver(0.25, 0.2), Rest(0.2)])
     frames = list(story.frames(5, scale=0.3))
-    shown = [frame.things[0].points for frame in frames]
+    shown = [frame.things[1].points for frame in frames]
     hidden = [points < 0.5 * shown[0] for points in shown]
-    assert sum(hidden) >= 9 and not any(frame.things[0].held for frame in frames)
+    assert sum(hidden) >= 9 and not any(frame.things[1].held for frame in frames)
     assert shown[-1] > 0.9 * shown[0] and frames[-1].hand_points == 0
 
 

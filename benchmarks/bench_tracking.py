@@ -1,0 +1,189 @@
+"""Measure the tracker on films of simulated tables, on which a hand moves, brings, takes and hides things.
+
+    python benchmarks/bench_tracking.py
+    python benchmarks/bench_tracking.py --films 12 --actions 8
+
+Each film has 1 to 12 things, and a forearm that hides one of them for two seconds at least once. A thing counts in
+every frame that shows it, from a second after it first lies in view. Its identity is kept if its first track is
+still there and within 5 cm of it. Errors are distances between the middles of kept things and the true ones. Seconds
+are of processor time of the tracker alone. ``--scale 0.5`` films half of the rows and columns and compares all of them.
+
+The peer detects all things in a frame and assigns them to the tracks by the Hungarian method, with a gate of 15 cm; a
+track that is not seen for two seconds ends. Detection takes longer than a tenth of a second, so that it gets every
+``--peer-every``-th frame (5, two frames a second); 0 leaves it out. The tracker of the Point Cloud Library is not a
+peer here: it follows one given cloud at a time, and has neither detection nor identity.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+from records import command_line, figure, recorded, share
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import detect
+from deixis.perception.simulator.motion import FilmedFrame
+from deixis.perception.simulator.stories import random_film
+from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.tracker import Tracker
+
+THINGS = (1, 2, 4, 6, 9, 12)
+FIRST, NEAR, CLOSE = 0.04, 0.05, 0.01
+"""Distances in metres: of a track from the thing that gets it, of a kept one, and of a right one."""
+
+SETTLING = 1.0
+"""Time in seconds from which a thing that lies in view must be tracked."""
+
+Tracks = Mapping[str, NDArray[np.float64]]
+"""Middles (3,) of the tracks in the frame of the camera, by id."""
+
+
+@dataclass
+class Score:
+    """Kept and all frames of things, errors of kept ones in metres, and seconds of processor time of each frame."""
+
+    kept: int = 0
+    frames: int = 0
+    errors: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+    _tracks: dict[str, str] = field(default_factory=dict)
+    _since: dict[str, float] = field(default_factory=dict)
+
+    def begin(self) -> None:
+        """Forget the things of the film before."""
+        self._tracks, self._since = {}, {}
+
+    def add(self, frame: FilmedFrame, tracks: Tracks) -> None:
+        """Compare the tracks of a frame with the truth."""
+        places = {name: frame.camera.to_table(place[None])[0] for name, place in tracks.items()}
+        for thing in frame.things:
+            if not thing.held and thing.visible:
+                self._since.setdefault(thing.name, frame.at)
+            free = [name for name in places if name not in self._tracks.values()]
+            if thing.name not in self._tracks and thing.name in self._since and not thing.held:
+                near = [(float(np.linalg.norm(places[name] - thing.centre)), name) for name in free]
+                if near and min(near)[0] < FIRST:
+                    self._tracks[thing.name] = min(near)[1]
+            if not thing.visible or frame.at < self._since.get(thing.name, np.inf) + SETTLING:
+                continue
+            self.frames += 1
+            place = places.get(self._tracks.get(thing.name, ""))
+            away = np.inf if place is None else float(np.linalg.norm(place - thing.centre))
+            if away < NEAR:
+                self.kept += 1
+                self.errors.append(away)
+
+
+class Association:
+    """Detection in every frame, and assignment of what was detected to tracks by the Hungarian method."""
+
+    def __init__(self, gate: float = 0.15, patience: float = 2.0) -> None:
+        self._gate, self._patience = gate, patience
+        self._tracks: dict[str, tuple[NDArray[np.float64], float]] = {}
+        self._names = 0
+
+    def __call__(self, cloud: PointCloud, at: float) -> Tracks:
+        """Return the tracks after a frame."""
+        from scipy.optimize import linear_sum_assignment
+
+        found = detect(cloud)
+        back = np.linalg.inv(found.frame)
+        middles = found.boxes.mean(axis=1) @ back[:3, :3].T + back[:3, 3]
+        names = list(self._tracks)
+        known = np.array([self._tracks[name][0] for name in names]).reshape(-1, 3)
+        apart = np.linalg.norm(known[:, None] - middles[None], axis=2)
+        taken = set()
+        for row, column in zip(*linear_sum_assignment(np.minimum(apart, 10 * self._gate)), strict=True):
+            if apart[row, column] < self._gate:
+                self._tracks[names[row]] = middles[column], at
+                taken.add(int(column))
+        for column in set(range(len(middles))) - taken:
+            self._names += 1
+            self._tracks[f"d{self._names}"] = middles[column], at
+        self._tracks = {name: track for name, track in self._tracks.items() if at - track[1] <= self._patience}
+        return {name: place for name, (place, _) in self._tracks.items()}
+
+
+def ours(tracker: Tracker) -> Callable[[PointCloud, float], Tracks]:
+    """Return the tracker as a function that returns tracks in the frame of the camera."""
+
+    def after(cloud: PointCloud, at: float) -> Tracks:
+        now = tracker.update(cloud, at)
+        if now.frame is None:
+            return {}
+        back = np.linalg.inv(now.frame)
+        return {thing.id: back[:3, :3] @ thing.centre + back[:3, 3] for thing in now.things}
+
+    return after
+
+
+def main() -> None:
+    """Print the shares of kept identities, the errors, and the processor time of a frame, by the number of things."""
+    parser = command_line(__file__, __doc__)
+    parser.add_argument("--films", type=int, default=len(THINGS), help="films, with 1 to 12 things in turn")
+    parser.add_argument("--actions", type=int, default=4, help="random actions of a film")
+    parser.add_argument("--first", type=int, default=100, help="seed of the first film")
+    parser.add_argument("--scale", type=float, default=1.0, help="factor on the rows and columns of the images")
+    parser.add_argument("--peer-every", type=int, default=5, help="frames of which the peer gets one; 0: no peer")
+    with recorded(parser) as arguments:
+        scores: dict[int, Score] = {}
+        peer = Score()
+        for number in range(arguments.films):
+            things, seed = THINGS[number % len(THINGS)], arguments.first + number
+            score = scores.setdefault(things, Score())
+            score.begin()
+            peer.begin()
+            association = Association()
+            film = random_film(things, arguments.actions, seed, sure_pass=True)
+            with Tracker(TrackingSettings(stride=2 if arguments.scale > 0.6 else 1)) as tracker:
+                follow = ours(tracker)
+                for frame in film.frames(10.0, seed, scale=arguments.scale):
+                    started = time.process_time()
+                    tracks = follow(frame.cloud, frame.at)
+                    score.seconds.append(time.process_time() - started)
+                    score.add(frame, tracks)
+                    if arguments.peer_every and frame.number % arguments.peer_every == 0:
+                        started = time.process_time()
+                        tracks = association(frame.cloud, frame.at)
+                        peer.seconds.append(time.process_time() - started)
+                        peer.add(frame, tracks)
+            print(f"film {seed}: {things} things, {film.seconds:.0f} s: {_line(score)}", flush=True)
+        for things, score in sorted(scores.items()):
+            print(f"{things:>2} things: {_line(score)}")
+            figure(f"{things} things: processor time of a frame", float(np.mean(score.seconds)), "s")
+        everything = Score(
+            sum(score.kept for score in scores.values()),
+            sum(score.frames for score in scores.values()),
+            list(chain.from_iterable(score.errors for score in scores.values())),
+            list(chain.from_iterable(score.seconds for score in scores.values())),
+        )
+        print(f"all: {_line(everything)}")
+        share("identity kept, frames of things", everything.kept, everything.frames)
+        share(
+            "error below 1 cm, frames of kept things", sum(e < CLOSE for e in everything.errors), len(everything.errors)
+        )
+        figure("median error of the middle", float(np.median(everything.errors)), "m")
+        if peer.frames:
+            print(f"peer, detection and Hungarian assignment: {_line(peer)}")
+            figure("identity kept by detection and assignment", peer.kept / peer.frames, "share", peer="scipy")
+            times = float(np.mean(peer.seconds)) / float(np.mean(everything.seconds))
+            figure("time of a frame of detection and assignment", times, "times as long", peer="scipy")
+
+
+def _line(score: Score) -> str:
+    errors, seconds = np.array(score.errors or [np.nan]), np.array(score.seconds)
+    return (
+        f"identity kept {score.kept / max(score.frames, 1):.3f} of {score.frames}, error {1000 * errors.mean():.1f} mm"
+        f" (median {1000 * np.median(errors):.1f}), below 1 cm {np.mean(errors < CLOSE):.3f},"
+        f" {1000 * seconds.mean():.0f} ms a frame (median {1000 * np.median(seconds):.0f},"
+        f" 95 % {1000 * np.quantile(seconds, 0.95):.0f})"
+    )
+
+
+if __name__ == "__main__":
+    main()

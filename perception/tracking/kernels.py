@@ -1,0 +1,203 @@
+"""Compiled loops of the tracker over pixels and particles."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+SAME, NEARER, FARTHER, COLOUR, MISSING, UNKNOWN = 0, 1, 2, 3, 4, 5
+"""States of a pixel: as in the reference, something nearer, something farther, another colour at the same depth, no
+measurement, and a pixel without a reference."""
+
+STATES = 6
+
+
+@njit(cache=True, nogil=True)
+def depths(points, row, offset):  # type: ignore[no-untyped-def]
+    """Return the depths (r, c) of points (r, c, 3) along the optical axis ``row`` (3,), 0 where there is none."""
+    rows, columns = points.shape[:2]
+    found = np.zeros((rows, columns), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            z = points[i, j, 0] * row[0] + points[i, j, 1] * row[1] + points[i, j, 2] * row[2] + offset
+            if z > 0:  # NaN is not
+                found[i, j] = z
+    return found
+
+
+@njit(cache=True, nogil=True)
+def compared(depth, colour, reference, shade, labels, level, count, tolerance, noise, least_colour, reach):  # type: ignore[no-untyped-def]
+    """Return the state of each pixel (r, c), and how many pixels of each label are in each state.
+
+    Pixels without a reference that show the table (depths ``level``) get the reference of the table. ``reach`` is the
+    distance in pixels within which an equal depth of the reference is looked for.
+    """
+    rows, columns = depth.shape
+    state = np.empty((rows, columns), np.uint8)
+    counts = np.zeros((count + 1, STATES), np.int64)
+    square = least_colour * least_colour
+    for i in range(rows):
+        for j in range(columns):
+            z, label = depth[i, j], labels[i, j]
+            near = max(tolerance, noise * z * z)
+            if z <= 0:
+                found = MISSING
+            elif reference[i, j] <= 0:
+                found = UNKNOWN
+                if abs(z - level[i, j]) < near:
+                    reference[i, j], labels[i, j], label = level[i, j], 0, 0
+                    for k in range(3):
+                        shade[i, j, k] = colour[i, j, k]
+                    found = SAME
+            else:
+                found = _state(z, colour[i, j], reference[i, j], shade[i, j], near, square)
+                if found != SAME and reach > 0:
+                    for m in range(max(i - reach, 0), min(i + reach + 1, rows)):
+                        for n in range(max(j - reach, 0), min(j + reach + 1, columns)):
+                            if found == SAME or reference[m, n] <= 0:
+                                continue
+                            if _state(z, colour[i, j], reference[m, n], shade[m, n], near, square) == SAME:
+                                found = SAME
+            state[i, j] = found
+            if label >= 0:
+                counts[label, found] += 1
+    return state, counts
+
+
+@njit(cache=True, nogil=True)
+def _state(z, colour, reference, shade, near, square):  # type: ignore[no-untyped-def]
+    if z < reference - near:
+        return NEARER
+    if z > reference + near:
+        return FARTHER
+    apart = 0.0
+    for k in range(3):
+        apart += (colour[k] - shade[k]) ** 2
+    return COLOUR if apart > square else SAME
+
+
+@njit(cache=True, nogil=True)
+def remembered(state, depth, colour, reference, shade, last, since, at, tolerance, noise, rate):  # type: ignore[no-untyped-def]
+    """Move the reference of unchanged pixels towards what is measured, and note since when each depth is steady."""
+    rows, columns = depth.shape
+    for i in range(rows):
+        for j in range(columns):
+            z = depth[i, j]
+            if z <= 0:
+                continue
+            if state[i, j] == SAME:
+                reference[i, j] += rate * (z - reference[i, j])
+                for k in range(3):
+                    shade[i, j, k] += rate * (colour[i, j, k] - shade[i, j, k])
+            if abs(z - last[i, j]) > max(tolerance, noise * z * z):
+                since[i, j], last[i, j] = at, z
+
+
+@njit(cache=True, nogil=True)
+def connected(mask, depth, gap):  # type: ignore[no-untyped-def]
+    """Return the component of each pixel of a mask (r, c), from 1, and their number.
+
+    Neighbouring pixels whose depths differ by more than ``gap`` are not connected, and pixels without depth are in no
+    component.
+    """
+    rows, columns = mask.shape
+    of = np.zeros((rows, columns), np.int32)
+    stack = np.empty(rows * columns, np.int64)
+    number = 0
+    for i in range(rows):
+        for j in range(columns):
+            if not mask[i, j] or of[i, j] or depth[i, j] <= 0:
+                continue
+            number += 1
+            of[i, j], size, stack[0] = number, 1, i * columns + j
+            while size:
+                size -= 1
+                y, x = stack[size] // columns, stack[size] % columns
+                for m in range(max(y - 2, 0), min(y + 3, rows)):
+                    for n in range(max(x - 2, 0), min(x + 3, columns)):
+                        if not mask[m, n] or of[m, n] or depth[m, n] <= 0:
+                            continue
+                        if abs(depth[m, n] - depth[y, x]) < gap:
+                            of[m, n] = number
+                            stack[size] = m * columns + n
+                            size += 1
+    return of, number
+
+
+@njit(cache=True, nogil=True)
+def scores(  # type: ignore[no-untyped-def]
+    places, turns, points, colours, matrix, offset, depth, colour, taken, tolerance, noise, spread, hidden, empty
+):
+    """Return the mean score of each particle (n,), and how many of its points are seen, not hidden, and in the image.
+
+    A point of the thing that is at the measured depth scores up to 1, by its distance and its colour. A point behind
+    the measured surface may be hidden: it scores ``hidden``. A point in front of it would be seen and is not: it scores
+    ``empty``. A surface that belongs to something else (``taken``) does not count as the thing's.
+
+    Parameters
+    ----------
+    places, turns
+        Positions (n, 3) and unit quaternions (n, 4), real part first, of the particles.
+    points, colours
+        Points (m, 3) of the thing in its own frame, and their colours.
+    matrix, offset
+        Projection of the points of the table's frame: homogeneous pixel coordinates, the last of which is the depth.
+    depth, colour, taken
+        Image that was measured, and a mask of the pixels that belong to something else.
+    tolerance, noise
+        Standard deviation of the distance: at least the first, and the second times the squared depth.
+    spread
+        Standard deviation of the colours.
+    hidden, empty
+        Scores of points that may be hidden, and of points where nothing is.
+    """
+    rows, columns = depth.shape
+    found = np.zeros(len(places))
+    seen = np.zeros((len(places), 3))
+    for p in range(len(places)):
+        w, x, y, z = turns[p]
+        r00, r01, r02 = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+        r10, r11, r12 = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+        r20, r21, r22 = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+        total = 0.0
+        for i in range(len(points)):
+            a, b, c = points[i]
+            u = r00 * a + r01 * b + r02 * c + places[p, 0]
+            v = r10 * a + r11 * b + r12 * c + places[p, 1]
+            t = r20 * a + r21 * b + r22 * c + places[p, 2]
+            d = matrix[2, 0] * u + matrix[2, 1] * v + matrix[2, 2] * t + offset[2]
+            if d <= 0:
+                total += hidden
+                continue
+            col = (matrix[0, 0] * u + matrix[0, 1] * v + matrix[0, 2] * t + offset[0]) / d
+            row = (matrix[1, 0] * u + matrix[1, 1] * v + matrix[1, 2] * t + offset[1]) / d
+            m, n = int(np.floor(row + 0.5)), int(np.floor(col + 0.5))
+            if m < 0 or n < 0 or m >= rows or n >= columns:
+                total += hidden
+                continue
+            seen[p, 2] += 1
+            measured = depth[m, n]
+            if measured <= 0:
+                total += hidden
+                continue
+            sigma = max(tolerance, noise * measured * measured)
+            apart = measured - d
+            if apart < -3 * sigma:
+                total += hidden
+                continue
+            seen[p, 1] += 1
+            if apart > 3 * sigma:
+                total += empty
+                continue
+            if taken[m, n]:
+                total += 0.5 * empty
+                continue
+            tint = 0.0
+            for k in range(3):
+                tint += (colour[m, n, k] - colours[i, k]) ** 2
+            one = np.exp(-0.5 * (apart / sigma) ** 2) * (0.25 + 0.75 * np.exp(-0.5 * tint / (spread * spread)))
+            total += one
+            if one > 0.2:
+                seen[p, 0] += 1
+        found[p] = total / max(len(points), 1)
+    return found, seen

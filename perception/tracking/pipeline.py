@@ -1,0 +1,341 @@
+"""Pipeline of one tracked thing: its model, its pose, and its particle filter, which start and end with it."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.scene import OrientedBox, turned_axes
+from deixis.perception.tracking.image import FrameImage, TableView
+from deixis.perception.tracking.particles import Estimate, ParticleFilter
+from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.thing import State, TrackedThing
+
+HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
+"""Scores of a point that something may hide, and of a point where something should be seen and is not."""
+
+COLOUR_SPREAD = 38.0
+"""Standard deviation of the colours of one place of a thing, as a distance in RGB from 0 to 255."""
+
+MEMORY_OF_THE_HIDDEN = 30.0
+"""Time in seconds in which the certainty of a thing that is not seen drops to a half."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beneath:
+    """Content of the reference at pixels before a thing covered them: flat indices (k,), depths, colours and labels."""
+
+    pixels: NDArray[np.intp]
+    depth: NDArray[np.float32]
+    colour: NDArray[np.float32]
+    label: NDArray[np.int16]
+
+
+@dataclass(eq=False)
+class Pipeline:
+    """One tracked thing. Its own frame has its origin in the middle of the box, parallel to the table's.
+
+    Parameters
+    ----------
+    id
+        Name of the thing.
+    slot
+        Label of its pixels in the reference.
+    cloud
+        Points in its own frame.
+    half
+        Half of the sides of its box, shape (3,).
+    oriented
+        Box that is turned about the vertical, in its own frame.
+    pose
+        Transform (4, 4) to the table's frame.
+    at
+        Time in seconds when it was first seen.
+    settings
+        Options of the tracker.
+    """
+
+    id: str
+    slot: int
+    cloud: PointCloud
+    half: NDArray[np.float64]
+    oriented: OrientedBox
+    pose: NDArray[np.float64]
+    at: float
+    settings: TrackingSettings
+
+    since: float = field(init=False)
+    seen_at: float = field(init=False)
+    state: State = field(default="seen", init=False)
+    active: bool = field(default=False, init=False)
+    """True while it is not at rest."""
+    found: bool = field(default=True, init=False)
+    """True if the last frame shows it."""
+    agreement: float = field(default=1.0, init=False)
+    """Share of its visible points that agree with the last frame."""
+    beneath: Beneath | None = field(default=None, init=False)
+    settled_at: float = field(default=-np.inf, init=False)
+    """Time in seconds when it last came to rest."""
+    particles: int = field(default=0, init=False)
+    """Number of particles in the last frame, 0 if none were needed."""
+
+    def __post_init__(self) -> None:
+        self.since = self.seen_at = self.at
+        limits = self.settings.particles
+        few = np.linspace(0, len(self.cloud) - 1, min(limits.points, len(self.cloud))).astype(np.int64)
+        order = np.random.default_rng(0).permutation(len(self.cloud))
+        chosen = np.sort(order[few])
+        self._points = self.cloud.points[chosen].astype(np.float64)
+        colours = self.cloud.colours
+        self._colours = np.zeros_like(self._points) if colours is None else colours[chosen].astype(np.float64)
+        self._filter = ParticleFilter(self.pose, limits, self.settings.seed + self.slot)
+        self._places: deque[tuple[float, NDArray[np.float64]]] = deque()
+        self._rest = self.pose
+        self._velocity = np.zeros(3)
+
+    @property
+    def displaced(self) -> float:
+        """Distance in metres from the place where it was last at rest."""
+        return float(np.linalg.norm(self.pose[:3, 3] - self._rest[:3, 3]))
+
+    def expected(self, seconds: float) -> NDArray[np.float64]:
+        """Return where the thing is expected in the next frame, by its velocity.
+
+        Parameters
+        ----------
+        seconds
+            Time since the last frame.
+
+        Returns
+        -------
+        ndarray
+            Position of shape (3,) in the table's frame, in metres.
+        """
+        place: NDArray[np.float64] = self.pose[:3, 3] + self._velocity * seconds
+        return place
+
+    def contains(
+        self, points: NDArray[np.float64], margin: float, pose: NDArray[np.float64] | None = None
+    ) -> NDArray[np.bool_]:
+        """Return True for each point that is within the thing's box.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3) in the table's frame, in metres.
+        margin
+            Distance in metres by which the box is extended on all sides.
+        pose
+            Pose of the thing; by default the present one.
+
+        Returns
+        -------
+        ndarray
+            Mask of shape (n,).
+        """
+        at = self.pose if pose is None else pose
+        own = (points - at[:3, 3]) @ at[:3, :3] - np.array(self.oriented.centre)
+        sides = np.abs(own @ turned_axes(self.oriented.yaw).T)
+        return np.asarray((sides <= np.array(self.oriented.extents) / 2 + margin).all(axis=1))
+
+    def follow(
+        self,
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        changed: NDArray[np.float64],
+        tints: NDArray[np.float64],
+        seconds: float,
+        noise: float,
+    ) -> tuple[Estimate, float, float]:
+        """Look for the thing in a frame.
+
+        Parameters
+        ----------
+        image
+            The frame.
+        view
+            Its view of the table.
+        taken
+            Mask (r, c) of the pixels that belong to something else.
+        changed
+            Points (k, 3) in the table's frame that may be the thing's.
+        tints
+            Their colours.
+        seconds
+            Time since the last frame.
+        noise
+            Standard deviation of depths at one metre.
+
+        Returns
+        -------
+        tuple
+            The estimate; the mean agreement of the points that are not hidden; and the share of points that are seen.
+        """
+        from deixis.perception.tracking.kernels import scores
+
+        def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
+            found: NDArray[np.float64] = scores(
+                places, turns, self._points, self._colours, view.matrix, view.offset, image.depth, image.colour, taken,
+                0.003, 2 * noise, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
+            )[0]  # fmt: skip
+            return found
+
+        def guide(turns: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+            own = rng.integers(len(self._points), size=len(turns))
+            tries = rng.integers(len(changed), size=(len(turns), 6))
+            alike = ((tints[tries] - self._colours[own, None]) ** 2).sum(axis=2)
+            at = changed[tries[np.arange(len(turns)), alike.argmin(axis=1)]]
+            places: NDArray[np.float64] = at - _rotated(turns, self._points[own])
+            return places
+
+        self._velocity = self._filter.velocity.copy()
+        found = self._filter.step(weigh, guide if len(changed) else None, seconds)
+        self.particles = found.particles
+        _, seen = scores(
+            found.place[None], found.turn[None], self._points, self._colours, view.matrix, view.offset, image.depth,
+            image.colour, taken, 0.003, 2 * noise, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
+        )  # fmt: skip
+        inliers, exposed, _ = seen[0]
+        return found, inliers / max(exposed, 1.0), inliers / len(self._points)
+
+    def moved_to(self, pose: NDArray[np.float64], at: float, agreement: float) -> None:
+        """Take a pose that was found in a frame.
+
+        Parameters
+        ----------
+        pose
+            Transform (4, 4) to the table's frame.
+        at
+            Time of the frame in seconds.
+        agreement
+            Share of its visible points that agree with the frame.
+        """
+        self.pose, self.seen_at, self.state, self.found = pose, at, "seen", True
+        self.agreement = agreement
+        self._places.append((at, pose[:3, 3].copy()))
+        while self._places[0][0] < at - self.settings.still_for - 1e-6:
+            self._places.popleft()
+
+    def lost(self, state: State = "hidden") -> None:
+        """Note that a frame does not show the thing; its last pose stays.
+
+        Parameters
+        ----------
+        state
+            State from now on: hidden or gone.
+        """
+        self.state, self.found = state, False
+        self._places.clear()
+        self._filter.reset(self.pose)
+        self._velocity = np.zeros(3)
+
+    def seen_at_rest(self, at: float, agreement: float) -> None:
+        """Note that a frame shows the thing at its place.
+
+        Parameters
+        ----------
+        at
+            Time of the frame in seconds.
+        agreement
+            Share of its visible pixels that agree with the reference.
+        """
+        self.state, self.seen_at, self.found, self.agreement = "seen", at, True, agreement
+
+    def is_still(self, at: float) -> bool:
+        """Return True if the thing has not moved for a while.
+
+        Parameters
+        ----------
+        at
+            Time in seconds.
+
+        Returns
+        -------
+        bool
+            False as long as it has not been followed long enough.
+        """
+        if len(self._places) < 3 or at - self._places[0][0] < 0.7 * self.settings.still_for:
+            return False
+        places = np.array([place for _, place in self._places])
+        return bool(np.ptp(places, axis=0).max() < 2 * self.settings.still)
+
+    def settle(self) -> None:
+        """Come to rest at the mean of the last places; the time since when it is there is kept if it did not move."""
+        pose = self.pose.copy()
+        pose[:3, 3] = np.mean([place for _, place in self._places], axis=0)
+        if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:
+            self.since = self._places[0][0]
+        self.pose, self.active, self._rest = pose, False, pose
+        self.settled_at = self._places[-1][0]
+        self._places.clear()
+        self._filter.reset(pose)
+
+    def put(self, pose: NDArray[np.float64]) -> None:
+        """Begin to look for the thing around another pose.
+
+        Parameters
+        ----------
+        pose
+            Transform (4, 4) to the table's frame.
+        """
+        self._filter.reset(pose)
+        self._places.clear()
+
+    def rest_again(self) -> None:
+        """Stop looking for the thing elsewhere: it is at its place."""
+        self.pose = self._rest
+        self._filter.reset(self._rest)
+        self._places.clear()
+
+    def report(self, at: float) -> TrackedThing:
+        """Return the thing as it is after a frame.
+
+        Parameters
+        ----------
+        at
+            Time of the frame in seconds.
+
+        Returns
+        -------
+        TrackedThing
+            Boxes, cloud and pose in the table's frame.
+        """
+        turn = self.pose[:3, :3]
+        yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+        middle = self.pose[:3, :3] @ np.array(self.oriented.centre) + self.pose[:3, 3]
+        oriented = OrientedBox(tuple(middle.tolist()), self.oriented.yaw + yaw, self.oriented.extents)
+        if np.trace(turn) > 1 + 2 * np.cos(np.deg2rad(3.0)):
+            box = np.stack([self.pose[:3, 3] - self.half, self.pose[:3, 3] + self.half])
+        else:
+            corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+            corners = corners * self.oriented.extents @ turned_axes(self.oriented.yaw) + self.oriented.centre
+            corners = corners @ turn.T + self.pose[:3, 3]
+            box = np.stack([corners.min(axis=0), corners.max(axis=0)])
+        points = self.cloud.points @ turn.T.astype(np.float32) + self.pose[:3, 3].astype(np.float32)
+        faded = 0.5 ** (max(at - self.seen_at, 0.0) / MEMORY_OF_THE_HIDDEN)
+        return TrackedThing(
+            id=self.id,
+            box=box,
+            oriented=oriented,
+            cloud=PointCloud(points, self.cloud.colours),
+            pose=self.pose.copy(),
+            certainty=float(np.clip(self.agreement * faded, 0.01, 1.0)),
+            since=at if self.active and self.found else self.since,
+            first_seen=self.at,
+            seen_at=self.seen_at,
+            state=self.state,
+            moving=self.active and self.found,
+        )
+
+
+def _rotated(turns: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points (n, 3) rotated by unit quaternions (n, 4), real part first."""
+    axis = turns[:, 1:]
+    across = 2 * np.cross(axis, points)
+    result: NDArray[np.float64] = points + turns[:, :1] * across + np.cross(axis, across)
+    return result

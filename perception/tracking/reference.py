@@ -1,0 +1,159 @@
+"""The table as it was last seen at rest: depth, colour and owner of every pixel, and since when it is so."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.tracking.image import FrameImage
+from deixis.perception.tracking.pipeline import Beneath
+
+TABLE, UNKNOWN_OWNER = 0, -1
+"""Owners of pixels: the table and all beyond it, and nothing that is known. Things have their slots, from 1."""
+
+LEARNING_RATE = 0.1
+"""Share of a new measurement in the reference of an unchanged pixel."""
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """Comparison of a frame with the reference.
+
+    ``state`` (r, c) is that of each pixel, ``counts`` (labels, states) how many pixels of each owner are in each state.
+    """
+
+    state: NDArray[np.uint8]
+    counts: NDArray[np.int64]
+
+
+class Reference:
+    """Depth (r, c), colour (r, c, 3) and owner (r, c) of every pixel of a table at rest.
+
+    Parameters
+    ----------
+    image
+        First frame.
+    owner
+        Owner of each pixel, shape (r, c).
+    at
+        Time of the frame in seconds.
+    """
+
+    def __init__(self, image: FrameImage, owner: NDArray[np.int16], at: float) -> None:
+        self.depth = np.where(owner == UNKNOWN_OWNER, 0, image.depth).astype(np.float32)
+        self.colour = image.colour.copy()
+        self.owner = owner
+        self.since = np.full(owner.shape, at)
+        """Time in seconds since which each depth is steady."""
+        self._last = image.depth.copy()
+
+    def compared(
+        self,
+        image: FrameImage,
+        level: NDArray[np.float32],
+        labels: int,
+        tolerance: float,
+        noise: float,
+        colour: float,
+        reach: int,
+    ) -> Changes:
+        """Compare a frame with the reference.
+
+        Parameters
+        ----------
+        image
+            The frame.
+        level
+            Depth of the plane of the table at each pixel, shape (r, c).
+        labels
+            Largest owner.
+        tolerance, noise
+            Least difference of two depths: the first, or the second times the squared depth, whichever is larger.
+        colour
+            Least difference of two colours.
+        reach
+            Distance in pixels within which an equal depth of the reference is looked for.
+
+        Returns
+        -------
+        Changes
+            State of each pixel, and the counts by owner.
+        """
+        from deixis.perception.tracking.kernels import compared
+
+        state, counts = compared(
+            image.depth, image.colour, self.depth, self.colour, self.owner, level, labels, tolerance, noise, colour,
+            reach,
+        )  # fmt: skip
+        return Changes(state, counts)
+
+    def remember(self, image: FrameImage, changes: Changes, at: float, tolerance: float, noise: float) -> None:
+        """Move the reference of unchanged pixels towards a frame, and note which depths are not steady.
+
+        Parameters
+        ----------
+        image, changes
+            The frame, and its comparison with the reference.
+        at
+            Its time in seconds.
+        tolerance, noise
+            As in :meth:`compared`.
+        """
+        from deixis.perception.tracking.kernels import remembered
+
+        remembered(
+            changes.state, image.depth, image.colour, self.depth, self.colour, self._last, self.since, at, tolerance,
+            noise, np.float32(LEARNING_RATE),
+        )  # fmt: skip
+
+    def give(self, pixels: NDArray[np.intp], owner: int, image: FrameImage) -> Beneath:
+        """Give pixels to an owner, with the measurements of a frame, and return what was there before.
+
+        Parameters
+        ----------
+        pixels
+            Flat indices of shape (k,).
+        owner
+            New owner.
+        image
+            The frame.
+
+        Returns
+        -------
+        Beneath
+            What the reference had at these pixels.
+        """
+        before = Beneath(
+            pixels,
+            self.depth.ravel()[pixels],
+            self.colour.reshape(-1, 3)[pixels],
+            self.owner.ravel()[pixels],
+        )
+        self.depth.ravel()[pixels] = image.depth.ravel()[pixels]
+        self.colour.reshape(-1, 3)[pixels] = image.colour.reshape(-1, 3)[pixels]
+        self.owner.ravel()[pixels] = owner
+        return before
+
+    def take(self, owner: int, beneath: Beneath | None, owners: set[int]) -> None:
+        """Take all pixels from an owner: what was beneath comes back, the rest is unknown.
+
+        Parameters
+        ----------
+        owner
+            Owner whose pixels are taken.
+        beneath
+            What was there before it came, or None.
+        owners
+            Owners that are still there.
+        """
+        own = self.owner.ravel() == owner
+        self.depth.ravel()[own] = 0
+        self.owner.ravel()[own] = UNKNOWN_OWNER
+        if beneath is None:
+            return
+        back = own[beneath.pixels] & np.isin(beneath.label, [TABLE, *owners])
+        self.depth.ravel()[beneath.pixels[back]] = beneath.depth[back]
+        self.colour.reshape(-1, 3)[beneath.pixels[back]] = beneath.colour[back]
+        self.owner.ravel()[beneath.pixels[back]] = beneath.label[back]

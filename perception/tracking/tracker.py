@@ -1,0 +1,589 @@
+"""Follow the things on a table from frame to frame, with what is new, what moves and what is gone.
+
+The table at rest is a reference image of depth, colour and owner of every pixel. A thing of which enough pixels are
+unchanged rests, which costs nothing more. A thing that has left its place is followed by its particle filter. Pixels
+that changed and stay as they are, and that are neither a hand's nor a moving thing's, are segmented, and become new
+things or the places of things that were lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import Detection, detect, detect_above
+from deixis.perception.detection.plane import Plane
+from deixis.perception.detection.viewpoint import moved
+from deixis.perception.errors import CloudError
+from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
+from deixis.perception.tracking.particles import Estimate
+from deixis.perception.tracking.pipeline import Pipeline
+from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, Reference
+from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.thing import Situation
+
+MIN_FINITE_SHARE = 0.02
+"""Least share of points with a depth in a frame that is used."""
+
+MIN_OWN_PIXELS = 6
+"""Least number of measured pixels of a thing that decide whether it rests."""
+
+GAP = 0.025
+"""Difference of depths in metres at which neighbouring pixels belong to different surfaces."""
+
+HULL_SLACK = 0.03
+"""Distance in metres beyond the outline of the table from which a point is not above it."""
+
+MIN_OUTSIDE_PIXELS = 12
+"""Number of pixels at the border of the image or beyond the table from which a surface comes from outside."""
+
+MIN_WAY = 0.012
+"""Distance in metres from which a thing whose place is hidden has moved."""
+
+MAX_SPEED = 0.8
+"""Speed in metres per second at which a thing may move while it is not found."""
+
+HAND_MARGIN = 4
+"""Distance in pixels from a hand within which surfaces are taken for parts of the hand."""
+
+MIN_MOVING_PIXELS = 80
+"""Least number of pixels of something that moves and is not a thing, such as a part of a hand."""
+
+DETECTION_PAUSE = 0.25
+"""Least time in seconds between two segmentations."""
+
+RETRY_AFTER = 1.0
+"""Time in seconds after which changed pixels that gave no thing are segmented again."""
+
+
+class Tracker:
+    """Follow the things on one table through the frames of a depth camera.
+
+    Parameters
+    ----------
+    settings
+        Options; the default ones if None.
+
+    Examples
+    --------
+    >>> from deixis.perception.simulator.motion import PassOver, Rest, film
+    >>> from deixis.perception.simulator.laying import Placement
+    >>> story = film([Placement("mug", "mug", 0.0, 0.0)], [Rest(0.4)])
+    >>> with Tracker() as tracker:
+    ...     for frame in story.frames(rate=5):
+    ...         now = tracker.update(frame.cloud, frame.at)
+    >>> [(thing.id, thing.state) for thing in now.things]
+    [('t1', 'seen')]
+    """
+
+    def __init__(self, settings: TrackingSettings | None = None) -> None:
+        self.settings = settings or TrackingSettings()
+        self._things: list[Pipeline] = []
+        self._names = 0
+        self._number = 0
+        self._at: float | None = None
+        self._frame: NDArray[np.float64] | None = None
+        self._hull = np.zeros((0, 3))
+        self._optics: Optics | None = None
+        self._view: TableView | None = None
+        self._reference: Reference | None = None
+        self._noise = 0.0015
+        self._detected_at = -np.inf
+        self._hand_at = -np.inf
+        self._workers: ThreadPoolExecutor | None = None
+
+    def __enter__(self) -> Tracker:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the threads and all things."""
+        if self._workers is not None:
+            self._workers.shutdown()
+        self._workers, self._reference, self._things = None, None, []
+
+    def update(self, cloud: PointCloud, at: float) -> Situation:
+        """Take in a frame, and return the situation after it.
+
+        A frame that cannot be used changes nothing; the notes of the situation say why.
+
+        Parameters
+        ----------
+        cloud
+            Organised cloud in the camera's frame, in metres.
+        at
+            Time of the frame in seconds, later than that of the frame before.
+
+        Returns
+        -------
+        Situation
+            All things, with what came and what went.
+        """
+        number, self._number = self._number, self._number + 1
+        problem = self._problem(cloud, at)
+        if problem is not None:
+            return self._situation(self._at if self._at is not None else at, number, notes=(problem,))
+        before, self._at = self._at, at
+        if self._reference is None:
+            return self._begin(cloud, at, number)
+        assert self._optics is not None and self._view is not None
+        image = image_of(cloud, self._optics, self.settings.stride)
+        changes = self._compare(image)
+        if _camera_moved(changes):
+            self._reference, self._things = None, []
+            return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
+        self._reference.remember(image, changes, at, self.settings.tolerance, self._deviation)
+        hand = self._hand(image, changes)
+        if hand.any() or self._is_busy(image, changes, at):
+            self._hand_at = at
+        self._look_at_resting(changes, at)
+        self._follow(image, changes, at, at - (before if before is not None else at))
+        went = self._let_go(at)
+        came = self._look_for_new(cloud, image, changes, hand, at)
+        return self._situation(at, number, came, went)
+
+    @property
+    def particles(self) -> int:
+        """Number of particles that the last frame needed, over all things."""
+        return sum(thing.particles for thing in self._things)
+
+    @property
+    def _deviation(self) -> float:
+        """Difference of depths at one metre that counts as a change."""
+        return self.settings.noise_ratio * self._noise
+
+    def _problem(self, cloud: PointCloud, at: float) -> str | None:
+        """Return why a frame cannot be used, or None."""
+        if not np.isfinite(at):
+            return f"the time of the frame must be a number of seconds, got {at}; the frame is left out"
+        if self._at is not None and at <= self._at:
+            return f"the clock runs backwards: {at:.3f} s after {self._at:.3f} s; the frame is left out"
+        if cloud.organised is None:
+            return "the cloud is not an image; give clouds with rows and columns; the frame is left out"
+        if not len(cloud) or cloud.finite.mean() < MIN_FINITE_SHARE:
+            return "the frame is empty; it is left out"
+        if self._reference is not None:
+            stride, (rows, columns) = self.settings.stride, cloud.organised
+            first = stride // 2
+            if (len(range(first, rows, stride)), len(range(first, columns, stride))) != self._reference.depth.shape:
+                return f"the size of the image changed to {columns} by {rows} pixels; the frame is left out"
+        return None
+
+    def _situation(
+        self,
+        at: float,
+        number: int,
+        came: tuple[str, ...] = (),
+        went: tuple[Pipeline, ...] = (),
+        notes: tuple[str, ...] = (),
+    ) -> Situation:
+        things = tuple(thing.report(at) for thing in self._things)
+        return Situation(at, number, things, came, tuple(thing.report(at) for thing in went), self._frame, notes)
+
+    # The first frame
+
+    def _begin(self, cloud: PointCloud, at: float, number: int) -> Situation:
+        """Find the table and the things on it."""
+        optics = optics_of(cloud)
+        if optics is None:
+            return self._situation(at, number, notes=("the cloud is not the image of a pinhole camera at its origin",))
+        try:
+            found = detect(cloud, self.settings.detection)
+        except CloudError as error:
+            return self._situation(at, number, notes=(str(error),))
+        if found.table is None:
+            return self._situation(at, number, notes=("; ".join(found.notes) or "no table was found",))
+        self._optics, self._frame = optics, found.frame
+        image = image_of(cloud, optics, self.settings.stride)
+        self._view = table_view(image.optics, found.frame, image.depth.shape)
+        heights = image.points.reshape(-1, 3) @ found.frame[2, :3] + found.frame[2, 3]
+        on = np.abs(heights) < 0.01
+        self._hull = _hull(moved(image.points.reshape(-1, 3)[on].astype(np.float64), found.frame)[:, :2])
+        self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
+        first = self.settings.stride // 2
+        assert cloud.organised is not None
+        of = found.labels.reshape(cloud.organised)[first :: self.settings.stride, first :: self.settings.stride]
+        owner = np.full(of.shape, UNKNOWN_OWNER, np.int16)
+        self._reference = Reference(image, owner, at)
+        near = np.abs(image.depth - self._view.level) < np.maximum(
+            self.settings.tolerance, self._deviation * image.depth**2
+        )
+        plan = moved(image.points.reshape(-1, 3), found.frame)
+        beyond = self._beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
+        self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
+        came = []
+        for k in range(len(found.boxes)):
+            own = np.flatnonzero(of == k)
+            if not self._comes_from_outside(own, image):
+                came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
+                self._reference.give(own, self._things[-1].slot, image)
+        return self._situation(at, number, tuple(came))
+
+    def _enter(self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, at: float) -> str:
+        """Begin the pipeline of object ``k`` of a detection, which has the given points of the cloud."""
+        assert self._frame is not None
+        change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
+        thing = _model(found, cloud, points, k, change)
+        used = {pipeline.slot for pipeline in self._things}
+        slot = next(slot for slot in range(1, len(used) + 2) if slot not in used)
+        self._names += 1
+        own, half, oriented, pose = thing
+        self._things.append(Pipeline(f"t{self._names}", slot, own, half, oriented, pose, at, self.settings))
+        return self._things[-1].id
+
+    # What rests and what moves
+
+    def _compare(self, image: FrameImage) -> Changes:
+        assert self._reference is not None and self._view is not None
+        labels = max((thing.slot for thing in self._things), default=0)
+        settings = self.settings
+        return self._reference.compared(
+            image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour, 0
+        )
+
+    def _look_at_resting(self, changes: Changes, at: float) -> None:
+        """Decide by their pixels which resting things are still at their places."""
+        from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER, SAME
+
+        assert self._reference is not None
+        for thing in self._things:
+            if thing.active:
+                continue
+            count = changes.counts[thing.slot]
+            measured = int(count.sum() - count[MISSING])
+            visible = measured - int(count[NEARER])
+            left = int(count[FARTHER] + count[COLOUR])
+            if measured < MIN_OWN_PIXELS:
+                thing.lost()
+            elif visible >= max(MIN_OWN_PIXELS, 0.25 * measured) and left > self.settings.moved * visible:
+                self._start(thing)
+            elif count[SAME] >= self.settings.doubtful * measured:
+                thing.seen_at_rest(at, float(count[SAME]) / max(visible, 1))
+                thing.particles = 0
+
+    def _start(self, thing: Pipeline) -> None:
+        """Let a thing move: its pixels are free."""
+        assert self._reference is not None
+        thing.active = True
+        self._reference.take(thing.slot, thing.beneath, {other.slot for other in self._things if other is not thing})
+        thing.beneath = None
+
+    def _follow(self, image: FrameImage, changes: Changes, at: float, seconds: float) -> None:
+        """Look for the things that move, and for those whose places are mostly hidden."""
+        from deixis.perception.tracking.kernels import SAME
+
+        assert self._reference is not None and self._view is not None
+        moving = [thing for thing in self._things if thing.active]
+        doubtful = [thing for thing in self._things if not thing.active and thing.seen_at < at]
+        if not moving and not doubtful:
+            return
+        view, reference, limits = self._view, self._reference, self.settings
+        same = changes.state == SAME
+        free = np.flatnonzero(~same & (image.depth > 0))
+        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), view.back)
+        above = points[:, 2] > 0.002
+        free, points = free[above], points[above]
+        tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
+
+        def follow(thing: Pipeline) -> tuple[Pipeline, Estimate, float, float]:
+            taken = (same & (reference.owner != thing.slot)) | others
+            return thing, *thing.follow(image, view, taken, points, tints, seconds, self._noise)
+
+        others = np.zeros(same.shape, np.bool_)
+        for thing, found, fit, visible in self._each(follow, moving):
+            if not self._is_certain(thing, found, fit, visible, at, seconds):
+                thing.lost()
+                continue
+            thing.moved_to(found.pose, at, fit)
+            if thing.is_still(at) and (visible > 0.6 or at - self._hand_at > limits.still_for):
+                thing.settle()
+                self._claim(thing, image, changes)
+        for thing in moving:  # what is theirs is not another thing that left its place unseen
+            if thing.found:
+                others.ravel()[free[thing.contains(points, limits.margin)]] = True
+        left = ~others.ravel()[free]
+        points, tints = points[left], tints[left]
+        for thing, found, fit, visible in self._each(follow, doubtful):
+            way = float(np.linalg.norm(found.place - thing.pose[:3, 3]))
+            if MIN_WAY < way < limits.jump and fit > 0.6 and visible > limits.visible:
+                self._start(thing)
+                thing.moved_to(found.pose, at, fit)
+            else:
+                thing.rest_again()
+                thing.lost()
+
+    def _is_certain(
+        self, thing: Pipeline, found: Estimate, fit: float, visible: float, at: float, seconds: float
+    ) -> bool:
+        """Return True if a frame shows a thing where it was found; far from where it was, it must be seen well."""
+        limits = self.settings
+        if fit <= limits.fit or visible <= limits.visible:
+            return False
+        way = float(np.linalg.norm(found.place - thing.expected(seconds)))
+        lost = at - thing.seen_at - seconds if thing.active else 0.0
+        return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
+
+    def _each(self, job, things: list[Pipeline]) -> Iterator:  # type: ignore[no-untyped-def, type-arg]
+        """Run a job for each thing, in the threads that all pipelines share."""
+        if len(things) == 1 or self.settings.workers == 1:
+            return map(job, things)
+        if self._workers is None:
+            self._workers = ThreadPoolExecutor(self.settings.workers, thread_name_prefix="pipeline")
+        return self._workers.map(job, things)
+
+    def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
+        """Give the changed pixels within the box of a thing that has come to rest to it."""
+        from deixis.perception.tracking.kernels import SAME
+
+        assert self._reference is not None and self._view is not None
+        free = np.flatnonzero((changes.state != SAME) & (image.depth > 0))
+        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), self._view.back)
+        own = free[thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
+        thing.beneath = self._reference.give(own, thing.slot, image)
+        changes.state.ravel()[own] = SAME
+
+    def _let_go(self, at: float) -> tuple[Pipeline, ...]:
+        """End the pipelines of things that left their places and were not found for a while."""
+        limits = self.settings
+        gone = []
+        for thing in self._things:
+            if thing.active and not thing.found:
+                alone = at - max(thing.seen_at, self._hand_at)
+                if alone > limits.gone_after or at - thing.seen_at > limits.lost_after:
+                    thing.lost("gone")
+                    gone.append(thing)
+        self._things = [thing for thing in self._things if thing not in gone]
+        return tuple(gone)
+
+    # What is new
+
+    def _hand(self, image: FrameImage, changes: Changes) -> NDArray[np.bool_]:
+        """Return a mask of the changed pixels of surfaces that come from outside the table: a hand with its arm."""
+        from scipy.ndimage import binary_dilation
+
+        from deixis.perception.tracking.kernels import SAME, connected
+
+        changed = (changes.state != SAME) & (image.depth > 0)
+        of, count = connected(changed, image.depth, np.float32(GAP))
+        if not count:
+            return np.zeros(of.shape, np.bool_)
+        place = np.flatnonzero(of)
+        points = moved(image.points.reshape(-1, 3)[place].astype(np.float64), self._back)
+        rows, columns = np.divmod(place, of.shape[1])
+        border = (rows < 2) | (columns < 2) | (rows >= of.shape[0] - 2) | (columns >= of.shape[1] - 2)
+        outside = np.bincount(of.ravel()[place], border | self._beyond(points[:, :2]), minlength=count + 1)
+        from_outside: NDArray[np.bool_] = outside >= MIN_OUTSIDE_PIXELS
+        from_outside[0] = False
+        if not from_outside.any():
+            return np.zeros(of.shape, np.bool_)
+        around = binary_dilation(from_outside[of], np.ones((3, 3)), iterations=HAND_MARGIN)
+        near: NDArray[np.bool_] = np.bincount(of[around], minlength=count + 1) > 0
+        near[0] = False
+        found: NDArray[np.bool_] = near[of]
+        return found
+
+    def _is_busy(self, image: FrameImage, changes: Changes, at: float) -> bool:
+        """Return True if something moves that is not one of the things."""
+        from deixis.perception.tracking.kernels import NEARER
+
+        assert self._reference is not None
+        moves = (changes.state == NEARER) & (at - self._reference.since < 0.5 * self.settings.steady)
+        place = np.flatnonzero(moves & (image.depth > 0))
+        if len(place) < MIN_MOVING_PIXELS:
+            return False
+        points = moved(image.points.reshape(-1, 3)[place].astype(np.float64), self._back)
+        strange = points[:, 2] > 0.01
+        for thing in self._things:
+            strange &= ~thing.contains(points, self.settings.margin)
+        return bool(strange.sum() >= MIN_MOVING_PIXELS)
+
+    @property
+    def _back(self) -> NDArray[np.float64]:
+        assert self._view is not None
+        return self._view.back
+
+    def _beyond(self, plan: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return True for each place (n, 2) that is not above the table."""
+        if not len(self._hull):
+            return np.zeros(len(plan), np.bool_)
+        with np.errstate(invalid="ignore"):
+            outside = (plan @ self._hull[:, :2].T + self._hull[:, 2]).max(axis=1)
+        return np.asarray(outside > HULL_SLACK)
+
+    def _comes_from_outside(self, pixels: NDArray[np.intp], image: FrameImage) -> bool:
+        points = moved(image.points.reshape(-1, 3)[pixels].astype(np.float64), self._back)
+        return bool(self._beyond(points[:, :2]).sum() > max(MIN_OUTSIDE_PIXELS, 0.2 * len(pixels)))
+
+    def _look_for_new(
+        self, cloud: PointCloud, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
+    ) -> tuple[str, ...]:
+        """Segment what changed and stays as it is; return the ids of new things."""
+        from deixis.perception.tracking.kernels import SAME
+
+        reference, limits = self._reference, self.settings
+        assert reference is not None
+        steady = at - reference.since >= limits.steady
+        free = np.flatnonzero((changes.state != SAME) & (image.depth > 0) & steady & ~hand)
+        if not len(free):
+            return ()
+        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), self._back)
+        flat = (np.abs(points[:, 2]) < 0.002) | self._beyond(points[:, :2])
+        reference.give(free[flat], TABLE, image)
+        free, points = free[~flat], points[~flat]
+        owner = reference.owner.ravel()[free]
+        for thing in self._things:
+            turned = at - thing.settled_at < limits.turned_for
+            inside = thing.contains(points, limits.turned_margin if turned else limits.margin)
+            own = inside & (owner != thing.slot) if not thing.active else np.zeros(len(free), np.bool_)
+            reference.give(free[own], thing.slot, image)
+            drop = own | (inside if thing.active and thing.found else False)
+            free, points, owner = free[~drop], points[~drop], owner[~drop]
+        if len(free) < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
+            return ()
+        self._detected_at = at
+        return self._segment(cloud, image, changes, free, at)
+
+    def _segment(
+        self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
+    ) -> tuple[str, ...]:
+        """Detect objects among the free pixels, which lost things and new ones then have."""
+        from scipy.ndimage import binary_dilation
+
+        from deixis.perception.tracking.kernels import SAME
+
+        reference = self._reference
+        assert reference is not None and self._frame is not None and cloud.organised is not None
+        mask = np.zeros(image.depth.shape, np.bool_)
+        mask.ravel()[free] = True
+        shown = mask | ((reference.owner == TABLE) & (changes.state == SAME))
+        stride = self.settings.stride
+        everywhere = _enlarged(binary_dilation(shown), stride, cloud.organised).ravel()
+        candidates = _enlarged(mask, stride, cloud.organised).ravel()
+        points = np.where(everywhere[:, None], cloud.points, np.float32(np.nan))
+        plane = Plane(self._frame[2, :3], -float(self._frame[2, 3]))
+        found = detect_above(replace(cloud, points=points), plane, self.settings.detection)
+        came = []
+        taken = np.zeros(len(free), np.bool_)
+        of = None
+        if found is not None:
+            first = stride // 2
+            of = found.labels.reshape(cloud.organised)[first::stride, first::stride].ravel()[free]
+            for k in range(len(found.boxes)):
+                own = np.flatnonzero(found.labels == k)
+                pixels = free[of == k]
+                enough = len(pixels) >= self.settings.least_pixels and candidates[own].mean() > 0.5
+                if not enough or self._comes_from_outside(pixels, image):
+                    continue
+                taken |= of == k
+                again = self._recognised(image, changes, pixels, at)
+                if again is None:
+                    came.append(self._enter(found, cloud, own, k, at))
+                    thing = self._things[-1]
+                    thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
+                    thing.beneath = reference.give(pixels, thing.slot, image)
+        reference.since.ravel()[free[~taken]] = at + RETRY_AFTER
+        return tuple(came)
+
+    def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
+        """Return the lost thing that pixels show, put there; None if they show a new thing."""
+        from deixis.perception.tracking.kernels import SAME
+
+        assert self._reference is not None and self._view is not None
+        lost = [thing for thing in self._things if thing.active and not thing.found]
+        if not lost:
+            return None
+        points = moved(image.points.reshape(-1, 3)[pixels].astype(np.float64), self._back)
+        tints = image.colour.reshape(-1, 3)[pixels].astype(np.float64)
+        taken = np.ones(image.depth.shape, np.bool_)
+        taken.ravel()[pixels] = False
+        taken &= changes.state == SAME
+        best: tuple[float, Pipeline, NDArray[np.float64]] | None = None
+        for thing in lost:
+            start = thing.pose.copy()
+            start[:3, 3] = (points.min(axis=0) + points.max(axis=0)) / 2
+            along = _axis(points[:, :2]) - _axis((thing.cloud.points @ start[:3, :3].T.astype(np.float32))[:, :2])
+            for angle in (*(along + np.array([0, np.pi])), *(np.arange(8) * np.pi / 4)):
+                cosine, sine = np.cos(angle), np.sin(angle)
+                pose = start.copy()
+                pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ start[:3, :3]
+                thing.put(pose)
+                found, fit, visible = thing.follow(image, self._view, taken, points, tints, 0.0, self._noise)
+                explained = float(thing.contains(points, self.settings.margin, found.pose).mean())
+                score = fit * explained
+                if fit > self.settings.fit and visible > 0.3 and explained > 0.7 and (best is None or score > best[0]):
+                    best = score, thing, found.pose
+        if best is None:
+            return None
+        _, thing, pose = best
+        thing.put(pose)
+        thing.moved_to(pose, at, best[0])
+        thing.settle()
+        thing.beneath = self._reference.give(pixels, thing.slot, image)
+        return thing
+
+
+def _camera_moved(changes: Changes) -> bool:
+    """Return True if most of the table is not where it was, although it is not hidden."""
+    from deixis.perception.tracking.kernels import COLOUR, FARTHER, SAME
+
+    table = changes.counts[TABLE]
+    left = table[FARTHER] + table[COLOUR]
+    return bool(left > table[SAME] and left > 0.2 * table.sum())
+
+
+def _noise(depth: NDArray[np.float32], level: NDArray[np.float32]) -> float:
+    """Return the standard deviation of depths at one metre, from those of the table."""
+    off = (depth - level) / np.maximum(depth, 0.3) ** 2
+    off = off[np.isfinite(off)]
+    return max(float(1.4826 * np.median(np.abs(off - np.median(off)))) if len(off) else 0.0, 0.0003)
+
+
+def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the convex hull of places (n, 2) as half planes (h, 3)."""
+    from deixis.perception.detection.outline import hull_of
+
+    hull = hull_of(plan[:: max(1, len(plan) // 5000)]) if len(plan) >= 3 else None
+    return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
+
+
+def _axis(plan: NDArray[np.floating]) -> float:
+    """Return the angle of the longest axis of places (n, 2) in radians."""
+    along = np.linalg.eigh(np.cov(plan.T) + 1e-12 * np.eye(2))[1][:, 1]
+    return float(np.arctan2(along[1], along[0]))
+
+
+def _enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Return a mask of every ``stride``-th pixel as one of all pixels."""
+    large = np.repeat(np.repeat(mask, stride, axis=0), stride, axis=1)
+    whole = np.zeros(shape, np.bool_)
+    rows, columns = min(shape[0], large.shape[0]), min(shape[1], large.shape[1])
+    whole[:rows, :columns] = large[:rows, :columns]
+    return whole
+
+
+def _model(
+    found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, change: NDArray[np.float64]
+) -> tuple[PointCloud, NDArray[np.float64], OrientedBox, NDArray[np.float64]]:
+    """Return the cloud in a thing's own frame, half its sides, its turned box, and its pose in the tracker's frame."""
+    own = moved(moved(cloud.points[points].astype(np.float64), found.frame), change)
+    turn = float(np.arctan2(change[1, 0], change[0, 0]))
+    box = found.oriented[k]
+    centre = moved(np.array([box.centre]), change)[0]
+    middle = moved(found.boxes[k].mean(axis=0)[None], change)[0]
+    half = (found.boxes[k][1] - found.boxes[k][0]) / 2
+    if abs(turn) > np.deg2rad(3.0):
+        cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
+        half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
+    pose = np.eye(4)
+    pose[:3, 3] = middle
+    oriented = OrientedBox(tuple((centre - middle).tolist()), box.yaw + turn, box.extents)
+    colours = None if cloud.colours is None else cloud.colours[points]
+    return PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose

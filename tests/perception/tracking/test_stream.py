@@ -1,0 +1,92 @@
+"""Streams of clouds: folders, recordings, and live sources whose late frames are dropped."""
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.clouds.cloud_file import write_cloud
+from deixis.perception.errors import CloudError
+from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.stream import FolderSource, LatestFrames, recording
+
+
+def cloud(x: float) -> PointCloud:
+    return PointCloud(np.full((6, 3), x, np.float32), organised=(2, 3))
+
+
+def frames(count: int) -> Iterator[Frame]:
+    for number in range(count):
+        yield Frame(cloud(number + 1), 0.25 * number, number)
+
+
+def test_recorded_sequence_is_read_again(tmp_path: Path) -> None:
+    assert len(list(recording(frames(3), tmp_path / "film"))) == 3
+    again = list(FolderSource(tmp_path / "film").frames())
+    assert [(frame.at, frame.number, float(frame.cloud.points[0, 0])) for frame in again] == [
+        (0.0, 0, 1.0),
+        (0.25, 1, 2.0),
+        (0.5, 2, 3.0),
+    ]
+    with pytest.raises(CloudError, match="not empty"):
+        next(recording(frames(1), tmp_path / "film"))
+
+
+def test_folder_without_times_has_the_given_rate(tmp_path: Path) -> None:
+    for name in ("b", "a"):
+        write_cloud(tmp_path / f"{name}.pcd", cloud(ord(name)))
+    found = list(FolderSource(tmp_path, rate=4).frames())
+    assert [(frame.at, float(frame.cloud.points[0, 0])) for frame in found] == [(0.0, 97.0), (0.25, 98.0)]
+
+
+def test_damaged_file_gives_a_frame_with_its_problem(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "a.pcd", cloud(1))
+    (tmp_path / "b.pcd").write_bytes(b"nothing")
+    good, bad = FolderSource(tmp_path).frames()
+    assert good.problem is None
+    assert bad.problem is not None and "b.pcd" in bad.problem and "\n" not in bad.problem
+
+
+def test_growing_folder_yields_files_that_come_later(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "a.pcd", cloud(1))
+    later = threading.Timer(0.3, write_cloud, (tmp_path / "b.pcd", cloud(2)))
+    later.start()
+    found = list(FolderSource(tmp_path, grows=True, patience=0.8).frames())
+    later.join()
+    assert [float(frame.cloud.points[0, 0]) for frame in found] == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("text", ["file,seconds\na.pcd,soon\n", "file,seconds\n../a.pcd,1\n"])
+def test_wrong_times_name_file_and_line(tmp_path: Path, text: str) -> None:
+    (tmp_path / "times.csv").write_text(text, encoding="utf-8")
+    write_cloud(tmp_path / "a.pcd", cloud(1))
+    with pytest.raises(CloudError, match=r"times\.csv:2"):
+        list(FolderSource(tmp_path).frames())
+
+
+def test_late_frames_are_dropped_and_counted() -> None:
+    class Camera:
+        def frames(self) -> Iterator[Frame]:
+            yield from frames(20)
+
+    latest = LatestFrames(Camera(), waiting=2)
+    numbers = []
+    for frame in latest.frames():
+        numbers.append(frame.number)
+        time.sleep(0.02)
+    assert numbers == sorted(numbers) and numbers[-1] == 19
+    assert len(numbers) + latest.dropped == 20 and latest.dropped > 0
+
+
+def test_error_of_a_source_reaches_the_reader() -> None:
+    class Camera:
+        def frames(self) -> Iterator[Frame]:
+            yield from frames(1)
+            raise CloudError("the camera was unplugged")
+
+    with pytest.raises(CloudError, match="unplugged"):
+        list(LatestFrames(Camera()).frames())
