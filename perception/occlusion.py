@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 MAX_HEIGHT = 0.05
 """Greatest height in metres of things whose parts are joined."""
 
-MAX_LENGTH, MAX_WIDTH = 0.33, 0.06
+MAX_LENGTH, MAX_WIDTH = 0.27, 0.06
 """Greatest length and width in metres of a joined thing that lies."""
 
 MIN_HIDING_HEIGHT = 0.05

@@ -104,6 +104,9 @@ def apprentice(
     noise: Annotated[
         float, typer.Option(min=0.0, max=10.0, metavar="FACTOR", help="Factor on the noise of the depth camera.")
     ] = 1.0,
+    story: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write key frames of a small run, and a page, to a folder.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Show a robot four things, tell it six layouts on first tables, and let it check further tables."""
@@ -113,6 +116,10 @@ def apprentice(
     plan = ApprenticePlan(tables=tables, seed=seed, noise=noise)
     with step_bar(plan.steps) as tick:
         found = run(plan, tick=lambda: tick("tables"))
+    if story is not None:
+        from deixis.experiments.apprentice.story import write_story
+
+        write_story(plan, story)
     if as_json:
         print_json(to_dict(found))
     else:

@@ -37,8 +37,9 @@ TOLERANCE = 0.012
 COMPARED = ("left", "top", "on")
 """Wide words whose frequencies are kept for each ordered pair of roles; their inverses follow."""
 
-TOLD_HOLDS = 0.99
-"""Probability that a firm fact of a layout holds on a table without mistakes."""
+TOLD_HOLDS, TOLD_SUPPORT = 0.998, 0.98
+"""Probability that a firm fact of a layout is seen to hold on a table without mistakes, and that of *on* and *under*,
+which a small error of heights breaks."""
 
 ELONGATED = 1.7
 """Ratio of the sides of a thing from which it has a direction."""
@@ -61,14 +62,26 @@ LEARNED_WEIGHT = 0.5
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
 """Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
 
-LOOKS_OUTLIERS = 0.004
+FLOATING, SUPPORT_ERROR = 0.03, 0.02
+"""Height in metres above the table from which a thing must rest on another one, and the error of that one's height."""
+
+SLENDER = 0.02
+"""Width in metres below which a thing that is more than twice as high as long cannot stand."""
+
+HEIGHT_ERROR, HEIGHT_DEVIATION, HEIGHT_PRIOR = 0.01, 0.15, 2.0
+"""Error of a height in metres, and prior standard deviation of its logarithm with the number of things it counts as."""
+
+HEIGHT_OUTLIERS, HEIGHT_SPREAD = 0.01, 0.8
+"""Share of things that are of any height, and the standard deviation of the logarithms of all heights."""
+
+LOOKS_OUTLIERS = 0.002
 """Share of things whose candidates are independent of their names."""
 
 PIECE_SHARE, PIECE_HEIGHT = 0.7, 0.012
 """Share of a thing that lies over another one, and metres by which it rises above it, for a piece of that one."""
 
-OFFSET_OUTLIERS, OFFSET_WEIGHT, REACH = 0.02, 1.0, 0.7
-"""Share of offsets that are arbitrary, factor of their evidence, and side in metres of the area of arbitrary ones."""
+OFFSET_OUTLIERS, REACH = 0.02, 0.7
+"""Share of offsets that are arbitrary, and side in metres of the area of arbitrary ones."""
 
 
 @dataclass(frozen=True)
@@ -156,6 +169,8 @@ class Experience:
         Offset in metres from the thing of the first role to that of the second, in x and y.
     axes
         Cosine and sine of twice the direction of each role's long thing, as sums.
+    heights
+        Logarithm of the height of each role's thing, see :func:`log_height`.
     """
 
     tables: int = 0
@@ -163,6 +178,7 @@ class Experience:
     held: Mapping[tuple[str, str, str], Tally] = field(default_factory=dict)
     apart: Mapping[Pair, Moments] = field(default_factory=dict)
     axes: Mapping[str, Moments] = field(default_factory=dict)
+    heights: Mapping[str, Moments] = field(default_factory=dict)
 
     def __add__(self, other: Experience) -> Experience:
         return Experience(
@@ -171,6 +187,7 @@ class Experience:
             _added(self.held, other.held),
             _added(self.apart, other.apart),
             _added(self.axes, other.axes),
+            _added(self.heights, other.heights),
         )
 
     def __neg__(self) -> Experience:
@@ -180,6 +197,7 @@ class Experience:
             {key: -value for key, value in self.held.items()},
             {key: -value for key, value in self.apart.items()},
             {key: -value for key, value in self.axes.items()},
+            {key: -value for key, value in self.heights.items()},
         )
 
     @classmethod
@@ -221,7 +239,8 @@ class Experience:
             direction = long_axis(things[name])
             if direction is not None:
                 axes[name] = Moments.of((float(np.cos(2 * direction)), float(np.sin(2 * direction))))
-        return cls(1, {role: Tally(float(role in things), 1.0) for role in roles}, held, apart, axes)
+        heights = {name: Moments.of((float(log_height(box)),)) for name, box in zip(names, boxes, strict=True)}
+        return cls(1, {role: Tally(float(role in things), 1.0) for role in roles}, held, apart, axes, heights)
 
 
 def _added(first: Mapping[Key, Value], second: Mapping[Key, Value]) -> dict[Key, Value]:
@@ -229,6 +248,23 @@ def _added(first: Mapping[Key, Value], second: Mapping[Key, Value]) -> dict[Key,
     for key, value in second.items():
         total[key] = total[key] + value if key in total else value
     return total
+
+
+def log_height(boxes: Array) -> Array:
+    """Return logarithms of the heights of boxes, which differ little for things that are flat.
+
+    Parameters
+    ----------
+    boxes
+        Lower and upper corners in metres, shape (..., 2, 3).
+
+    Returns
+    -------
+    ndarray
+        Natural logarithms of the height in metres plus ``HEIGHT_ERROR``, shape (...).
+    """
+    height: Array = np.log(boxes[..., 1, 2] - boxes[..., 0, 2] + HEIGHT_ERROR)
+    return height
 
 
 def long_axis(thing: PerceivedObject) -> float | None:
@@ -322,7 +358,8 @@ class LearnedLayout:
         found: dict[tuple[int, int, int], tuple[Relation, int, int, float, float]] = {}
         for fact in self._told():
             (relation,), a, b = fact.relations, graph.index(fact.subject), graph.index(fact.object)
-            share = fact.weight * TOLD_HOLDS + (1 - fact.weight) * 0.5
+            holds = TOLD_SUPPORT if relation.word in ("on", "under") else TOLD_HOLDS
+            share = fact.weight * holds + (1 - fact.weight) * 0.5
             found[relation.index, a, b] = (relation, a, b, share, 1.0)
         for (word, first, second), tally in sorted(self.experience.held.items()):
             if first not in graph.nodes or second not in graph.nodes:
@@ -398,6 +435,7 @@ class LearnedLayout:
         identity = np.where([each is not None for each in ranked], looks, known.labels) + known.sizes
         if known.colours is not None:
             identity = identity + known.colours
+        identity = identity + self._heights(scene.boxes)
         boxes, turn, straight = self._poses(scene)
         ends, kinds, tables = self._tables(boxes, len(scene.objects), ontology.relations)
         spare = dispensable(self.graph.facts())
@@ -437,8 +475,23 @@ class LearnedLayout:
                     straight[i, t] = made[key]
         return np.array(boxes).reshape(len(boxes), 2, 3), np.stack(turn, axis=1), straight
 
+    def _heights(self, boxes: Array) -> Array:
+        """Return the evidence of heights for each role's thing being each box, shape (n, m)."""
+        measured = log_height(boxes)
+        evidence = np.zeros((len(self.roles), len(boxes)))
+        chance = np.exp(-0.5 * ((measured - measured.mean()) / HEIGHT_SPREAD) ** 2) / HEIGHT_SPREAD
+        for place, role in enumerate(self.roles):
+            seen = self.experience.heights.get(role)
+            if seen is None or seen.count < 0.5:
+                continue
+            n, own = seen.count, float(seen.deviation[0])
+            variance = (n * own**2 + HEIGHT_PRIOR * HEIGHT_DEVIATION**2) / (n + HEIGHT_PRIOR) * (1 + 1 / n)
+            likely = np.exp(-0.5 * (measured - seen.mean[0]) ** 2 / variance) / np.sqrt(variance)
+            evidence[place] = np.log((1 - HEIGHT_OUTLIERS) * likely / chance + HEIGHT_OUTLIERS)
+        return evidence
+
     def _offsets(self, boxes: Array, things: int) -> Iterator[tuple[int, int, Array]]:
-        """Yield pairs of roles that a told fact relates, and the evidence of the distance of each pair of poses."""
+        """Yield pairs of roles that a told fact relates, and the evidence of the offset of each pair of poses."""
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
@@ -453,7 +506,7 @@ class LearnedLayout:
             density = np.exp(-0.5 * distance) / (2 * np.pi * np.sqrt(variance.prod()))
             table = np.log((1 - OFFSET_OUTLIERS) * density * REACH**2 + OFFSET_OUTLIERS)
             np.fill_diagonal(table, 0.0)
-            yield graph.index(first), graph.index(second), OFFSET_WEIGHT * table
+            yield graph.index(first), graph.index(second), table
 
     def _tables(
         self, boxes: Array, things: int, relations: Relations
@@ -492,7 +545,11 @@ class LearnedLayout:
 
 
 def _pieces(boxes: Array) -> NDArray[np.bool_]:
-    """Return which boxes lie mostly within another one in plan without rising above it, as pieces of a thing do."""
+    """Return which boxes are probably pieces of other things.
+
+    A piece lies mostly within another box in plan without rising above it, or it floats above the table and nothing
+    supports it, or it is too slender to stand.
+    """
     low, high = boxes[:, 0], boxes[:, 1]
     area = np.prod(high[:, :2] - low[:, :2], axis=1)
     shared = np.prod(
@@ -503,7 +560,12 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     )
     within = (shared >= PIECE_SHARE * area[:, None]) & (area[:, None] < area[None, :])
     flat = high[:, None, 2] <= high[None, :, 2] + PIECE_HEIGHT
-    found: NDArray[np.bool_] = (within & flat).any(axis=1)
+    under = (shared > 0) & (np.abs(low[:, None, 2] - high[None, :, 2]) < SUPPORT_ERROR)
+    np.fill_diagonal(under, False)
+    floats = (low[:, 2] > FLOATING) & ~under.any(axis=1)
+    size = high - low
+    slender = (size[:, :2].min(axis=1) < SLENDER) & (size[:, 2] > 2 * size[:, :2].max(axis=1))
+    found: NDArray[np.bool_] = (within & flat).any(axis=1) | floats | slender
     return found
 
 

@@ -7,16 +7,20 @@ once, and what is doubtful waits. Every table of a layout adds to the experience
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.script import Script
+from deixis.learning.teachings import GROUNDING
+from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.explanation import explain
 from deixis.robot.layouts import Experience, LearnedLayout
+from deixis.robot.lessons import QUESTION_COST, SETTLED, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
 from deixis.session import Session
 
@@ -31,13 +35,20 @@ class RobotError(DeixisError, ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Told:
-    """Result of a text: the layout, the lesson with its grounding, and what each role was matched with."""
+    """Result of a text: the lesson with its grounding, the roles that it taught, and those that wait."""
 
-    layout: str
+    lesson: TableLesson
     learned: Learned
-    taught: tuple[str, ...]
-    waiting: tuple[str, ...]
-    questions: int = 0
+
+    @property
+    def taught(self) -> tuple[str, ...]:
+        """Roles whose things are known now."""
+        return tuple(self.lesson.settled)
+
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """Roles whose things are doubtful, interchangeable or not found."""
+        return tuple(self.lesson.waiting)
 
 
 class Robot:
@@ -56,6 +67,7 @@ class Robot:
     def __init__(self, memory: Session | str | Path) -> None:
         self.session = memory if isinstance(memory, Session) else Session(memory)
         self.layouts: dict[str, LearnedLayout] = {}
+        self.lessons: list[TableLesson] = []
         self._scene: Scene | None = None
         self._look: Look | None = None
         self._knowledge: TableKnowledge | None = None
@@ -88,9 +100,16 @@ class Robot:
         -------
         Scene
             The scene.
+
+        Raises
+        ------
+        RobotError
+            If the boxes of the scene have no heights.
         """
         if isinstance(scene, PointCloud):
             scene = perceived(scene)
+        if scene.objects and len(scene.objects[0].minimum) < 3:
+            raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
         self._scene, self._look = scene, None
         return scene
 
@@ -184,6 +203,11 @@ class Robot:
             The stored view.
         """
         taught = self.session.teach(self.scene, thing, label, by)
+        for lesson in self.lessons:
+            if lesson.scene is self.scene:
+                pointed = [role for role in lesson.waiting if plain_name(role) == plain_name(label)]
+                for role in pointed[:1]:
+                    self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
         self._forget_look()
         return taught
 
@@ -206,18 +230,97 @@ class Robot:
         layout = LearnedLayout.told(script)
         name = layout.name
         known = self.layouts.get(name, layout)
-        matches = learned.grounding.object_matches
-        things: dict[str, PerceivedObject] = {
-            role: seen[match.perceived]
-            for role, match in matches.items()
-            if role in known.roles and (match.probability is None or match.probability >= 0.5)
-        }
-        table = Experience.of_table(known.roles, things, self.session.ontology.relations)
-        self.layouts[name] = LearnedLayout(name, known.script, known.experience + table)
+        lesson = TableLesson.of(len(self.lessons), name, self.scene, learned.grounding)
+        self.lessons.append(lesson)
+        self.layouts[name] = LearnedLayout(name, known.script, known.experience + self._experience(known, lesson))
         self._forget_look()
-        taught = learned.categories
-        waiting = tuple(role for role in known.roles if role not in taught)
-        return Told(name, learned, taught, waiting)
+        return Told(lesson, learned)
+
+    # ---- what waits
+
+    @property
+    def questions(self) -> tuple[Question, ...]:
+        """Questions about the present table that are worth their cost, the one that tells most first."""
+        asked = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
+        worth = [question for question in asked if question.gain > QUESTION_COST]
+        return tuple(sorted(worth, key=lambda question: -question.gain))
+
+    def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
+        """Take the answer to a question, and teach what it settles.
+
+        Parameters
+        ----------
+        question
+            The question.
+        thing
+            Id of the thing in the scene of the lesson; None for none of them.
+        by
+            Name of the person who answers.
+
+        Raises
+        ------
+        RobotError
+            If the scene has no such thing, or the role does not wait any more.
+        """
+        lesson = self.lessons[question.lesson]
+        if question.role not in lesson.waiting:
+            raise RobotError(f"`question` must be about a role that waits, and '{question.role}' does not any more")
+        if thing is None:
+            self._settle(lesson, question.role, None)
+            return
+        if thing not in lesson.scene.ids:
+            raise RobotError(f"`thing` must be a thing of the scene, got '{thing}'; {', '.join(lesson.scene.ids)}")
+        self.session.teach(lesson.scene, thing, plain_name(question.role), by)
+        self._settle(lesson, question.role, Settled(thing, SettledBy.ANSWER, 1.0))
+
+    def reconsider(self) -> tuple[tuple[int, str], ...]:
+        """Look at all lessons again with what was learned since, and teach in hindsight what is clear now.
+
+        A name that only words or hindsight gave, and that is now clearly that of another thing, is corrected.
+
+        Returns
+        -------
+        tuple of tuple
+            Number of the lesson and role of everything that was taught.
+        """
+        done = []
+        for number in range(len(self.lessons)):
+            lesson = self.lessons[number]
+            layout = self.layouts[lesson.layout]
+            knowledge = self.knowledge()
+            seen = knowledge.recognised(lesson.scene)
+            found = explain(layout.evidence(seen, knowledge.ontology, knowledge.meaning))
+            for place, role in enumerate(layout.roles):
+                known = lesson.settled.get(role)
+                if role not in lesson.waiting and known is None:
+                    continue
+                if known is not None and known.by in (SettledBy.ANSWER, SettledBy.POINTING):
+                    continue
+                best = int(found.roles_of[place].argmax())
+                share, thing = float(found.roles_of[place, best]), lesson.scene.ids[best]
+                if share < SETTLED or (known is not None and known.thing == thing):
+                    continue
+                if any(other != role and each.thing == thing for other, each in lesson.settled.items()):
+                    continue
+                self.session.teach(lesson.scene, thing, plain_name(role), GROUNDING)
+                lesson = self._settle(lesson, role, Settled(thing, SettledBy.HINDSIGHT, share))
+                done.append((number, role))
+        return tuple(done)
+
+    def _settle(self, lesson: TableLesson, role: str, settled: Settled | None) -> TableLesson:
+        """Replace a lesson by one in which a role is known, with the experience of its layout; return it."""
+        new = lesson.with_settled(role, settled)
+        self.lessons[lesson.number] = new
+        layout = self.layouts[lesson.layout]
+        seen = layout.experience + -self._experience(layout, lesson) + self._experience(layout, new)
+        self.layouts[lesson.layout] = replace(layout, experience=seen)
+        self._forget_look()
+        return new
+
+    def _experience(self, layout: LearnedLayout, lesson: TableLesson) -> Experience:
+        """Return what a lesson adds to the experience of a layout: the places of the roles that are known."""
+        things = {role: lesson.scene[settled.thing] for role, settled in lesson.settled.items() if role in layout.roles}
+        return Experience.of_table(layout.roles, things, self.session.ontology.relations)
 
     def _forget_look(self) -> None:
         self._look = self._knowledge = None

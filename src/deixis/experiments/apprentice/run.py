@@ -1,6 +1,6 @@
 """Run the experiment: a teacher points at four things, describes layouts on first tables, and the robot checks others.
 
-The robot sees clouds only. The truth serves the teacher, who points at things that she knows, and the scores.
+The robot sees clouds, and the joints of a simulated teacher who points. The truth serves the teacher and the scores.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
@@ -20,9 +20,11 @@ from deixis.examples_data import example
 from deixis.experiments.apprentice.scoring import Count, TableScore, score, total, true_things
 from deixis.experiments.apprentice.tables import Tampered, lay_tampered
 from deixis.extras import require
+from deixis.grammar.utterances import Utterance
 from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.depth import DepthSensor
+from deixis.perception.simulator.teacher import Teacher
 from deixis.robot.looking import Look, TableKnowledge
 from deixis.robot.robot import Robot, perceived
 from deixis.workflows.read import read_script
@@ -94,6 +96,17 @@ class LessonScore:
 
 
 @dataclass(frozen=True)
+class Taught:
+    """A first table with its truth: names of detected things, roles that the words single out, and the questions."""
+
+    number: int
+    layout: str
+    truth: Mapping[str, str]
+    singled_out: tuple[str, ...]
+    questions: int
+
+
+@dataclass(frozen=True)
 class Apprentice:
     """The findings of a run."""
 
@@ -124,10 +137,11 @@ def run(plan: ApprenticePlan, tick: Tick = lambda: None) -> Apprentice:
     """
     require("open3d", "simulating tables")
     with tempfile.TemporaryDirectory() as folder, closing(Robot(folder)) as robot:
-        lessons = []
+        told = []
         for lesson in teach(robot, plan):
-            lessons.append(lesson)
+            told.append(lesson)
             tick()
+        lessons = [lesson_score(robot, lesson) for lesson in told]
         knowledge = robot.knowledge()
         numbers = range(plan.tables)
         processes = min(plan.processes or len(os.sched_getaffinity(0)), max(plan.tables, 1))
@@ -147,8 +161,8 @@ def run(plan: ApprenticePlan, tick: Tick = lambda: None) -> Apprentice:
     return Apprentice(plan, tuple(lessons), tuple(scores))
 
 
-def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[LessonScore]:
-    """Point at things on the first table, and tell all layouts on first tables.
+def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[Taught]:
+    """Point at things on the first tables, tell all layouts, answer questions, and let the robot reconsider.
 
     Parameters
     ----------
@@ -159,8 +173,8 @@ def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[LessonScore]:
 
     Yields
     ------
-    LessonScore
-        Score of each first table.
+    Taught
+        Each first table with its truth.
     """
     scripts = scripts_of(plan)
     pointed_at: set[str] = set()
@@ -169,22 +183,99 @@ def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[LessonScore]:
             _, look = seen_table(scripts[name], plan, _seed(plan, 0, number, place), mistakes=0)
             scene = robot.sees(look.cloud)
             truth = true_things(look, scene)
-            for id, thing in truth.items():
-                if plain_name(thing) in SHOWN and thing not in pointed_at:
-                    robot.shown(plain_name(thing), id, by="teacher")
-                    pointed_at.add(thing)
+            if left := {id: name for id, name in truth.items() if name in SHOWN and name not in pointed_at}:
+                pointed_at |= point_at(robot, left, _seed(plan, 2, number, place))
             told = robot.told(scripts[name])
-            matches = told.learned.grounding.object_matches
-            new = [role for role in told.taught if plain_name(role) not in SHOWN]
-            right = {role for role in new if truth.get(matches[role].perceived) == role}
-            wanted = [role for role in singled_out(scripts[name], look) if plain_name(role) not in SHOWN]
-            yield LessonScore(
-                name,
-                Count(sum(role in right for role in wanted), len(wanted)),
-                Count(len(right), len(new)),
-                told.questions,
-                told.waiting,
-            )
+            wanted = tuple(role for role in singled_out(scripts[name], look) if plain_name(role) not in SHOWN)
+            yield Taught(told.lesson.number, name, truth, wanted, asked(robot, truth))
+    robot.reconsider()
+
+
+def point_at(robot: Robot, things: Mapping[str, str], seed: int) -> set[str]:
+    """Let a simulated teacher point at things of the present table, and say what each is.
+
+    The robot sees the noisy joints of the teacher's arms, and learns what :func:`deixis.workflows.point.point` decides.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    things
+        Name of each thing by its id.
+    seed
+        Seed of the teacher.
+
+    Returns
+    -------
+    set of str
+        Names that were taught; the others were refused, since the gesture was not clear.
+    """
+    from deixis.workflows.point import point
+
+    order = sorted(things, key=lambda id: things[id])
+    recording = Teacher(robot.scene, seed).points_at(order, hold=1.0)
+    said = [
+        Utterance(f"this is a {things[id].replace('_', ' ')}", aim.start, aim.finish)
+        for id, aim in zip(order, recording.aims, strict=True)
+    ]
+    taught = set()
+    for label in point(recording.skeletons, robot.scene, said).taught:
+        assert label.name is not None and label.target is not None
+        name = label.name.replace(" ", "_")
+        robot.shown(name, label.target, by="teacher")
+        taught.add(name)
+    return taught
+
+
+def asked(robot: Robot, truth: Mapping[str, str]) -> int:
+    """Let the teacher answer the questions of a robot about the present table.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    truth
+        Name of the true thing by id of the detected one.
+
+    Returns
+    -------
+    int
+        Number of questions.
+    """
+    place = {name: id for id, name in truth.items()}
+    number = 0
+    while robot.questions:
+        question = robot.questions[0]
+        robot.answers(question, place.get(question.role), by="teacher")
+        number += 1
+    return number
+
+
+def lesson_score(robot: Robot, lesson: Taught) -> LessonScore:
+    """Score a lesson by what the robot knows of its table in the end.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    lesson
+        The lesson with its truth.
+
+    Returns
+    -------
+    LessonScore
+        The score.
+    """
+    known = robot.lessons[lesson.number]
+    new = [role for role in known.settled if plain_name(role) not in SHOWN]
+    right = {role for role in new if lesson.truth.get(known.settled[role].thing) == role}
+    return LessonScore(
+        lesson.layout,
+        Count(sum(role in right for role in lesson.singled_out), len(lesson.singled_out)),
+        Count(len(right), len(new)),
+        lesson.questions,
+        tuple(known.waiting),
+    )
 
 
 def singled_out(script: Script, look: Simulation) -> tuple[str, ...]:

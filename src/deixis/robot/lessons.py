@@ -1,0 +1,177 @@
+"""Lessons of a robot: tables on which a teacher described a layout, what each taught, and what still waits.
+
+A match that is decided is taught at once. The others wait: for an answer, a pointing, or what further tables teach of
+the layout and of its things. What waits is then taught in hindsight, since a lesson keeps its table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from deixis.perception.scene import Scene
+from deixis.reasoning.grounding.answer import Grounding
+
+QUESTION_COST = 0.5
+"""Cost of a question in nats: it is asked if its answer is expected to tell more."""
+
+SETTLED = 0.97
+"""Probability from which a role that waits is taught in hindsight."""
+
+
+class SettledBy(StrEnum):
+    """Source of the thing of a role."""
+
+    WORDS = "words"  # the grounding decided it
+    ANSWER = "answer"  # the teacher answered a question
+    POINTING = "pointing"  # the teacher pointed at it
+    HINDSIGHT = "hindsight"  # later tables and names decided it
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """Thing of a role, how it came to be known, and how probable it is."""
+
+    thing: str
+    by: SettledBy
+    probability: float
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question about a lesson: which thing a role is.
+
+    Attributes
+    ----------
+    lesson
+        Number of the lesson.
+    role
+        The role.
+    among
+        Things that it may be, with their probabilities, the most probable first; None is for none of the things.
+    gain
+        Information that the answer is expected to give, in nats.
+    """
+
+    lesson: int
+    role: str
+    among: tuple[tuple[str | None, float], ...]
+    gain: float
+
+    @property
+    def text(self) -> str:
+        """The question in words."""
+        return f"Which one is the {self.role.replace('_', ' ')}?"
+
+    @property
+    def why(self) -> str:
+        """The reason in words."""
+        listed = ", ".join(f"{thing or 'none of them'} ({share:.2f})" for thing, share in self.among[:4])
+        return (
+            f"The words do not say which one it is: {listed}. The answer is worth {self.gain:.1f} nats, "
+            f"and a question costs {QUESTION_COST:g}."
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class TableLesson:
+    """A table on which a layout was described.
+
+    Attributes
+    ----------
+    number
+        Number of the lesson.
+    layout
+        Name of the layout.
+    scene
+        The table with its clouds.
+    settled
+        Roles that are known.
+    waiting
+        For each role that is not, the things that it may be with their probabilities; None is for none of them.
+    """
+
+    number: int
+    layout: str
+    scene: Scene
+    settled: Mapping[str, Settled]
+    waiting: Mapping[str, Mapping[str | None, float]]
+
+    @classmethod
+    def of(cls, number: int, layout: str, scene: Scene, grounding: Grounding) -> TableLesson:
+        """Return the lesson that a grounding teaches.
+
+        Parameters
+        ----------
+        number
+            Number of the lesson.
+        layout
+            Name of the layout.
+        scene
+            The table.
+        grounding
+            Grounding of the description in the table.
+
+        Returns
+        -------
+        TableLesson
+            Decided matches are settled, the other objects wait.
+        """
+        settled, waiting = {}, {}
+        for role, match in grounding.object_matches.items():
+            probability = 1.0 if match.probability is None else match.probability
+            if match.decided:
+                settled[role] = Settled(match.perceived, SettledBy.WORDS, probability)
+            else:
+                others = {each.perceived: each.probability or 0.0 for each in match.alternatives}
+                waiting[role] = {match.perceived: probability, **others}
+        for left in grounding.unmatched_objects:
+            waiting[left.name] = {each.perceived: each.probability or 0.0 for each in left.alternatives}
+        return cls(number, layout, scene, settled, waiting)
+
+    def with_settled(self, role: str, settled: Settled | None) -> TableLesson:
+        """Return the lesson with a role that is known.
+
+        Parameters
+        ----------
+        role
+            The role.
+        settled
+            Its thing; None if it is not on the table, so that it no longer waits.
+
+        Returns
+        -------
+        TableLesson
+            The lesson, in which no other role waits for that thing.
+        """
+        known = dict(self.settled)
+        rest = {name: shares for name, shares in self.waiting.items() if name != role}
+        if settled is not None:
+            known[role] = settled
+            rest = {name: {k: v for k, v in shares.items() if k != settled.thing} for name, shares in rest.items()}
+        return replace(self, settled=known, waiting=rest)
+
+    def questions(self) -> tuple[Question, ...]:
+        """Return the questions about the roles that wait, the one that tells most first.
+
+        Returns
+        -------
+        tuple of Question
+            One for each role whose answer is not known.
+        """
+        taken = {settled.thing for settled in self.settled.values()}
+        found = []
+        for role, shares in self.waiting.items():
+            listed = {thing: share for thing, share in shares.items() if thing not in taken and share > 0}
+            total = sum(listed.values())
+            if total < 1.0:
+                # what no listed thing explains: another thing, or none
+                listed[None] = listed.get(None, 0.0) + 1.0 - total
+            rates = np.array(list(listed.values())) / sum(listed.values())
+            gain = float(-(rates * np.log(np.maximum(rates, 1e-12))).sum())
+            among = sorted(zip(listed, rates.tolist(), strict=True), key=lambda item: (-item[1], item[0] or ""))
+            found.append(Question(self.number, role, tuple(among), gain))
+        return tuple(sorted(found, key=lambda question: (-question.gain, question.role)))
