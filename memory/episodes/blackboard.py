@@ -17,8 +17,10 @@ import math
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from datetime import UTC, datetime, timedelta
+from itertools import islice
 from pathlib import Path
 from typing import Self
 
@@ -66,6 +68,7 @@ class Blackboard(Closing):
         self._origin = self._begin(origin or datetime.now(UTC))
         self._sequence = self._last_sequence()
         self._open = self._unfinished()
+        self._recent: deque[Logged] = deque(maxlen=_PAGE)  # the end of the log, for subscribers that keep up
         self._guards = [shipped_guard()]
 
     @classmethod
@@ -273,6 +276,7 @@ class Blackboard(Closing):
                 guard.check(each.after for each in made if each.after is not None)
             self._keys.write(self._pairs(made))
             self._sequence = made[-1].sequence
+            self._recent.extend(made)
             for each in made:
                 if each.after is not None and each.after.is_open:
                     self._open[each.id] = each.after
@@ -632,7 +636,7 @@ class Blackboard(Closing):
             self._check_open()
             if name in self._subscriptions:
                 raise EpisodeError(f"a subscriber named '{name}' is there already; cancel it, or choose another name")
-            position = self._sequence if since is None else since
+            position = self._sequence if since is None else max(0, since)
             subscription = Subscription(
                 name, concerns, callback, position, self._read_log, lambda: self._sequence, trouble
             )
@@ -727,6 +731,7 @@ class Blackboard(Closing):
         self._check_open()
         if self._keys.restored():
             self._sequence, self._open = self._last_sequence(), self._unfinished()
+            self._recent.clear()
 
     def _check_open(self) -> None:
         if self._closed:
@@ -753,12 +758,16 @@ class Blackboard(Closing):
         return (key[1:] for key in self._keys.between(FLUENT, _end(FLUENT)))
 
     def _read_log(self, since: int) -> Iterator[Logged]:
+        since = max(0, since)
         while True:
             with self._lock:
                 if self._closed or since >= self._sequence:
                     return
                 last = min(since + _PAGE, self._sequence)
-                page = list(self._keys.items(_log_key(since + 1), _log_key(last + 1)))
+                skipped = since + 1 - self._recent[0].sequence if self._recent else -1
+                latest = list(islice(self._recent, skipped, skipped + _PAGE)) if skipped >= 0 else []
+                page = [] if latest else list(self._keys.items(_log_key(since + 1), _log_key(last + 1)))
+            yield from latest
             for key, data in page:
                 yield decode_logged(int.from_bytes(key[1:], "big"), data)
             since = last

@@ -87,6 +87,8 @@ CASES = [
     ("recognised_activity", "activity recognise --known {t}/known.json --memory {t}/watched"),
     ("recall", "recall 'what is on the table?' --memory {t}/watched"),
     ("recall", "recall 'where was the spoon before?' --memory {t}/watched"),
+    ("episodes", "episodes list --memory {t}/watched"),
+    ("episodes_checked", "episodes check --no-ontology --memory {t}/watched"),
     ("unlearned", "unlearn --table {t}/table.scene.json --dry-run"),
     ("time", "time {e}/serving.fluents.json"),
     ("time", "time {e}/serving.fluents.json --at 25"),

@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, MemoryDir, print_line, print_lines, print_note, print_written, require_ending
+from deixis.answers import count
+from deixis.cli.common import (
+    NO,
+    AsJson,
+    MemoryDir,
+    print_json,
+    print_line,
+    print_lines,
+    print_note,
+    print_written,
+    require_ending,
+)
 
 if TYPE_CHECKING:
     from deixis.memory.episodes.blackboard import Blackboard
@@ -98,7 +109,7 @@ def import_(
             board.write(*map(Add, fluents), by=by)
         else:
             put_episode(board, name, fluents, *span_of(fluents), by=by)
-    print_line(f"{len(fluents)} fluents were added.")
+    print_line(f"Added {count(len(fluents), 'fluent')}.")
 
 
 @episodes_app.command("finish")
@@ -118,7 +129,7 @@ def finish_(
             last = board.write(*(Finish(id, time) for id in ids or ()), by=by)
         else:
             last = board.finish_where(_pattern(*pattern), time, by)
-    print_line(f"{last - before} fluents finished.")
+    print_line(f"Finished {count(last - before, 'fluent')}.")
 
 
 @episodes_app.command("update")
@@ -142,7 +153,7 @@ def update(
             chosen = [each.id for each in board.holding(_pattern(*pattern), *(window or (None, None)))]
         changes = (Update(id, start=start, finish=finish, certainty=certainty) for id in chosen)
         last = board.write(*changes, by=by)
-    print_line(f"{last - before} fluents were updated.")
+    print_line(f"Updated {count(last - before, 'fluent')}.")
 
 
 @episodes_app.command("delete")
@@ -162,7 +173,7 @@ def delete(
             last = board.write(*map(Delete, ids or ()), by=by)
         else:
             last = board.delete_where(_pattern(*pattern), by, *(window or (None, None)))
-    print_line(f"{last - before} fluents were deleted.")
+    print_line(f"Deleted {count(last - before, 'fluent')}.")
 
 
 @episodes_app.command("list")
@@ -172,9 +183,11 @@ def list_(
     now: Annotated[bool, typer.Option("--now", help="Only what has not finished.")] = False,
     experience: Annotated[str | None, typer.Option(metavar="NAME", help="Only what held in an experience.")] = None,
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """List fluents with their times, certainty and source."""
     from deixis.memory.episodes.experiences import episode
+    from deixis.workflows.episodes import fluent_to_dict
 
     with _board(memory) as board:
         wanted = _pattern(*pattern)
@@ -182,7 +195,11 @@ def list_(
             found = tuple(each for each in episode(board, experience) if wanted.matches(each.statement))
         else:
             found = board.now(wanted) if now else board.holding(wanted, *(window or (None, None)))
-    print_lines([str(each) for each in found] or ["Nothing is known to hold."])
+        origin, sequence = board.origin.isoformat(), board.sequence
+    if as_json:
+        print_json({"origin": origin, "sequence": sequence, "fluents": [fluent_to_dict(each) for each in found]})
+    else:
+        print_lines([str(each) for each in found] or ["Nothing is known to hold."])
 
 
 @episodes_app.command("changes")
@@ -248,6 +265,7 @@ def check(
     ] = True,
     time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Answer within this time.")] = 30.0,
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Check whether fluents can all be true, in time, in space and by the ontology; exit 1 if not."""
     from deixis.ontology.tbox import default_ontology
@@ -256,11 +274,15 @@ def check(
     with _board(memory) as board:
         fluents = board.holding(_pattern(*pattern), *(window or (None, None)))
     found = check_consistency(fluents, default_ontology(), time_limit, logical=ontology)
-    for kind, lines in (("time", found.temporal), ("space", found.spatial), ("ontology", found.logical)):
-        print_lines(f"{kind}: {line}" for line in lines)
-    for note in found.undecided:
-        print_note(note)
-    print_line(f"{len(fluents)} fluents: {'consistent' if found.consistent else 'contradictory'}")
+    conflicts = {"time": found.temporal, "space": found.spatial, "ontology": found.logical}
+    if as_json:
+        lists = {**conflicts, "undecided": found.undecided}
+        print_json({"consistent": found.consistent, "fluents": len(fluents), **{k: list(v) for k, v in lists.items()}})
+    else:
+        print_lines(f"{kind}: {line}" for kind, lines in conflicts.items() for line in lines)
+        for note in found.undecided:
+            print_note(note)
+        print_line(f"{count(len(fluents), 'fluent')}: {'consistent' if found.consistent else 'contradictory'}")
     if not found.consistent:
         raise typer.Exit(NO)
 

@@ -154,25 +154,28 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
 def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Check the memory for damage, and for concepts that do not follow from its lessons; exit 1 on any finding."""
     from deixis.learning.update import stale
+    from deixis.memory.episodes.blackboard import has_episodes
     from deixis.memory.on_demand import default_memory
     from deixis.memory.verify import verify as run
     from deixis.ontology.tbox import default_ontology
 
     where = memory or default_memory()
-    require_memory(where)
+    episodes = has_episodes(where)
+    if not episodes:
+        require_memory(where)
     with progress_bar("verifying") as progress:
         found = run(where, progress, lambda store: stale(store, default_ontology()))
     if as_json:
         findings = [{"where": entry.where, "what": entry.what} for entry in found.findings]
         print_json({"verified": {"concepts": found.semantic, "views": found.perceptual}, "findings": findings})
     else:
-        print_lines(_verified_lines(found))
+        print_lines(_verified_lines(found, episodes))
     if found.findings:
         raise typer.Exit(NO)
 
 
-def _verified_lines(found: Verified) -> Iterator[str]:
-    there = {"concepts": found.semantic, "views": found.perceptual}
+def _verified_lines(found: Verified, episodes: bool) -> Iterator[str]:
+    there = {"concepts": found.semantic, "views": found.perceptual} | ({"episodes": True} if episodes else {})
     yield from (violation(str(finding)) for finding in found.findings)
     if not found.findings:
         yield f"All {' and '.join(what for what, known in there.items() if known)} are undamaged."

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.formats.fluents import FluentFile, format_fluents, parse_fluents
+from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
@@ -123,6 +123,32 @@ def fluents_of_text(text: str, file: str, source: Source) -> tuple[EpisodicFluen
         If the text has an error; the message names the place.
     """
     return tuple(EpisodicFluent(fluent, 1.0, source) for fluent in parse_fluents(text, file).fluents)
+
+
+def fluent_to_dict(fluent: EpisodicFluent) -> dict[str, Any]:
+    """Return a fluent of the blackboard as plain data.
+
+    Parameters
+    ----------
+    fluent
+        The fluent.
+
+    Returns
+    -------
+    dict
+        Its id, statement, times as in a file of fluents, certainty and source.
+    """
+    said, source = fluent.statement, fluent.source
+    return {
+        "id": fluent.id,
+        "statement": [said.subject, said.predicate, *([] if said.object is None else [said.object])],
+        "start": bounds_to_json(fluent.start),
+        "finish": bounds_to_json(fluent.finish),
+        "certainty": fluent.certainty,
+        "origin": source.origin.value,
+        "by": source.by,
+        "event": source.event,
+    }
 
 
 def span_of(fluents: Sequence[EpisodicFluent]) -> tuple[float, float]:

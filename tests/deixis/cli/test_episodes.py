@@ -18,17 +18,19 @@ def memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_statements_are_finished_updated_and_deleted(memory: Path) -> None:
-    assert deixis("episodes", "finish", "f1", "--at", "5")[1] == "1 fluents finished.\n"
+    assert deixis("episodes", "finish", "f1", "--at", "5")[1] == "Finished 1 fluent.\n"
     updated = deixis("episodes", "update", "--pattern", "*", "isA", "*", "--certainty", "0.5")
-    assert updated[1] == "1 fluents were updated.\n"
+    assert updated[1] == "Updated 1 fluent.\n"
     assert deixis("episodes", "list", "--window", "3", "4")[1].splitlines() == [
         "f1: on(t1, table) from [1, 1] to [5, 5], certainty 1, said by user",
         "f2: isA(t1, fork) from [2, 2] to (-∞, ∞), certainty 0.5, shown by anna",
     ]
     assert len(deixis("episodes", "list", "--now")[1].splitlines()) == 1
-    assert deixis("episodes", "delete", "--window", "0", "9")[1] == "2 fluents were deleted.\n"
+    assert deixis("episodes", "delete", "--window", "0", "9")[1] == "Deleted 2 fluents.\n"
     assert deixis("episodes", "list")[1] == "Nothing is known to hold.\n"
     assert len(deixis("episodes", "changes", "--since", "2")[1].splitlines()) == 4
+    assert len(deixis("episodes", "changes", "--since", "-5")[1].splitlines()) == 6
+    assert deixis("memory", "verify")[1].splitlines()[0] == "All episodes are undamaged."
 
 
 def test_exported_file_is_read_by_time_and_imported_again(memory: Path) -> None:
@@ -37,7 +39,7 @@ def test_exported_file_is_read_by_time_and_imported_again(memory: Path) -> None:
     assert "on(t1, table)" in deixis("time", str(file))[1]
     other = str(memory / "other")
     code, out, _ = deixis("episodes", "import", str(file), "--name", "lunch", "--memory", other)
-    assert (code, out) == (0, "2 fluents were added.\n")
+    assert (code, out) == (0, "Added 2 fluents.\n")
     assert len(deixis("episodes", "list", "--experience", "lunch", "--memory", other)[1].splitlines()) == 2
 
 
