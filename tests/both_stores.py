@@ -51,6 +51,9 @@ class Example:
             "learn a batch": f"session.learn_all([({self.script!r}, {self.scene(4)!r})] * 3)",
             "teach otherwise": f"session.teach({self.scene(3)!r}, 'o1', 'gizmo')",
             "forget a lesson": "session.forget('tea-1')",
+            "take back a table": (
+                f"from deixis.workflows.unlearn import Selection; session.unlearn(Selection(table={self.scene(3)!r}))"
+            ),
             "forget a category": "session.forget_category('plate')",
             "rename": "session.rename_category('fork', 'prongs')",
             "merge": "session.merge_categories('fork', 'knife')",

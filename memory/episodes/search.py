@@ -7,6 +7,7 @@ same fluents.
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -16,6 +17,9 @@ from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.rdf import EP, SOSA, predicate_iri, resource_iri, thing_iri
 from deixis.memory.semantic.rdf.graphs import FLUENTS
 from deixis.reasoning.temporal.fluent import Pattern
+
+MAX_LOOKUPS = 20
+"""Number of subjects up to which their fluents are looked up one by one, rather than in one pass over all."""
 
 
 class Edge(Enum):
@@ -96,12 +100,13 @@ class FluentSearch:
         """
         found = [each for each in self._candidates(board) if self._matches(each)]
         if self.event is not None:
-            found = [each for each in found if self._is_event(each, board)]
-        return tuple(each for each in found if self._is_picked(each, found))
+            found = self._events(found, board)
+        return tuple(self._picked(found))
 
     def _candidates(self, board: Blackboard) -> Iterable[EpisodicFluent]:
         if self.subjects is None:
-            return board.holding()
+            whole = self.edge is not Edge.HOLDS
+            return board.holding() if whole else board.holding(start=self.start, end=self.end)
         found = (each for name in sorted(self.subjects) for each in board.holding(Pattern(name)))
         return sorted(found, key=lambda each: (each.start.lower, each.id))
 
@@ -124,12 +129,24 @@ class FluentSearch:
             return start.lower > -math.inf and start.lower <= self.end and start.upper >= self.start
         return finish.upper < math.inf and finish.lower <= self.end and finish.upper >= self.start
 
-    def _is_event(self, found: EpisodicFluent, board: Blackboard) -> bool:
-        others = [
-            each
-            for each in board.holding(Pattern(found.statement.subject))
-            if each.id != found.id and each.statement.predicate in self.places
-        ]
+    def _events(self, found: Sequence[EpisodicFluent], board: Blackboard) -> list[EpisodicFluent]:
+        """Return the fluents with which their subjects come, go or move."""
+        by_subject: dict[str, list[EpisodicFluent]] = defaultdict(list)
+        for each in self._all_of({each.statement.subject for each in found}, board):
+            if each.statement.predicate in self.places:
+                by_subject[each.statement.subject].append(each)
+        return [each for each in found if self._is_event(each, by_subject[each.statement.subject])]
+
+    def _all_of(self, subjects: set[str], board: Blackboard) -> Iterator[EpisodicFluent]:
+        """Yield all fluents of some subjects: one by one where they are few, else in one pass."""
+        if len(subjects) <= MAX_LOOKUPS:
+            for name in subjects:
+                yield from board.holding(Pattern(name))
+        else:
+            yield from (each for each in board.holding() if each.statement.subject in subjects)
+
+    def _is_event(self, found: EpisodicFluent, places: Sequence[EpisodicFluent]) -> bool:
+        others = (each for each in places if each.id != found.id)
         if self.event is Event.GOES:
             after = found.finish.upper
             return not any(each.start.lower <= after < each.finish.upper for each in others)
@@ -137,15 +154,16 @@ class FluentSearch:
         held = any(each.start.lower < before <= each.finish.upper for each in others)
         return held if self.event is Event.MOVES else not held
 
-    def _is_picked(self, found: EpisodicFluent, all_found: Sequence[EpisodicFluent]) -> bool:
-        """Return whether no other fluent was certainly earlier (for the first) or later (for the last)."""
-        if self.pick is Pick.ALL:
-            return True
-        ends = [each.finish if self.edge is Edge.FINISHES else each.start for each in all_found]
-        own = found.finish if self.edge is Edge.FINISHES else found.start
-        if self.pick is Pick.FIRST:
-            return all(end.upper >= own.lower for end in ends)
-        return all(end.lower <= own.upper for end in ends)
+    def _picked(self, found: Sequence[EpisodicFluent]) -> Iterator[EpisodicFluent]:
+        """Yield the fluents of which no other was certainly earlier (for the first) or later (for the last)."""
+        ends = [each.finish if self.edge is Edge.FINISHES else each.start for each in found]
+        first = min((end.upper for end in ends), default=0.0)
+        last = max((end.lower for end in ends), default=0.0)
+        for each, end in zip(found, ends, strict=True):
+            if (self.pick is not Pick.FIRST or end.lower <= first) and (
+                self.pick is not Pick.LAST or end.upper >= last
+            ):
+                yield each
 
     def sparql(self) -> str:
         """Return a query over a memory that finds the same fluents, with their times and sources.

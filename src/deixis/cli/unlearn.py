@@ -32,13 +32,16 @@ def unlearn(
     as_json: AsJson = False,
 ) -> None:
     """Take back what matches all given options, with everything that came only from it; exit 1 where nothing does."""
+    from deixis.memory.episodes.blackboard import has_episodes
+    from deixis.memory.on_demand import default_memory
     from deixis.report.unlearn import unlearned_lines
     from deixis.session import Session
     from deixis.workflows.unlearn import Selection, span_of_day
 
     since, until = (None, None) if day is None else span_of_day(day)
     selection = Selection(lesson, sentence, label, view, table, teacher, since, until)
-    require_memory(memory)
+    if not has_episodes(memory or default_memory()):
+        require_memory(memory)
     with Session(memory) as session:
         found = session.unlearn(selection, dry_run)
         if found and not dry_run:

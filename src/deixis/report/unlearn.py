@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from deixis.report.marks import doubt
+
 if TYPE_CHECKING:
     from deixis.workflows.unlearn import Unlearned
 
@@ -32,7 +34,11 @@ def unlearned_lines(found: Unlearned) -> Iterator[str]:
             yield f"view {change.view}: still a view of '{change.category}', without {sources}"
         else:
             yield f"view {change.view}: '{change.before}' ({sources}) is '{change.category}' again"
+    if found.fluents:
+        yield f"fluents {', '.join(found.fluents[:20])}{' …' if len(found.fluents) > 20 else ''}"
     summary = found.summary()
+    for lesson in found.containing:
+        yield doubt(f"lesson {lesson} has the sentence among others and stays; --lesson {lesson} takes all of it back")
     yield f"{summary[0].upper()}{summary[1:]}." if found else "Nothing that was taught matches."
 
 
@@ -58,4 +64,9 @@ def unlearned_to_dict(found: Unlearned) -> dict[str, Any]:
         }
         for change in found.views
     ]
-    return {"lessons": list(found.lessons), "views": views}
+    return {
+        "lessons": list(found.lessons),
+        "views": views,
+        "fluents": list(found.fluents),
+        "containing": list(found.containing),
+    }

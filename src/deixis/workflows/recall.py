@@ -299,7 +299,7 @@ class _Remembering:
         """Return the search of the fluents that answer a question."""
         kind = asked.kind
         things = None if asked.thing is None else self.resolve(asked.thing)
-        if kind in EVENTS or kind == "when_did":
+        if kind in EVENTS or kind in ("when_did", "whether_did"):
             return self._search_of_event(asked, things)
         if kind in ("shown", "said", "who", "happened"):
             return self._search_of_statements(asked, things)
@@ -308,8 +308,11 @@ class _Remembering:
         if kind == "when_held":
             start, end, pick, edge = -math.inf, self.asked, Pick.ALL, Edge.HOLDS
         found = FluentSearch(things, self.places, edge=edge, start=start, end=end, pick=pick)
+        if kind in ("where_put", "seen_last"):
+            found = replace(found, edge=Edge.HOLDS if kind == "seen_last" else Edge.STARTS, pick=Pick.LAST)
+            found = replace(found, start=-math.inf, end=self.asked)
         if asked.relation is None:
-            if kind == "where" and self.relations:
+            if kind in ("where", "where_put", "seen_last") and self.relations:
                 by_relation = replace(found, predicates=self.relations)
                 found = by_relation if by_relation.run(self.board) else found
             return found
@@ -327,7 +330,7 @@ class _Remembering:
     def _search_of_event(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
         start, end, pick = self.window(asked.when, event=True)
         pick = Pick(asked.order) if asked.order else pick
-        if asked.kind == "when_did" and asked.event == "shown":
+        if asked.event == "shown":
             return FluentSearch(things, None, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
         event = EVENTS[asked.event or asked.kind]
         return self.event_search(event, things, start, end, pick)
@@ -387,6 +390,9 @@ class _Remembering:
 
     def _otherwise(self, asked: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
         """Return where the thing of a yes-or-no question was instead, if that is recorded."""
+        if asked.kind == "whether_did" and asked.event != "shown":
+            held = replace(search, edge=Edge.HOLDS, event=None, pick=Pick.ALL, predicates=self.relations or self.places)
+            return held.run(self.board)
         if asked.kind != "whether":
             return ()
         return replace(search, predicates=self.relations, objects=None).run(self.board)
@@ -463,12 +469,12 @@ def _sentence(found: Recall) -> str:
     if kind == "how_many":
         number = len({fact.fluent.statement.subject for fact in facts})
         return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
-    if kind in ("gone", "come", "moved", "when_did"):
+    if kind in ("gone", "come", "moved", "when_did", "whether_did"):
         words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[asked.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
         told = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
-        return _capital("; ".join(told))
+        return f"Yes: {'; '.join(told)}." if kind == "whether_did" else _capital("; ".join(told))
     if kind in ("shown", "who"):
         told = _distinct(
             f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "

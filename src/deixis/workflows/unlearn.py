@@ -1,17 +1,21 @@
-"""Take back what a sentence, a lesson, a label, a table, a teacher or a day taught, in all stores.
+"""Take back what a sentence, a lesson, a label, a table, a teacher or a day taught, in all memories.
 
 Everything that came only from it goes, and nothing else: what remains is what the memory would hold if it had never
 been taught. Lessons are removed with what follows from them only; a view keeps its other teachings, and is forgotten
-with its last one.
+with its last one. In the episodes, what persons said and showed is deleted, with the fluents of the same events; what
+was seen stays.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,14 +23,24 @@ from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.teachings import Teaching, Teachings, prevailing, teachings_of, written
+from deixis.memory.episodes.changes import Add, Delete
+from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.view_store import ViewStore, boxes_key, category_name
 from deixis.workflows.read import as_scene
 
 if TYPE_CHECKING:
+    from deixis.learning.update import Commit
+    from deixis.memory.episodes.blackboard import Blackboard
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.ontology.lessons.read import Provenance
+
+
+_SENTENCE_ENDS = re.compile(r"(?<=[.!?])\s+|[;\n]+")
+
+UNLEARN = "unlearn"
+"""Name under which the log of the blackboard records what was taken back."""
 
 
 @dataclass(frozen=True)
@@ -98,13 +112,19 @@ class ViewChange:
 
 @dataclass(frozen=True, repr=False)
 class Unlearned(Answer):
-    """Lessons and views that were taken back; a view is forgotten, or has another category or source now."""
+    """Lessons, views and fluents that were taken back.
+
+    A view is forgotten, or has another category or source now; ``fluents`` are the ids of what persons said or showed.
+    ``containing`` are lessons that have the sentence among others, and stay.
+    """
 
     lessons: tuple[str, ...] = ()
     views: tuple[ViewChange, ...] = ()
+    fluents: tuple[str, ...] = ()
+    containing: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.lessons or self.views)
+        return bool(self.lessons or self.views or self.fluents)
 
     def summary(self) -> str:
         """Return the numbers of lessons and views."""
@@ -112,6 +132,7 @@ class Unlearned(Answer):
         return (
             f"{count(len(self.lessons), 'lesson')} taken back, {count(gone, 'view')} forgotten, "
             f"{count(len(self.views) - gone, 'view')} changed"
+            + (f", {count(len(self.fluents), 'fluent')} deleted" if self.fluents else "")
         )
 
 
@@ -143,19 +164,63 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
     """
     chosen = _Chosen(selection)
     lessons = _lessons(chosen, knowledge) if knowledge.exists() else ()
-    if not views.exists():
-        if lessons and not dry_run:
-            knowledge.unlearning(lessons, {})(None)
-        return Unlearned(lessons)
-    memory = views.memory()
-    with memory.exclusive():
-        before = _teachings(memory, knowledge)
-        after = {view: _without(turns, lessons, chosen, view) for view, turns in before.items()}
-        after = {view: turns for view, turns in after.items() if turns != before[view]}
-        found = Unlearned(lessons, tuple(_changes(before, after)))
-        if found and not dry_run:
-            _write(lessons, before, after, memory, knowledge)
+    with _episodes(knowledge.path) as board:
+        fluents = () if board is None else _fluents(board, lessons, chosen)
+        ids = tuple(each.id for each in fluents)
+        if not views.exists():
+            if lessons and not dry_run:
+                _with_episodes(knowledge.unlearning(lessons, {}), board, fluents)(None)
+            elif not dry_run:
+                _with_episodes(None, board, fluents)(None)
+            return Unlearned(lessons, (), ids, _containing(chosen, knowledge, lessons))
+        memory = views.memory()
+        with memory.exclusive():
+            before = _teachings(memory, knowledge)
+            after = {view: _without(turns, lessons, chosen, view) for view, turns in before.items()}
+            after = {view: turns for view, turns in after.items() if turns != before[view]}
+            containing = _containing(chosen, knowledge, lessons)
+            found = Unlearned(lessons, tuple(_changes(before, after)), ids, containing)
+            if found and not dry_run:
+                _write(lessons, before, after, memory, knowledge, board, fluents)
     return found
+
+
+@contextmanager
+def _episodes(folder: Path) -> Iterator[Blackboard | None]:
+    """Open the blackboard of a memory, if it has one."""
+    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+
+    if not has_episodes(folder):
+        yield None
+        return
+    with Blackboard.open(folder) as board:
+        yield board
+
+
+def _fluents(board: Blackboard, lessons: Sequence[str], chosen: _Chosen) -> tuple[EpisodicFluent, ...]:
+    """Return the fluents that a person stated and that are taken back, and those of the same events and lessons."""
+    known = board.holding()
+    stated = [each for each in known if chosen.holds_of_fluent(each, board.moment)]
+    events = {each.source.event for each in stated if each.source.event is not None} | set(lessons)
+    own = {each.id for each in stated}
+    return tuple(each for each in known if each.id in own or each.source.event in events)
+
+
+def _with_episodes(commit: Commit | None, board: Blackboard | None, fluents: Sequence[EpisodicFluent]) -> Commit:
+    """Return a commit that deletes fluents first, and adds them again if the commit fails."""
+
+    def committing(journal: str | None) -> None:
+        if board is not None and fluents:
+            board.write(*(Delete(each.id) for each in fluents), by=UNLEARN)
+        try:
+            if commit is not None:
+                commit(journal)
+        except BaseException:
+            if board is not None and fluents:
+                board.write(*map(Add, fluents), by=UNLEARN)
+            raise
+
+    return committing
 
 
 class _Chosen:
@@ -192,6 +257,21 @@ class _Chosen:
             and (wanted.table is None or self._is_table(str(turn.metadata.get("scene", "")), lambda: boxes))
             and (wanted.teacher is None or wanted.teacher == turn.teacher)
             and self._is_then(turn.time)
+        )
+
+    def holds_of_fluent(self, fluent: EpisodicFluent, moment: Callable[[float], datetime]) -> bool:
+        """Return whether what a person said or showed is taken back; what was seen or inferred stays."""
+        wanted, said = self.all, fluent.statement
+        if fluent.source.origin not in (Origin.SAID, Origin.SHOWN) or wanted.table is not None:
+            return False
+        if wanted.lesson is not None or wanted.view is not None:
+            return False
+        start = fluent.start.lower
+        return (
+            (self.sentence is None or (said.predicate == "said" and plain(said.object or "") == self.sentence))
+            and (self.label is None or (said.predicate == "isA" and category_name(said.object or "?") == self.label))
+            and (wanted.teacher is None or wanted.teacher == fluent.source.by)
+            and ((wanted.since is None and wanted.until is None) or (isfinite(start) and self._is_then(moment(start))))
         )
 
     def _is_then(self, moment: datetime) -> bool:
@@ -252,6 +332,22 @@ def _lessons(chosen: _Chosen, knowledge: KnowledgeStore) -> tuple[str, ...]:
     return tuple(lesson for lesson in memory.lessons() if lesson in wanted)
 
 
+def _containing(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str]) -> tuple[str, ...]:
+    """Return the lessons that have the sentence to take back among others."""
+    from deixis.memory.semantic.rdf.graphs import GraphName
+    from deixis.ontology.lessons.read import provenances
+
+    if chosen.sentence is None or not knowledge.exists():
+        return ()
+    known = provenances(knowledge.memory().triples(GraphName.EPISODES))
+    return tuple(
+        each.lesson
+        for each in known
+        if each.lesson not in lessons
+        and chosen.sentence in map(plain, _SENTENCE_ENDS.split(each.told_text or each.script_text))
+    )
+
+
 def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teachings]:
     """Return all teachings of all views."""
     from deixis.memory.perceptual import keys
@@ -289,6 +385,8 @@ def _write(
     after: Mapping[str, Teachings],
     memory: LevelMemory,
     knowledge: KnowledgeStore,
+    board: Blackboard | None,
+    fluents: Sequence[EpisodicFluent],
 ) -> None:
     """Write what is left of the teachings of views, and remove the lessons."""
     from deixis.learning.views import batch_without
@@ -307,6 +405,7 @@ def _write(
     turns = {view: written(after[view]) for view in now}
     change = memory.writing(replace(batch, lessons=owners, teachings=turns))
     if knowledge.exists():
-        memory.handle.write_with(change, knowledge.unlearning(lessons, links))
+        commit = knowledge.unlearning(lessons, links)
+        memory.handle.write_with(change, _with_episodes(commit, board, fluents))
     else:
-        memory.handle.write(change, sync=True)
+        _with_episodes(lambda _: memory.handle.write(change, sync=True), board, fluents)(None)

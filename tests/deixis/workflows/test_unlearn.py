@@ -19,6 +19,8 @@ from hypothesis import strategies as st
 
 import deixis
 from deixis.learning.update import stale
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError, UnknownLessonError
 from deixis.memory.journal import MARKS
 from deixis.memory.perceptual.handle import Handle
@@ -190,6 +192,8 @@ def test_each_part_of_a_selection_must_hold(lessons: list[tuple[Lesson, Any]], e
         assert back(label="widget") == back(teacher="Ada") == ((), [("widget", "gizmo")])
         assert back(lesson=first)[0] == back(teacher="L0")[0] == (first,)
         assert back(sentence="Layout t0") == ((), [])
+        part = session.unlearn(Selection(sentence="gizmo left of widget"), dry_run=True)
+        assert not part and first in part.containing
         assert set(back(table=TABLES[0])[0]) == set(back(table="<table 0>")[0]) == {first}
         assert back(since=now + day) == back(until=now - day) == ((), [])
         assert len(back(since=now - day, until=now + day)[0]) == 2
@@ -236,3 +240,52 @@ def test_a_write_cut_short_is_finished_at_the_next_opening(
     with Session(tmp_path / "memory") as session:
         assert session.memory().lessons() == (lessons[3][0].id,)
         assert not session.unlearn(Selection(table=TABLES[0]))
+
+
+def told_episodes(board: Blackboard) -> None:
+    """Ada says a sentence and shows a thing, Bob shows another, and the tracker sees them."""
+    said, seen = Source(Origin.SAID, "Ada", "sentence 1"), Source(Origin.SEEN, "tracker")
+    for id, statement, source in (
+        ("f1", ("Ada", "said", "The fork is left of the plate."), said),
+        ("f2", ("t1", "left", "t2"), replace(said, origin=Origin.INFERRED)),
+        ("f3", ("t1", "isA", "fork"), Source(Origin.SHOWN, "Ada", "gesture 1")),
+        ("f4", ("t2", "isA", "plate"), Source(Origin.SHOWN, "Bob")),
+        ("f5", ("t1", "on", "table"), seen),
+    ):
+        board.add(episodic(id, statement, start=1.0, source=source), by="test")
+
+
+@pytest.mark.parametrize(
+    ("selection", "gone"),
+    [
+        (Selection(sentence="the fork is left of the plate"), {"f1", "f2"}),
+        (Selection(teacher="Ada"), {"f1", "f2", "f3"}),
+        (Selection(label="plate"), {"f4"}),
+        (Selection(since=datetime(2026, 1, 1, tzinfo=UTC)), {"f1", "f2", "f3", "f4"}),
+        (Selection(until=datetime(2026, 1, 1, tzinfo=UTC)), set()),
+    ],
+)
+def test_what_persons_said_and_showed_is_taken_back(selection: Selection, gone: set[str], tmp_path: Path) -> None:
+    with Blackboard.open(tmp_path / "memory", create=True, origin=datetime(2026, 5, 1, tzinfo=UTC)) as board:
+        told_episodes(board)
+        with Session(tmp_path / "memory") as session:
+            assert set(session.unlearn(selection, dry_run=True).fluents) == gone
+            assert set(session.unlearn(selection).fluents) == gone
+        assert {each.id for each in board.holding()} == {"f1", "f2", "f3", "f4", "f5"} - gone
+
+
+def test_episodes_stay_where_the_lessons_cannot_be_removed(
+    lessons: list[tuple[Lesson, Any]], empty: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError("No space left on device")
+
+    folder = shutil.copytree(empty, tmp_path / "memory")
+    with Session(folder) as session, Blackboard.open(folder, create=True) as board:
+        taught(session, lessons)
+        told_episodes(board)
+        with monkeypatch.context() as patched:
+            patched.setattr(ledger, "update", full)
+            with pytest.raises(MemoryWriteError):
+                session.unlearn(Selection(teacher="Ada"))
+        assert len(board.holding()) == 5
