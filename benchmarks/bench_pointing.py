@@ -91,11 +91,13 @@ def main() -> None:
     """Print what a label spoken in each hold would be taught to, beside the nearest thing to each ray."""
     parser = command_line(__file__, __doc__)
     parser.add_argument("--gestures", type=int, default=1000)
+    parser.add_argument("--first-seed", type=int, default=0, help="seed of the first table")
     parser.add_argument("--noise", type=float, default=1.0, help="factor of all standard deviations")
     parser.add_argument("--sure", type=float, default=aim.SURE, help="probability from which on a thing is decided")
     parser.add_argument("--no-names", action="store_true", help="leave out the usual sizes of what a name means")
     with recorded(parser) as arguments:
-        seed = right = wrong = refused = missed = empty_taught = empty = extra = extra_taught = 0
+        seed = arguments.first_seed
+        right = wrong = refused = missed = empty_taught = empty = extra = extra_taught = 0
         nearest = np.zeros(3, dtype=int)
         probable, hits, spent = [], [], 0.0
         while right + wrong + refused + missed < arguments.gestures:
@@ -130,10 +132,8 @@ def main() -> None:
                     hits.append(best == target.target)
                     nearest += nearest_to_rays(gesture, scene) == target.target
             seed += 1
-        total = right + wrong + refused + missed
-        print(
-            f"{total} gestures at a thing by {seed} teachers, noise {arguments.noise:g}, sure from {arguments.sure:g}"
-        )
+        total, teachers = right + wrong + refused + missed, seed - arguments.first_seed
+        print(f"{total} gestures by {teachers} teachers; noise {arguments.noise:g}, sure from {arguments.sure:g}")
         print(
             f"taught right {right} = {right / total:.3f}, taught wrong {wrong}, refused {refused}, not noticed {missed}"
         )
@@ -142,7 +142,7 @@ def main() -> None:
         print(f"holds that are not pointing: {extra}, of which something was taught {extra_taught}")
         for name, value in zip(("eye to fingertip", "forearm", "hand"), nearest / max(len(hits), 1), strict=True):
             print(f"nearest thing to the ray alone, {name}: right {value:.3f}")
-        print(f"{spent / seed:.3f} s a recording")
+        print(f"{spent / teachers:.3f} s a recording")
         share("taught right", right, total)
         share("taught wrong", wrong, total)
         share("refused or not noticed", refused + missed, total)

@@ -76,7 +76,7 @@ def fitted(taken: list[Gesture], places: Array) -> aim.AimModel:
 def main() -> None:
     """Fit the model, print the spreads, and write it with ``--write``."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--teachers", type=int, default=400)
+    parser.add_argument("--teachers", type=int, default=250)
     parser.add_argument("--write", action="store_true", help="write perception/pointing/aim.json")
     arguments = parser.parse_args()
     taken, places = samples(arguments.teachers)

@@ -130,6 +130,7 @@ RUNS = (
     Run("blocks", "English", "coloured blocks that instructions across a table pick", data=True),
     Run("habits", "Learning", "places of unseen things, from examples of where a person puts things", data=True),
     Run("activities", "Learning", "ways of laying a table that are recognised, and steps in the wrong order"),
+    Run("attributes", "Learning", "adjectives with hidden meanings, learned from sentences"),
     Run("pointing", "Perception", "things that simulated teachers point at"),
     Run("startup", "Command line", "processor time of commands on small jobs"),
 )

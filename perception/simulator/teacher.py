@@ -393,5 +393,10 @@ def _along(keys: Sequence[Key], times: Array) -> Pose:
     before = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
     share = np.clip((times - at[before]) / np.maximum(at[before + 1] - at[before], 1e-9), 0.0, 1.0)
     smooth = (10 * share**3 - 15 * share**4 + 6 * share**5)[:, None]
-    parts = (np.array([key[number] for key in keys]) for number in (1, 2, 3, 4))
-    return tuple(part[before] + smooth * (part[before + 1] - part[before]) for part in parts)
+    tips, fingers, leans, looked = (np.array([key[number] for key in keys]) for number in (1, 2, 3, 4))
+
+    def between(ends: Array) -> Array:
+        result: Array = ends[before] + smooth * (ends[before + 1] - ends[before])
+        return result
+
+    return between(tips), between(fingers), between(leans), between(looked)

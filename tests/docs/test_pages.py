@@ -30,6 +30,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/unlearn",
     "guides/pointing",
     "guides/blackboard",
+    "guides/attributes",
     "guides/testing",
     "guides/robot",
     "reference/english",

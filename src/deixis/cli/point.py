@@ -17,6 +17,10 @@ def point(
         Path | None, typer.Option("--said", metavar="FILE", help="What was said, a line of JSON each (.said.jsonl).")
     ] = None,
     sure: Annotated[float, typer.Option(metavar="P", help="Probability from which on a thing is decided.")] = 0.95,
+    memory: Annotated[
+        Path | None,
+        typer.Option("--memory", metavar="DIR", help="Keep what was said and shown in this memory."),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Find what people point at, and which thing each spoken name is taught to.
@@ -27,6 +31,12 @@ def point(
     from deixis.workflows.point import point as run
 
     found = run(skeleton, scene, said or (), sure=sure)
+    if memory is not None:
+        from deixis.memory.episodes.blackboard import Blackboard
+        from deixis.workflows.remembered_showing import remember_showing
+
+        with Blackboard.open(memory, create=True) as board:
+            remember_showing(board, found)
     if as_json:
         print_json(shown_to_dict(found))
     else:

@@ -18,6 +18,8 @@ MAX_LINE = 100_000
 """Maximum number of characters of a line of a batch on standard input."""
 
 if TYPE_CHECKING:
+    from deixis.perception.scene import Scene
+    from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.grounding.reference.answer import Question
     from deixis.reasoning.grounding.reference.model import Model
     from deixis.workflows.refer import Answerer
@@ -45,6 +47,19 @@ def refer(
         Path | None,
         typer.Option(metavar="FILE", help="Weights of deixis learn-relation --descriptions (.json), not the shipped."),
     ] = None,
+    attributes: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help='Sentences that teach adjectives, lines {"text", "scene", "target"} of JSON.'
+        ),
+    ] = None,
+    picked: Annotated[
+        str | None,
+        typer.Option(metavar="ID", help="Teach the memory the new adjectives of TEXT: this object was meant."),
+    ] = None,
+    memory: Annotated[
+        Path | None, typer.Option("--memory", metavar="DIR", help="Use the adjectives that this memory learned.")
+    ] = None,
     hide_labels: HideLabels = False,
     image: Image = None,
     as_json: AsJson = False,
@@ -54,7 +69,16 @@ def refer(
     Exit 0 if the object is decided (probability at least 0.95), 3 if not, 1 if the scene has no object.
     """
     if batch is not None:
-        if text is not None or ask or oracle is not None or hide_labels or image is not None:
+        if (
+            text is not None
+            or ask
+            or oracle is not None
+            or hide_labels
+            or image is not None
+            or attributes
+            or picked
+            or memory
+        ):
             raise typer.BadParameter("--batch takes --until and --models only; a line may have its 'oracle'")
         _answer_lines(batch, until, _model(models))
         return
@@ -66,7 +90,14 @@ def refer(
 
     out = sys.stderr if as_json else sys.stdout
     seen = load_scene(scene, hide_labels, image)
-    found = find(text, seen, ask=_terminal(out) if ask else None, oracle=oracle, until=until, model=_model(models))
+    if picked is not None:
+        if memory is None:
+            raise typer.BadParameter("--picked needs --memory DIR, which is to learn the adjectives")
+        _remember(text, seen, picked, memory)
+        return
+    known = _attributes(attributes, memory)
+    answer = _terminal(out) if ask else None
+    found = find(text, seen, ask=answer, oracle=oracle, until=until, model=_model(models), attributes=known)
     if as_json:
         print_json(reference_to_dict(found))
     else:
@@ -82,6 +113,30 @@ def _model(file: Path | None) -> Model | None:
     from deixis.workflows.learn_reference import read_reference
 
     return read_reference(file)
+
+
+def _attributes(file: Path | None, memory: Path | None) -> dict[str, Attribute]:
+    """Return the adjectives that a memory and a file of sentences teach; those of the file count where both do."""
+    known: dict[str, Attribute] = {}
+    if memory is not None:
+        from deixis.memory.episodes.blackboard import Blackboard
+        from deixis.workflows.remembered_attributes import remembered_attributes
+
+        with Blackboard.open(memory) as board:
+            known = remembered_attributes(board)
+    if file is not None:
+        from deixis.workflows.learn_attributes import learn_attributes
+
+        known |= learn_attributes(file)
+    return known
+
+
+def _remember(text: str, scene: Scene, picked: str, memory: Path) -> None:
+    from deixis.memory.episodes.blackboard import Blackboard
+    from deixis.workflows.remembered_attributes import remember_sentence
+
+    with Blackboard.open(memory, create=True) as board:
+        print_line(f"Learned from {remember_sentence(board, text, scene, picked)}.")
 
 
 def _answer_lines(file: str, until: float, model: Model | None) -> None:

@@ -16,10 +16,12 @@ from deixis.errors import DeixisError
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.answer import DECIDED, Frame, Question, Reference, Turn
-from deixis.reasoning.grounding.reference.query import Query
+from deixis.reasoning.grounding.reference.query import Description, Query
+from deixis.workflows.attributes import attribute_odds, is_bare
 from deixis.workflows.read import as_scene
 
 if TYPE_CHECKING:
+    from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.grounding.reference.model import Model
     from deixis.reasoning.grounding.reference.room import Room
 
@@ -44,6 +46,7 @@ def refer(
     oracle: str | None = None,
     until: float = DECIDED,
     model: Model | None = None,
+    attributes: Mapping[str, Attribute] | None = None,
 ) -> Reference:
     """Find which object of a scene a description refers to.
 
@@ -63,6 +66,8 @@ def refer(
     model
         Model with other weights than the shipped ones
         (:func:`deixis.workflows.learn_reference.learn_reference`).
+    attributes
+        Learned adjectives by word (:func:`deixis.workflows.learn_attributes.learn_attributes`).
 
     Returns
     -------
@@ -92,7 +97,9 @@ def refer(
     """
     if not 0 < until <= DECIDED:
         raise DescriptionError(f"`until` must be above 0 and at most {DECIDED:g}, got {until:g}")
-    query, seen = read_description(text), as_scene(scene)
+    seen = as_scene(scene)
+    rest, odds = attribute_odds(text, seen, attributes) if attributes else (text, np.zeros(len(seen.objects)))
+    query = Query(Description("", anything=True)) if is_bare(rest) and rest != text else read_description(rest)
     if oracle is not None:
         if oracle not in seen.ids:
             raise DescriptionError(
@@ -103,7 +110,8 @@ def refer(
         return _answer(text, query, seen, np.zeros(0), None, ())
     room = seen.room
     _check_words(query, room)
-    probabilities = (model or shipped_model()).probabilities(query, room)
+    probabilities = (model or shipped_model()).probabilities(query, room) * np.exp(odds - odds.max())
+    probabilities = probabilities / probabilities.sum()
     turns: list[Turn] = []
     question = _question(probabilities, room, until)
     while ask is not None and question is not None and len(turns) < MAX_QUESTIONS:

@@ -12,8 +12,11 @@ from source_tree import ROOT
 
 import deixis
 from deixis.grammar.utterances import Utterance
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.episode import Origin
 from deixis.perception.scene import Scene
 from deixis.perception.simulator.teacher import Recording, Teacher
+from deixis.reasoning.temporal.fluent import Pattern
 from deixis.workflows.point import Shown, SpokenName, point, size_weights, spoken_name
 
 EXAMPLE = [ROOT / "examples" / f"showing.{kind}" for kind in ("skeleton.jsonl", "scene.json", "said.jsonl")]
@@ -122,3 +125,14 @@ def test_bad_input_is_reported_in_one_line(tmp_path: Path) -> None:
         assert code == 2 and message in err and err.count("\n") == 1
     code, out, _ = run("point", EXAMPLE[0], empty)
     assert code == 3 and "the scene has no things" in out
+
+
+def test_a_memory_keeps_what_was_said_and_shown(tmp_path: Path) -> None:
+    code, _, err = run("point", *EXAMPLE[:2], "--said", EXAMPLE[2], "--memory", tmp_path / "memory")
+    assert (code, err) == (3, "")
+    with Blackboard.open(tmp_path / "memory") as board:
+        held = [str(fluent.statement) for fluent in board.holding()]
+        assert {"pointedAt(anna, o1)", "isA(o1, plate)", "isA(o2, fork)", "said(anna, this is a glass)"} <= set(held)
+        assert not any("glass)" in one and one.startswith("isA") for one in held)
+        (name,) = board.holding(Pattern("o1", "isA"))
+        assert name.source.origin is Origin.SHOWN and name.certainty == pytest.approx(0.93, abs=0.01)
