@@ -7,16 +7,21 @@ explains the facts as well as scenes do that the facts do not describe. How well
 that the facts could give beyond telling the things apart: the sum of the largest entry of each fact's table, less the
 entropy of the maps without facts, and at least 0.
 
+    C                        = M + CHANCE_EXCESS sqrt(M)
     log weight of a side     = log prior + FACTS_POWER (log Z - log U)
-    log weight of another    = log prior + CHANCE_SHARE M - KINDS_POWER min(0, log U - log U0 + KINDS_SLACK n1)
+    log weight of another    = log prior + CHANCE_SHARE C - KINDS_POWER min(0, log U - log U0 + KINDS_SLACK n1)
+
+C has a root because Z is dominated by the best of many maps, whose excess over the mean grows as the standard deviation
+of a sum of facts does. It matters for short descriptions, which the best map in another scene satisfies more easily.
 
 U0 is U with the costs of leaving objects out alone; n1 is the number of objects. Where the user pointed out an object,
 or a label without error names it, the description is of this scene.
 
 The power of the facts is below 1 because they are treated as independent and are not: a place that satisfies one fact
 often satisfies others. :mod:`deixis.reasoning.grounding.fitting.fits` fits the powers to right and wrong pairs of
-descriptions and scenes, and ``benchmarks/bench_fits.py`` prints the fit with its interval. The shipped values are near
-the lower ends of the intervals, because overweighted evidence rejects right descriptions.
+descriptions and scenes, and ``benchmarks/bench_fits.py`` prints the fit with its interval. The shipped powers of facts
+and chance are near the fitted ones. That of kinds is larger, so that two things of quite other sizes than the described
+kinds are enough for another scene.
 
 A side, or a reading of the labels, is not searched where an upper bound of the sum of its maps shows that its share of
 all hypotheses is below ``NEGLIGIBLE``.
@@ -41,8 +46,11 @@ from deixis.reasoning.grounding.matching.posterior import BOUND_CELLS, Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.matching.scalable import scalable
 
-FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.7, 0.37, 1.4
+FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.75, 0.31, 1.4
 """Fitted powers of the evidence; see the formulas above."""
+
+CHANCE_EXCESS = 1.0
+"""Excess of the best map in another scene, in roots of nats; see the formulas above."""
 
 KINDS_SLACK = 0.7
 """Nats per object by which kinds may fit worse than chance before that is evidence for another scene: in images, the
@@ -80,9 +88,14 @@ class FitEvidence:
     kinds: float
 
     @property
+    def chance(self) -> float:
+        """Measure C, in nats, of how well the facts fit a scene that they do not describe."""
+        return self.most + CHANCE_EXCESS * math.sqrt(self.most)
+
+    @property
     def beside(self) -> float:
         """Log-likelihood of another scene, with the same powers."""
-        return CHANCE_SHARE * self.most - KINDS_POWER * self.kinds
+        return CHANCE_SHARE * self.chance - KINDS_POWER * self.kinds
 
     @property
     def log_odds(self) -> float:
@@ -245,7 +258,7 @@ def weigh(
             with suppress(OutOfTimeError):
                 there = _maps_of(turned, None, left, first.log_total - first.log_best, *levels)
         maps.append(replace(first, found=None) if there is None else there)
-        facts_there = CHANCE_SHARE * most if there is None else FACTS_POWER * (there.log_total - alone)
+        facts_there = CHANCE_SHARE * told.chance if there is None else FACTS_POWER * (there.log_total - alone)
         weights.append(math.log(side.prior) + facts_there)
     weights.append(elsewhere)
     shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()

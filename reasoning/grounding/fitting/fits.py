@@ -3,7 +3,7 @@
 :func:`likeliest_powers` is a logistic regression (Platt 1999) without an intercept, because no evidence leaves the
 prior unchanged. It treats right and wrong pairs as equally likely. In use, a wrong pair has a prior of one in a
 hundred, and right pairs must not be rejected. So the shipped powers are fitted in three steps (:func:`fit_powers`): the
-power of facts by maximum likelihood on generated tables; the share of another scene, so that at most ``ACCUSED`` of the
+power of facts by maximum likelihood on generated tables; that of chance (C there), so that at most ``ACCUSED`` of the
 right tables are rejected under that prior (the criterion of Neyman and Pearson 1933); and the power of kinds, which do
 not matter on such tables, by maximum likelihood on photographs.
 """
@@ -32,7 +32,7 @@ def fit_powers(
     own: NDArray[np.bool_],
     another: float = ANOTHER_PRIOR,
 ) -> Array:
-    """Fit the powers of facts, of their upper bound, and of kinds, shape (3,), in the three steps of this module.
+    """Fit the powers of facts, of chance, and of kinds, shape (3,), in the three steps of this module.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def fit_powers(
     Returns
     -------
     ndarray
-        Powers of facts, of their upper bound, and of kinds, shape (3,).
+        Powers of facts, of chance, and of kinds, shape (3,).
 
     Raises
     ------
@@ -58,10 +58,10 @@ def fit_powers(
     >>> told = [FitEvidence(facts, 10.0, 0.0) for facts in (9.0, 8.0, 4.0, 5.0, 1.0, -3.0)]
     >>> right = np.array([True, True, True, False, False, False])
     >>> fit_powers(told, right, told, right).round(2).tolist()[1:]
-    [0.78, 0.0]
+    [0.59, 0.0]
     """
     facts = likeliest_powers(tables, right)[0]
-    margins = [(facts * one.facts - math.log(another / (1 - another))) / one.most for one in tables if one.most > 0]
+    margins = [(facts * one.facts - math.log(another / (1 - another))) / one.chance for one in tables if one.most > 0]
     of_right = [fits for fits, one in zip(right, tables, strict=True) if one.most > 0]
     chance = max(0.0, float(np.quantile(np.array(margins)[of_right], ACCUSED)))
     kinds = likeliest_powers(photographs, own, held=(facts, chance))[2]
@@ -90,7 +90,7 @@ def likeliest_powers(
     Returns
     -------
     ndarray
-        Powers of facts, of their upper bound, and of kinds, shape (3,).
+        Powers of facts, of chance, and of kinds, shape (3,).
 
     Raises
     ------
@@ -108,7 +108,7 @@ def likeliest_powers(
 
     if right.all() or not right.any():
         raise SettingError("`right` must have right and wrong pairs; give both")
-    design = np.array([(one.facts, -one.most, one.kinds) for one in pairs])
+    design = np.array([(one.facts, -one.chance, one.kinds) for one in pairs])
     share = np.where(right, 0.5 / right.sum(), 0.5 / (~right).sum()) if weights is None else weights / weights.sum()
 
     def loss(powers: Array) -> tuple[float, Array]:

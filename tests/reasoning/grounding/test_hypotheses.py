@@ -28,6 +28,7 @@ from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.hypotheses import (
     ANOTHER_PRIOR,
     AS_IT_STANDS,
+    CHANCE_EXCESS,
     CHANCE_SHARE,
     FACTS_POWER,
     KINDS_POWER,
@@ -93,6 +94,7 @@ def by_enumeration(evidence: Evidence) -> tuple[float, NDArray[np.float64]]:
     shares = np.array([bare(problem).value(option) for option in maps(problem.allowed)])
     shares -= np.logaddexp.reduce(shares)
     most = max(0.0, most + float((np.exp(shares) * shares).sum()))
+    chance = most + CHANCE_EXCESS * math.sqrt(most)
     weights, marginals = [], []
     for side in STATED_SIDES:
         there = evidence.seen_from(side.angle, side.mirrored)
@@ -107,7 +109,7 @@ def by_enumeration(evidence: Evidence) -> tuple[float, NDArray[np.float64]]:
         weights.append(math.log(side.prior) + FACTS_POWER * (total - alone))
     odds = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
     weights.append(
-        odds + CHANCE_SHARE * most - KINDS_POWER * min(0.0, alone - nothing + KINDS_SLACK * len(evidence.labels))
+        odds + CHANCE_SHARE * chance - KINDS_POWER * min(0.0, alone - nothing + KINDS_SLACK * len(evidence.labels))
     )
     shares = np.exp(np.array(weights) - np.logaddexp.reduce(weights))
     spoken = evidence.allowed & (evidence.labels > 0)

@@ -12,9 +12,10 @@ from deixis.reasoning.grounding.hypotheses import ANOTHER_PRIOR, FitEvidence
 
 def test_powers_come_back_from_pairs_drawn_by_them() -> None:
     rng, powers = np.random.default_rng(1), np.array([0.6, 0.3, 1.0])
-    design = np.column_stack([rng.normal(8, 8, 4000), -rng.uniform(5, 30, 4000), -rng.exponential(1.0, 4000)])
+    drawn = np.column_stack([rng.normal(14, 10, 4000), rng.uniform(5, 30, 4000), -rng.exponential(1.0, 4000)])
+    pairs = [FitEvidence(*row) for row in drawn.tolist()]
+    design = np.array([(one.facts, -one.chance, one.kinds) for one in pairs])
     right = rng.random(4000) < 1 / (1 + np.exp(-design @ powers))
-    pairs = [FitEvidence(facts, -most, kinds) for facts, most, kinds in design.tolist()]
     assert likeliest_powers(pairs, right, np.ones(4000)) == pytest.approx(powers, rel=0.15)
 
 
@@ -31,7 +32,7 @@ def test_as_few_right_tables_are_accused_as_is_said() -> None:
     photographs = [FitEvidence(one / 3, 8.0, -gap) for one, gap in zip(facts, rng.exponential(2.0, 3000), strict=True)]
     power, chance, kinds = fit_powers(tables, right, photographs, right)
     assert power == pytest.approx(likeliest_powers(tables, right)[0])
-    odds = np.array([power * one.facts - chance * one.most for one in tables]) - np.log(
+    odds = np.array([power * one.facts - chance * one.chance for one in tables]) - np.log(
         ANOTHER_PRIOR / (1 - ANOTHER_PRIOR)
     )
     assert (odds[right] < 0).mean() == pytest.approx(ACCUSED, abs=2e-3)
