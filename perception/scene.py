@@ -542,7 +542,7 @@ class Scene(Answer):
         --------
         >>> cup, jug = PerceivedObject("cup", (0, 0), (1, 1)), PerceivedObject("jug", (4, 0), (5, 1))
         >>> Scene((cup, jug), viewer=(9.0, 0.5)).from_viewer()["cup"].minimum
-        (-1.0, 0.0)
+        (0.0, -1.0)
         """
         if self.viewer is None or not self.objects:
             return self

@@ -1063,6 +1063,9 @@ class Chunker:
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
+            starts = norm in ("start", "begin") and self.norms[end] in ("at", "in", "on") and not self._previous()
+            if starts:
+                return Chunk("GO", at, end, found)  # 'start at the back'
             if imperative and not subject_is_you and norm in _GOING and self._goes(end):
                 end += self.norms[end] in ("back", "away", "aside", "here")
                 return Chunk("GO", at, end, found)

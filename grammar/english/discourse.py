@@ -1169,7 +1169,10 @@ class Discourse:
 
     def _say_ordinal(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         if predicate.value is not None and predicate.value.rank is not None:
-            self._add("ordinal", (subject,), (), value=f"{predicate.value.rank} from {predicate.part or 'left'}")
+            group = subject.itself.group
+            rest = () if group is None else tuple(leaf for leaf in group.leaves() if leaf is not subject.itself)
+            value = f"{predicate.value.rank} from {predicate.part or 'left'}"
+            self._add("ordinal", (subject,), rest, value=value)
 
     def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         """Read what a thing has: contents, a part in some state, or another thing at it."""

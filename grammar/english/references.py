@@ -392,6 +392,11 @@ class References:
         if phrase.determiner == "other" or phrase.pronoun == "other":
             taken = [leaf for leaf in leaves if any(pair[0] == "picked" for pair in leaf.adjectives)]
             return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
+        for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
+            rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
+            if rank is not None and 0 < abs(rank) <= len(leaves):
+                from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
+                return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
         for adjective in phrase.adjectives:
             if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
                 return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)

@@ -135,6 +135,13 @@ def claim_tables(
         for claim in claims:
             if any(name not in index for name in (*claim.subjects, *claim.arguments)):
                 continue
+            if claim.relation == "ordinal":
+                members = [index[name] for name in (*claim.subjects, *claim.arguments)]
+                chances = np.minimum(sum((_chances(unary[member]) for member in members), np.zeros(len(boxes))), 1.0)
+                degree = ordinal_degrees(claim.value or "", scene.centres, chances)
+                if degree is not None and claim.arguments:
+                    said[index[claim.subjects[0]]] += _ratio(claim, degree, 1.0)
+                continue
             for ends, degree, share in scene.of(claim):
                 who = tuple(index[name] for name in ends)
                 if len(set(who)) < len(who):
@@ -188,6 +195,50 @@ def _ratio(claim: Claim, degree: Array, share: float, third: Array | None = None
 
 Degrees = Iterator[tuple[tuple[str, ...], Array, float]]
 """Objects (one to three), the degrees for the things that they may be, and the share of the evidence that counts."""
+
+
+_ORDERS = {"left": (0, 1), "right": (0, -1), "near": (1, 1), "front": (1, 1), "far": (1, -1), "back": (1, -1)}
+"""Axis along which the members of a group are counted from a side, and the sign of its direction."""
+
+
+def ordinal_degrees(value: str, centres: Array, chances: Array) -> Array | None:
+    """Return the probability that each thing is the n-th of a group, counted from a side.
+
+    Parameters
+    ----------
+    value
+        Rank and side, such as ``2 from left``; the rank -1 is the last.
+    centres
+        Centres of n things, shape (n, 2) or (n, 3).
+    chances
+        Probability that each thing belongs to the group, shape (n,).
+
+    Returns
+    -------
+    ndarray or None
+        Probabilities, shape (n,): of as many members before the thing as the rank says (a Poisson binomial
+        distribution); None for a side or a rank that is not known.
+
+    Examples
+    --------
+    >>> x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
+    >>> ordinal_degrees("2 from right", x, np.array([1.0, 1.0, 1.0])).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    rank, _, side = value.partition(" from ")
+    if side not in _ORDERS or not rank.lstrip("-").isdigit() or int(rank) == 0:
+        return None
+    axis, sign = _ORDERS[side]
+    number = abs(int(rank))
+    along = centres[:, axis] * (sign if int(rank) > 0 else -sign)
+    counts = np.zeros((len(along), number))
+    counts[:, 0] = 1.0
+    for place, chance in zip(along, chances, strict=True):
+        share = np.where(along > place + TIE, chance, 0.0)[:, None]
+        moved = np.concatenate([np.zeros((len(along), 1)), counts[:, :-1]], axis=1)
+        counts = (1 - share) * counts + share * moved
+    result: Array = counts[:, -1]
+    return result
 
 
 def between_degrees(centres: Array) -> Array:

@@ -135,3 +135,9 @@ def test_a_choice_of_relations_of_one_pair_is_one_fact() -> None:
     script = read_english("The fork is usually either left of the plate or on the plate.")
     (fact,) = script.facts
     assert (str(fact), fact.weight, fact.optional) == ("left or on(fork, plate)", 0.8, False)
+
+
+def test_ordinals_pick_members_in_their_order() -> None:
+    said = asserted("There are three forks. The first fork from the right is on a napkin.")
+    assert {"ordinal(fork_3, fork_1, fork_2, '1 from right')", "on(fork_3, napkin)"} <= said
+    assert not any(one.startswith("on(fork_1") for one in said)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from deixis.grammar.english.reader import read_english
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.claims import MAX_THINGS, ClaimTables, claim_tables
+from deixis.reasoning.grounding.evidence.claims import MAX_THINGS, ClaimTables, claim_tables, ordinal_degrees
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
 from deixis.workflows.ground import GroundingRequest, ground
 
@@ -188,3 +188,28 @@ def test_only_facts_are_pivotal_beside_claims(options: dict[str, Any]) -> None:
     found = ground(script, {"objects": things}, sizes=False, **options)
     assert len(found.matches) == 3
     assert {str(one.fact) for one in found.pivotal or ()} <= {str(fact) for fact in script.facts}
+
+
+@settings(max_examples=20)
+@given(st.lists(st.floats(0, 1), min_size=2, max_size=6), st.integers(0, 10**6))
+def test_ranks_from_a_side_share_the_members_before_a_thing(chances: list[float], seed: int) -> None:
+    n = len(chances)
+    centres = np.random.default_rng(seed).permutation(n)[:, None] * np.ones(2)
+    found = [ordinal_degrees(f"{rank} from left", centres, np.array(chances)) for rank in range(1, n + 1)]
+    np.testing.assert_allclose(sum(one for one in found if one is not None), 1.0)
+    by_hand = [np.prod([1 - chances[s] for s in range(n) if centres[s, 0] < centres[t, 0]]) for t in range(n)]
+    np.testing.assert_allclose(found[0], by_hand)
+
+
+def test_an_ordinal_counts_the_things_that_can_be_in_its_group() -> None:
+    boxes = np.array([cube(float(x), 0.0) for x in range(5)])
+    unary = np.zeros((3, 5))
+    unary[:, [0, 3]] = -20.0  # not a fork
+    claim = Claim("ordinal", ("b",), ("a", "c"), value="2 from left")
+    found = claim_tables([claim], ["a", "b", "c"], boxes, R, shipped_models(), unary).unary
+    assert found[1, [1, 2, 4]].argmax() == 1 and not found[[0, 2]].any()
+
+
+@pytest.mark.parametrize("value", ["", "0 from left", "two from left", "2 from above"])
+def test_an_unknown_order_says_nothing(value: str) -> None:
+    assert ordinal_degrees(value, TABLE.mean(axis=1), np.ones(len(TABLE))) is None
