@@ -1104,6 +1104,11 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
+        relation = "through"  # 'the cat jumped over the vase'
+    elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
+        word = " ".join(filter(None, (following.part, relation)))
+        return replace(following, relation="pointing", arguments=(), part=word, span=span)
     elif kind in ("face", "point") or lemma in ("look", "aim"):
         meaning = "pointing" if kind == "point" else "facing"
         if relation == "pointing":
@@ -1170,6 +1175,8 @@ _STAYING = word_set(
 """Verbs after which *by* means *near*."""
 _MANNERS = word_set("colour color size hand name age height type kind length weight shape date number order brand")
 """Nouns after which *by* says how and not where: *sorted by colour*."""
+_LEAPING = word_set("jump leap climb walk step pass skip hop")
+"""Verbs of a motion past a thing."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _TELLING = word_set(
     "mention describe list show note picture record state name quote illustrate explain depict photograph"

@@ -1227,7 +1227,7 @@ class Chunker:
         ):
             return True
         return (
-            after in ("be", "not", "have", "also", "only", "you", "usually", "never", "the", "i", "it")
+            after in ("be", "not", "have", "well", "also", "only", "you", "usually", "never", "the", "i", "it")
             or (form is not None and form.form == "base" and not (self.norms[at] == "can" and after in _NOUNS_TOO))
             or after in HEDGES
         ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")

@@ -32,6 +32,8 @@ MIN_PAST_OF_STORY = 3
 PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
 """Beginning of a relative clause in the past."""
 
+LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|placed)\b", re.IGNORECASE)
+"""Beginning of a clause by which what should be is not so."""
 NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
 """Words by which a story says what is so in the end."""
 WHILE_DOING = re.compile(
@@ -449,6 +451,8 @@ class Discourse:
         entity = self._subject(subject, predicates)
         if entity is None:
             return
+        if self.obliged is not None and self.how.past and LEFT.search(self.text[self.obliged[3] : clause.span[1]]):
+            self.how = replace(self.how, past=False)  # 'it should be here, but I left it there'
         if modal is None and not self.how.past and clause.mood is Mood.STATEMENT:
             self._replaces_what_should_be(entity, clause)
         choices = clause.choices
@@ -521,6 +525,8 @@ class Discourse:
             and not subject.plural
         ):
             for predicate in predicates:
+                if predicate.relation == "each_side" and not predicate.reversed:
+                    return self._introduce(replace(subject, count=2, determiner=None, plural=True))
                 if predicate.relation in ("end", "side") and self._at_each(predicate):
                     return self._introduce(replace(subject, count=2, determiner=None, plural=True))
                 for argument in predicate.arguments:

@@ -221,7 +221,7 @@ def _verb_left_out(chunks: list[Chunk], types: list[str], start: int, at: int, e
         return False
     if not (chunks[end].value.head or (chunks[end].value.pronoun == "one" and chunks[end].value.adjectives)):
         return False
-    while types[end + 1 : end + 3] == ["AND", "NP"]:
+    while types[end + 1 : end + 3] in (["AND", "NP"], ["OF", "NP"]):
         end += 2
     if types[end + 1 : end + 2] not in (["PREP"], ["ADV"]) or is_place(chunks[end].value):
         return False

@@ -278,7 +278,10 @@ class References:
             return said.strip(" ,;:.")
         end = next((i for i in range(place, len(said)) if said[i] in " ,;:."), len(said))
         if phrase.of is not None and phrase.of.span[1] <= phrase.span[1] and phrase.of.span[0] >= phrase.span[0]:
-            end = max(end, min(len(said), phrase.of.span[1] - phrase.span[0]))
+            part = re.escape(last_word(phrase.of.head)[: max(2, len(last_word(phrase.of.head)) - 2)].casefold())
+            named = re.search(rf"\b{part}[\w'-]*", said[end:].casefold()) if phrase.of.head else None
+            whole_of = min(len(said), phrase.of.span[1] - phrase.span[0])
+            end = max(end, whole_of if named is None else end + named.end())
         return said[:end].strip(" ,;:.").removesuffix("'s")
 
     def earlier(self, phrase: NounPhrase) -> Entity | None:
