@@ -283,3 +283,28 @@ def with_blank(term: _Term) -> _Term | ox.BlankNode:
 
 def _named(term: _Term) -> _Term | ox.NamedNode:
     return skolem(term.value) if isinstance(term, ox.BlankNode) else term
+
+
+def turtle(triples: Iterable[ox.Triple]) -> str:
+    """Return triples as Turtle, with blank nodes for Skolem IRIs.
+
+    Parameters
+    ----------
+    triples
+        The triples.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    prefixes = {
+        "dx": "https://w3id.org/deixis/onto#",
+        "owl": "http://www.w3.org/2002/07/owl#",
+        "prov": "http://www.w3.org/ns/prov#",
+        "rdfs": "http://www.w3.org/2000/01/rdf-schema#",
+        "sh": "http://www.w3.org/ns/shacl#",
+        "xsd": "http://www.w3.org/2001/XMLSchema#",
+    }
+    plain = list(dict.fromkeys(with_blank_nodes(triples)))
+    return (ox.serialize(plain, format=ox.RdfFormat.TURTLE, prefixes=prefixes) or b"").decode("utf-8")

@@ -9,7 +9,7 @@ info. The object in a role with a stated colour may have no other colour.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 import pyoxigraph as ox
@@ -26,22 +26,28 @@ SH = "http://www.w3.org/ns/shacl#"
 _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
 
 
-def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
+def layout_shapes(
+    layout: LayoutConcept, optional: Collection[str] | None = None, notes: Mapping[str, str] = MappingProxyType({})
+) -> Iterator[ox.Triple]:
     """Yield the shapes graph of a layout, with Skolem IRIs for blank nodes.
 
     Parameters
     ----------
     layout
         The layout.
+    optional
+        Roles that need not be filled; None for those that no certain fact needs.
+    notes
+        Descriptions of shapes by their names, such as ``fact-1`` or ``role-fork``.
 
     Yields
     ------
     ox.Triple
         A triple.
     """
-    writer = _Shapes(layout)
+    writer = _Shapes(layout, notes)
     yield from writer.extra()
-    spare = dispensable(layout.facts)
+    spare = dispensable(layout.facts) if optional is None else optional
     for role in layout.roles:
         yield from writer.missing(role.name, "Info" if role.name in spare else "Violation")
         if role.colour is not None:
@@ -53,8 +59,8 @@ def layout_shapes(layout: LayoutConcept) -> Iterator[ox.Triple]:
 
 
 class _Shapes:
-    def __init__(self, layout: LayoutConcept) -> None:
-        self._lesson = layout.lesson
+    def __init__(self, layout: LayoutConcept, notes: Mapping[str, str]) -> None:
+        self._lesson, self._notes = layout.lesson, notes
         self._count = 0
 
     def extra(self) -> Iterator[ox.Triple]:
@@ -133,6 +139,8 @@ class _Shapes:
         shape.say(SH + "severity", iri(SH + severity))
         shape.say(SH + "message", text(message))
         shape.say(SH + "name", text(name))
+        if name in self._notes:
+            shape.say(SH + "description", text(self._notes[name]))
         return shape
 
     def _blank(self) -> Description:

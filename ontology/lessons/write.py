@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import pyoxigraph as ox
 
@@ -44,18 +44,38 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
         A triple of the learned graph.
     """
     layout = lesson.layout
-    yield from _layout(layout, relations)
+    yield from layout_triples(layout, relations)
+    kinds = {role.name: role.kind for role in layout.roles}
+    for match in lesson.matches:
+        yield from _match(lesson, match)
+    for match in lesson.categories():
+        yield from _category(match.object, kinds.get(match.object), lesson)
+
+
+def layout_triples(layout: LayoutConcept, relations: Relations, optional: Collection[str] = ()) -> Iterator[ox.Triple]:
+    """Yield a layout as a class with its roles and statements.
+
+    Parameters
+    ----------
+    layout
+        The layout.
+    relations
+        Relations of the ontology.
+    optional
+        Roles that need not be filled, whose kinds the class does not require.
+
+    Yields
+    ------
+    ox.Triple
+        A triple of the learned graph.
+    """
+    yield from _layout(layout, relations, optional)
     for position, role in enumerate(layout.roles, 1):
         yield from _role(layout, role, position)
     for position, fact in enumerate(layout.facts, 1):
         yield from _statement(layout, fact, position)
     for position, claim in enumerate(layout.claims, 1):
         yield from _claim(layout, claim, position)
-    kinds = {role.name: role.kind for role in layout.roles}
-    for match in lesson.matches:
-        yield from _match(lesson, match)
-    for match in lesson.categories():
-        yield from _category(match.object, kinds.get(match.object), lesson)
 
 
 def noun_triples(lesson: Lesson, kinds: Kinds) -> Iterator[ox.Triple]:
@@ -321,7 +341,7 @@ def _viewpoint_triples(name: str) -> Iterator[ox.Triple]:
     return iter(about)
 
 
-def _layout(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
+def _layout(layout: LayoutConcept, relations: Relations, optional: Collection[str]) -> Iterator[ox.Triple]:
     about = Description(layout_iri(layout.lesson))
     about.say(W3C.RDF_TYPE, iri(W3C.OWL_CLASS))
     about.say(W3C.RDFS_LABEL, text(layout.name))
@@ -334,7 +354,7 @@ def _layout(layout: LayoutConcept, relations: Relations) -> Iterator[ox.Triple]:
     if layout.viewpoint:
         about.say(DX.DESCRIBED_FROM, iri(_viewpoint(layout.viewpoint)))
         yield from _viewpoint_triples(layout.viewpoint)
-    kinds = dict.fromkeys(role.kind for role in layout.roles if role.kind)
+    kinds = dict.fromkeys(role.kind for role in layout.roles if role.kind and role.name not in optional)
     for number, kind in enumerate(kinds, 1):
         restriction = Description(skolem(f"{content_key(layout.lesson)}.r{number}").value)
         restriction.say(W3C.RDF_TYPE, iri(W3C.OWL_RESTRICTION))

@@ -326,27 +326,22 @@ class KnowledgeStore(Closing):
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
-    def show(self, name: str) -> str:
-        """Return a learned layout as a script.
+    def count_of_tables(self, name: str) -> int:
+        """Return the number of lessons about a layout.
 
         Parameters
         ----------
         name
-            Name of the layout, or id of its lesson.
+            Name of the layout.
 
         Returns
         -------
-        str
-            The text of the script.
-
-        Raises
-        ------
-        UnknownTermError
-            If there is neither.
+        int
+            The number, without reading the lessons; 0 for the id of a lesson.
         """
-        from deixis.grammar.format import layout_script
+        from deixis.learning.recollection import lessons_named
 
-        return layout_script(self.layout(name), self.ontology)
+        return len(lessons_named(self.memory(), name))
 
     def query(
         self, sparql: str, time_limit: float = QUERY_TIME_LIMIT, memory_limit: int = QUERY_MEMORY_LIMIT

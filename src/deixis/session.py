@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from deixis.grammar.script import Script
+    from deixis.learning.concept import CountedConcept
     from deixis.learning.recollection import Recollection
+    from deixis.learning.tables import TaughtTable
     from deixis.learning.views import Recognised, Taught
     from deixis.learning.words import LearnedWords
     from deixis.memory.perceptual.level import LevelMemory
@@ -264,7 +266,12 @@ class Session(Closing):
 
     @_one_at_a_time
     def teach(
-        self, scene: Scene | str | Path | Mapping[str, Any], object: str, category: str, teacher: str = "user"
+        self,
+        scene: Scene | str | Path | Mapping[str, Any],
+        object: str,
+        category: str,
+        teacher: str = "user",
+        settles: tuple[str, str] | None = None,
     ) -> Taught:
         """Store the look of a thing of a scene as a view of a category, which is made if it is new.
 
@@ -278,6 +285,9 @@ class Session(Closing):
             Name of the category. A name that differs from a known one only in case means that one.
         teacher
             Name of the teacher, stored with the view.
+        settles
+            Id of a lesson and a role in it, if this says which thing that role is; the counts of the layout then
+            have it (:meth:`tables`).
 
         Returns
         -------
@@ -293,7 +303,7 @@ class Session(Closing):
         """
         from deixis.workflows.teach import teach
 
-        return teach(scene, object, category, self.knowledge_store, self.view_store, teacher)
+        return teach(scene, object, category, self.knowledge_store, self.view_store, teacher, settles)
 
     @_one_at_a_time
     def recognise(
@@ -556,6 +566,53 @@ class Session(Closing):
         return self.knowledge_store.layout(name)
 
     @_one_at_a_time
+    def tables(self, name: str | None = None) -> tuple[TaughtTable, ...]:
+        """Return the tables on which layouts were taught.
+
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of the lesson; None for all layouts.
+
+        Returns
+        -------
+        tuple of TaughtTable
+            The tables in the order learned, each with the things that are known by now; empty without a memory.
+        """
+        from deixis.learning.tables import taught_tables
+
+        if not self.knowledge_store.exists():
+            return ()
+        settled = self.view_store.settled_roles()
+        return tuple(taught_tables(self.knowledge_store.memory(), self.ontology, settled, name))
+
+    @_one_at_a_time
+    def concept(self, name: str) -> CountedConcept:
+        """Return what the tables of a layout have in common, with counts.
+
+        Parameters
+        ----------
+        name
+            Name of the layout, or id of its lesson.
+
+        Returns
+        -------
+        CountedConcept
+            The concept over all tables of the layout, or over that of the lesson.
+
+        Raises
+        ------
+        UnknownTermError
+            If there is neither.
+        """
+        from deixis.learning.concept import CountedConcept, concept_of
+
+        last, tables = self.layout(name), self.tables(name)
+        if not tables:
+            return CountedConcept(last, (last.lesson,), (), {})
+        return concept_of(tables, self.ontology.relations)
+
+    @_one_at_a_time
     def show(self, name: str) -> str:
         """Return a learned layout as a script.
 
@@ -567,14 +624,21 @@ class Session(Closing):
         Returns
         -------
         str
-            The text of the script.
+            The text of the script. If the layout has several tables, it is that of their concept, and comments at its
+            end say on how many of them each statement held.
 
         Raises
         ------
         UnknownTermError
             If there is neither.
         """
-        return self.knowledge_store.show(name)
+        from deixis.grammar.format import layout_script
+
+        if self.knowledge_store.count_of_tables(name) < 2:
+            return layout_script(self.layout(name), self.ontology)
+        found = self.concept(name)
+        script = layout_script(found.layout, self.ontology)
+        return script + "\n" + "".join(f"# {line}\n" for line in found.lines())
 
     @_one_at_a_time
     def query(

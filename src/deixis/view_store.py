@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
 
 Done = TypeVar("Done")
+
+SETTLES = "settles"
+"""Key in the metadata of a view: the lesson, and the role in it, whose thing the teaching names."""
 
 UNKNOWN = "unknown"
 """Label of a thing that is of no category."""
@@ -179,6 +183,17 @@ class ViewStore(Closing):
             return nothing_known(frame)
         return self._despite_damage(self.memory(), lambda memory: recogniser_of(memory, frame, progress), left_out)
 
+    def settled_roles(self) -> dict[tuple[str, str], dict[str, str]]:
+        """Return the roles of lessons whose things were named after the lesson.
+
+        Returns
+        -------
+        dict
+            Id of the thing by role, by the id of the lesson and the key of the boxes of its scene
+            (:func:`boxes_key`); the teaching that came last counts.
+        """
+        return self._despite_damage(self.memory(), _settled) if self.exists() else {}
+
     def _despite_damage(
         self, memory: LevelMemory, work: Callable[[LevelMemory], Done], left_out: Callable[[str], None] | None = None
     ) -> Done:
@@ -224,6 +239,22 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
     return {name: sum(1 for _ in memory.listing(name)) for name in memory.categories()}
 
 
+def _settled(memory: LevelMemory) -> dict[tuple[str, str], dict[str, str]]:
+    from deixis.learning.teachings import Teaching
+    from deixis.memory.perceptual import keys
+
+    stored, found = memory.teachings(), []
+    for view in memory.headers():
+        turns = [Teaching.read(said) for said in stored.get(view.id, ())]
+        turns = turns or [Teaching(view.category, keys.moment(view.time), json.loads(view.metadata))]
+        found += [turn for turn in turns if SETTLES in turn.metadata]
+    settled: dict[tuple[str, str], dict[str, str]] = {}
+    for turn in sorted(found, key=lambda turn: turn.time):
+        lesson, role = turn.metadata[SETTLES]
+        settled.setdefault((lesson, str(turn.metadata["boxes"])), {})[role] = str(turn.metadata["object"])
+    return settled
+
+
 def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     """Return a view of each decided thing that has a cloud in the scene, under the name of its object.
 
@@ -258,7 +289,9 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     return views
 
 
-def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> View:
+def view_of_thing(
+    scene: Scene, object_id: str, category: str, teacher: str, settles: tuple[str, str] | None = None
+) -> View:
     """Return a view of a thing of a scene, ready to be stored.
 
     Parameters
@@ -271,6 +304,8 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
         Name of the category.
     teacher
         Name of the person who named it.
+    settles
+        Id of a lesson and a role in it, of which this is the thing; kept in the metadata.
 
     Returns
     -------
@@ -285,7 +320,9 @@ def view_of_thing(scene: Scene, object_id: str, category: str, teacher: str) -> 
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
-    metadata = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}
+    metadata: dict[str, object] = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}
+    if settles is not None:
+        metadata = {**metadata, SETTLES: list(settles)}
     return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)
 
 

@@ -1,9 +1,10 @@
-"""The command ``deixis show``: print a learned layout as a script."""
+"""The command ``deixis show``: print a learned layout as a script, as SHACL shapes, or as an OWL class."""
 
 from __future__ import annotations
 
 import sys
-from typing import Annotated
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +15,17 @@ from deixis.cli.common import (
 )
 from deixis.cli.completion import complete_layouts
 
+if TYPE_CHECKING:
+    from deixis.learning.concept import CountedConcept
+
+
+class LayoutFormat(StrEnum):
+    """Formats of ``deixis show``."""
+
+    SCRIPT = "script"
+    SHACL = "shacl"
+    OWL = "owl"
+
 
 def show(
     layout: Annotated[
@@ -22,18 +34,56 @@ def show(
             metavar="LAYOUT", help="A learned layout's name, or a lesson's id.", autocompletion=complete_layouts
         ),
     ],
+    format: Annotated[
+        LayoutFormat, typer.Option("--format", help="Script, or Turtle with the SHACL shapes or the OWL class.")
+    ] = LayoutFormat.SCRIPT,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Print a learned layout as a script."""
-    from deixis.ontology.export import fact_to_dict
+    """Print a learned layout, with what its tables have in common and counts.
+
+    A name stands for all tables of the layout: told facts that did not hold on all of them are hedged by their share,
+    and what held on all of them is added. The id of a lesson stands for that lesson.
+    """
     from deixis.session import Session
 
     with Session(memory) as session:
-        concept, text = session.layout(layout), session.show(layout)
+        if format is LayoutFormat.SCRIPT and not as_json:
+            sys.stdout.write(session.show(layout))
+            return
+        found, text = session.concept(layout), session.show(layout)
+        relations = session.ontology.relations
     if as_json:
-        facts = [fact_to_dict(fact) for fact in concept.facts]
-        head = {"name": concept.name, "title": concept.title, "viewpoint": concept.viewpoint, "lesson": concept.lesson}
-        print_json({**head, "facts": facts, "text": text})
+        print_json(_to_json(found, text))
     else:
-        sys.stdout.write(text)
+        from deixis.ontology.triples import turtle
+
+        sys.stdout.write(turtle(found.shapes() if format is LayoutFormat.SHACL else found.owl(relations)))
+
+
+def _to_json(found: CountedConcept, text: str) -> dict[str, Any]:
+    from deixis.ontology.export import fact_to_dict
+    from deixis.ontology.facts import Fact
+
+    concept = found.layout
+    counts = [
+        {
+            "statement": str(each.statement),
+            "claim": not isinstance(each.statement, Fact),
+            "told": each.told,
+            "held": each.tally.held,
+            "of": each.tally.of,
+        }
+        for each in found.statements
+    ]
+    return {
+        "name": concept.name,
+        "title": concept.title,
+        "viewpoint": concept.viewpoint,
+        "lesson": concept.lesson,
+        "lessons": list(found.lessons),
+        "facts": [fact_to_dict(fact) for fact in concept.facts],
+        "counts": counts,
+        "roles": [{"role": role, "present": tally.held, "of": tally.of} for role, tally in found.filled.items()],
+        "text": text,
+    }

@@ -97,9 +97,7 @@ def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> Layo
     is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
     node = iri(layout_iri(name))
     if not any(store.quads_for_pattern(node, *is_layout)):
-        labelled = store.quads_for_pattern(None, iri(W3C.RDFS_LABEL), text(name), graph)
-        nodes = (quad.subject for quad in labelled if isinstance(quad.subject, ox.NamedNode))
-        named = [one for one in nodes if any(store.quads_for_pattern(one, *is_layout))]
+        named = lessons_named(memory, name)
         if not named:
             every = [quad.subject for quad in store.quads_for_pattern(None, *is_layout)]
             labels = (store.quads_for_pattern(one, iri(W3C.RDFS_LABEL), None, graph) for one in every)
@@ -109,6 +107,28 @@ def find_layout(memory: SemanticMemory, name: str, relations: Relations) -> Layo
     triples = (quad.triple for part in (node, *parts) for quad in store.quads_for_pattern(part, None, None, graph))
     (layout,) = layouts(triples, relations)
     return layout
+
+
+def lessons_named(memory: SemanticMemory, name: str) -> list[ox.NamedNode]:
+    """Return the layouts of one name, one for each lesson.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    name
+        Name of the layout.
+
+    Returns
+    -------
+    list of NamedNode
+        IRIs of the layouts, in no stated order.
+    """
+    store, graph = memory.store, graph_iri(GraphName.LEARNED)
+    is_layout = (iri(W3C.RDFS_SUB_CLASS_OF), iri(DX.LAYOUT), graph)
+    labelled = store.quads_for_pattern(None, iri(W3C.RDFS_LABEL), text(name), graph)
+    nodes = (quad.subject for quad in labelled if isinstance(quad.subject, ox.NamedNode))
+    return [one for one in nodes if any(store.quads_for_pattern(one, *is_layout))]
 
 
 def recollect(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple], ontology: Ontology) -> Recollection:

@@ -1,28 +1,27 @@
 """Layouts over several tables: the text that describes one, and which relations hold and how things lie on tables.
 
-A layout that a text described on one table, and that lay on others too, is one concept. Of each pair of roles it keeps
-how often each wide word held of their things, how far apart they were, and of each role how often it was filled and how
-its thing lay. All of it is sums, so the order of the tables does not matter, and a table can be taken back.
+A layout that a text described on one table, and that lay on others too, is one concept. What its tables taught is
+counted (:mod:`deixis.learning.experience`) and kept with the lessons in the memory.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.grammar.script import Script
+from deixis.learning.experience import TOLERANCE, Experience, log_height, long_axis
 from deixis.learning.lesson import layout_name
 from deixis.learning.scene_evidence import graph_evidence, named_by_candidates
 from deixis.ontology.facts import Fact
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
-from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
@@ -31,18 +30,9 @@ from deixis.reasoning.grounding.evidence.meaning import Meaning
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 0.012
-"""Overlap of two perceived boxes, in metres, up to which they count as touching."""
-
-COMPARED = ("left", "top", "on")
-"""Wide words whose frequencies are kept for each ordered pair of roles; their inverses follow."""
-
 TOLD_HOLDS, TOLD_SUPPORT = 0.998, 0.98
 """Probability that a firm fact of a layout is seen to hold on a table without mistakes, and that of *on* and *under*,
 which a small error of heights breaks."""
-
-ELONGATED = 1.7
-"""Ratio of the sides of a thing from which it has a direction."""
 
 TURNED_FROM = np.deg2rad(28.0)
 """Angle from which a thing is compared with how it would lie straight."""
@@ -68,8 +58,8 @@ FLOATING, SUPPORT_ERROR = 0.03, 0.02
 SLENDER = 0.02
 """Width in metres below which a thing that is more than twice as high as long cannot stand."""
 
-HEIGHT_ERROR, HEIGHT_DEVIATION, HEIGHT_PRIOR = 0.01, 0.15, 2.0
-"""Error of a height in metres, and prior standard deviation of its logarithm with the number of things it counts as."""
+HEIGHT_DEVIATION, HEIGHT_PRIOR = 0.15, 2.0
+"""Prior standard deviation of the logarithm of a height, and the number of things that it counts as."""
 
 HEIGHT_OUTLIERS, HEIGHT_SPREAD = 0.01, 0.8
 """Share of things that are of any height, and the standard deviation of the logarithms of all heights."""
@@ -82,210 +72,6 @@ PIECE_SHARE, PIECE_HEIGHT = 0.7, 0.012
 
 OFFSET_OUTLIERS, REACH = 0.02, 0.7
 """Share of offsets that are arbitrary, and side in metres of the area of arbitrary ones."""
-
-
-@dataclass(frozen=True)
-class Tally:
-    """Number of tables on which a statement could be compared, and on how many of them it held."""
-
-    held: float = 0.0
-    of: float = 0.0
-
-    def __add__(self, other: Tally) -> Tally:
-        return Tally(self.held + other.held, self.of + other.of)
-
-    def __neg__(self) -> Tally:
-        return Tally(-self.held, -self.of)
-
-    @property
-    def probability(self) -> float:
-        """Posterior mean that it holds on the next table, with the prior of Jeffreys."""
-        return (self.held + 0.5) / (self.of + 1.0)
-
-
-@dataclass(frozen=True)
-class Moments:
-    """Sums of a vector of numbers and of their squares, for means and deviations."""
-
-    count: float = 0.0
-    total: tuple[float, ...] = (0.0, 0.0)
-    squares: tuple[float, ...] = (0.0, 0.0)
-
-    @classmethod
-    def of(cls, values: Sequence[float]) -> Moments:
-        """Return the sums of one vector.
-
-        Parameters
-        ----------
-        values
-            The numbers.
-
-        Returns
-        -------
-        Moments
-            Count 1, the numbers, and their squares.
-        """
-        return cls(1.0, tuple(values), tuple(value * value for value in values))
-
-    def __add__(self, other: Moments) -> Moments:
-        return Moments(
-            self.count + other.count,
-            tuple(a + b for a, b in zip(self.total, other.total, strict=True)),
-            tuple(a + b for a, b in zip(self.squares, other.squares, strict=True)),
-        )
-
-    def __neg__(self) -> Moments:
-        return Moments(-self.count, tuple(-a for a in self.total), tuple(-a for a in self.squares))
-
-    @property
-    def mean(self) -> Array:
-        """Mean of each number."""
-        return np.array(self.total) / self.count
-
-    @property
-    def deviation(self) -> Array:
-        """Standard deviation of each number."""
-        return np.sqrt(np.maximum(np.array(self.squares) / self.count - self.mean**2, 0.0))
-
-
-Pair = tuple[str, str]
-Key = TypeVar("Key")
-Value = TypeVar("Value", Tally, Moments)
-
-
-@dataclass(frozen=True)
-class Experience:
-    """Sums over tables of one layout, to which tables are added and from which they are taken.
-
-    Attributes
-    ----------
-    tables
-        Number of tables.
-    filled
-        On how many tables each role was filled.
-    held
-        How often each word held of the things of two roles, by word, subject and object.
-    apart
-        Offset in metres from the thing of the first role to that of the second, in x and y.
-    axes
-        Cosine and sine of twice the direction of each role's long thing, as sums.
-    heights
-        Logarithm of the height of each role's thing, see :func:`log_height`.
-    """
-
-    tables: int = 0
-    filled: Mapping[str, Tally] = field(default_factory=dict)
-    held: Mapping[tuple[str, str, str], Tally] = field(default_factory=dict)
-    apart: Mapping[Pair, Moments] = field(default_factory=dict)
-    axes: Mapping[str, Moments] = field(default_factory=dict)
-    heights: Mapping[str, Moments] = field(default_factory=dict)
-
-    def __add__(self, other: Experience) -> Experience:
-        return Experience(
-            self.tables + other.tables,
-            _added(self.filled, other.filled),
-            _added(self.held, other.held),
-            _added(self.apart, other.apart),
-            _added(self.axes, other.axes),
-            _added(self.heights, other.heights),
-        )
-
-    def __neg__(self) -> Experience:
-        return Experience(
-            -self.tables,
-            {key: -value for key, value in self.filled.items()},
-            {key: -value for key, value in self.held.items()},
-            {key: -value for key, value in self.apart.items()},
-            {key: -value for key, value in self.axes.items()},
-            {key: -value for key, value in self.heights.items()},
-        )
-
-    @classmethod
-    def of_table(cls, roles: Sequence[str], things: Mapping[str, PerceivedObject], relations: Relations) -> Experience:
-        """Return the experience of one table.
-
-        Parameters
-        ----------
-        roles
-            All roles of the layout.
-        things
-            The thing of each filled role.
-        relations
-            Relations of the ontology.
-
-        Returns
-        -------
-        Experience
-            Sums over one table.
-        """
-        names = sorted(things)
-        boxes = np.array([(things[name].minimum, things[name].maximum) for name in names])
-        held: dict[tuple[str, str, str], Tally] = {}
-        apart: dict[Pair, Moments] = {}
-        if len(names) > 1:
-            found = box_relations(boxes, relations, TOLERANCE).names
-            centres = boxes.mean(axis=1)
-            for word in COMPARED:
-                degrees = relations.degrees[relations[word].index]
-                for a, first in enumerate(names):
-                    for b, second in enumerate(names):
-                        if a != b:
-                            held[word, first, second] = Tally(float(degrees[found[a, b]] > 0), 1.0)
-            for a, first in enumerate(names):
-                for b, second in enumerate(names[:a]):
-                    apart[second, first] = Moments.of((centres[a] - centres[b])[:2].tolist())
-        axes = {}
-        for name in names:
-            direction = long_axis(things[name])
-            if direction is not None:
-                axes[name] = Moments.of((float(np.cos(2 * direction)), float(np.sin(2 * direction))))
-        heights = {name: Moments.of((float(log_height(box)),)) for name, box in zip(names, boxes, strict=True)}
-        return cls(1, {role: Tally(float(role in things), 1.0) for role in roles}, held, apart, axes, heights)
-
-
-def _added(first: Mapping[Key, Value], second: Mapping[Key, Value]) -> dict[Key, Value]:
-    total = dict(first)
-    for key, value in second.items():
-        total[key] = total[key] + value if key in total else value
-    return total
-
-
-def log_height(boxes: Array) -> Array:
-    """Return logarithms of the heights of boxes, which differ little for things that are flat.
-
-    Parameters
-    ----------
-    boxes
-        Lower and upper corners in metres, shape (..., 2, 3).
-
-    Returns
-    -------
-    ndarray
-        Natural logarithms of the height in metres plus ``HEIGHT_ERROR``, shape (...).
-    """
-    height: Array = np.log(boxes[..., 1, 2] - boxes[..., 0, 2] + HEIGHT_ERROR)
-    return height
-
-
-def long_axis(thing: PerceivedObject) -> float | None:
-    """Return the direction of the long side of a thing.
-
-    Parameters
-    ----------
-    thing
-        The thing.
-
-    Returns
-    -------
-    float or None
-        Angle from the x axis in radians, in [0, pi); None for a thing that is about as long as wide.
-    """
-    if thing.oriented is None:
-        return None
-    first, second, _ = thing.oriented.extents
-    if max(first, second) < ELONGATED * max(min(first, second), 1e-6):
-        return None
-    return float((thing.oriented.yaw + (0.0 if first >= second else np.pi / 2)) % np.pi)
 
 
 def angle_between(first: float, second: float) -> float:
@@ -337,6 +123,26 @@ class LearnedLayout:
             The layout with the name of the script.
         """
         return cls(layout_name(script), script)
+
+    def with_table(self, script: Script, seen: Experience) -> LearnedLayout:
+        """Return the layout with one more table.
+
+        The fuller description is kept, by its numbers of roles and facts, whichever came first.
+
+        Parameters
+        ----------
+        script
+            Description of the table.
+        seen
+            Counts of the table.
+
+        Returns
+        -------
+        LearnedLayout
+            The layout with the counts of all tables.
+        """
+        fuller = max((self.script, script), key=_fullness)
+        return LearnedLayout(self.name, fuller, self.experience + seen)
 
     @cached_property
     def graph(self) -> RelationGraph:
@@ -542,6 +348,14 @@ class LearnedLayout:
             np.array(kinds, dtype=np.int64),
             np.array(tables, dtype=np.float64).reshape(-1, p, p),
         )
+
+
+def _fullness(script: Script) -> tuple[int, int, str]:
+    """Return what says how full a description is, the same for equal ones."""
+    from deixis.grammar.format import format_script
+
+    graph = script.graph()
+    return len(graph.nodes), len(tuple(graph.facts())), format_script(script)
 
 
 def _pieces(boxes: Array) -> NDArray[np.bool_]:

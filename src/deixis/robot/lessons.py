@@ -92,6 +92,12 @@ class TableLesson:
         Roles that are known.
     waiting
         For each role that is not, the things that it may be with their probabilities; None is for none of them.
+    id
+        Id of the lesson in the memory.
+    roles
+        All roles that were described.
+    present
+        Roles whose thing the grounding found on the table, whichever it is.
     """
 
     number: int
@@ -99,9 +105,12 @@ class TableLesson:
     scene: Scene
     settled: Mapping[str, Settled]
     waiting: Mapping[str, Mapping[str | None, float]]
+    id: str = ""
+    roles: tuple[str, ...] = ()
+    present: frozenset[str] = frozenset()
 
     @classmethod
-    def of(cls, number: int, layout: str, scene: Scene, grounding: Grounding) -> TableLesson:
+    def of(cls, number: int, layout: str, scene: Scene, grounding: Grounding, id: str = "") -> TableLesson:
         """Return the lesson that a grounding teaches.
 
         Parameters
@@ -114,6 +123,8 @@ class TableLesson:
             The table.
         grounding
             Grounding of the description in the table.
+        id
+            Id of the lesson in the memory.
 
         Returns
         -------
@@ -130,7 +141,8 @@ class TableLesson:
                 waiting[role] = {match.perceived: probability, **others}
         for left in grounding.unmatched_objects:
             waiting[left.name] = {each.perceived: each.probability or 0.0 for each in left.alternatives}
-        return cls(number, layout, scene, settled, waiting)
+        present = frozenset(grounding.object_matches)
+        return cls(number, layout, scene, settled, waiting, id, (*settled, *waiting), present)
 
     def with_settled(self, role: str, settled: Settled | None) -> TableLesson:
         """Return the lesson with a role that is known.

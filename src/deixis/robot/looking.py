@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from deixis.learning.experience import Experience
 from deixis.learning.views import Known, recognise
 from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import Ontology
@@ -20,7 +21,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
 from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.robot.layouts import Experience, LearnedLayout
+from deixis.robot.layouts import LearnedLayout
 
 UNEXPLAINED_LAYOUT = -2.0
 """Log-likelihood ratio, per thing, that an explanation by a layout must exceed for the layout to be there at all."""

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.script import Script
+from deixis.learning.experience import Experience
 from deixis.learning.teachings import GROUNDING
 from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
-from deixis.robot.layouts import Experience, LearnedLayout
+from deixis.robot.layouts import LearnedLayout
 from deixis.robot.lessons import QUESTION_COST, SETTLED, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
 from deixis.session import Session
@@ -27,6 +28,7 @@ from deixis.session import Session
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
     from deixis.workflows.learn import Learned
+    from deixis.workflows.unlearn import Selection, Unlearned
 
 
 class RobotError(DeixisError, ValueError):
@@ -71,10 +73,47 @@ class Robot:
         self._scene: Scene | None = None
         self._look: Look | None = None
         self._knowledge: TableKnowledge | None = None
+        self.remember()
 
     def close(self) -> None:
         """Close the memory."""
         self.session.close()
+
+    def remember(self) -> None:
+        """Read the layouts from the memory, with the counts of all their tables.
+
+        A new robot does this itself. Call it after something else than the robot changed the memory.
+        """
+        from deixis.grammar.parser import parse_script
+
+        self.layouts = {}
+        tables = {table.lesson: table for table in self.session.tables()}
+        for table in tables.values():
+            script = parse_script(table.script_text, ontology=self.session.ontology)
+            seen, name = table.experience(self.session.ontology.relations), table.layout.name
+            known = self.layouts.get(name, LearnedLayout(name, script))
+            self.layouts[name] = known.with_table(script, seen)
+        for number, lesson in enumerate(self.lessons):
+            if lesson.id not in tables:
+                self.lessons[number] = replace(lesson, settled={}, waiting={})
+        self._forget_look()
+
+    def unlearn(self, selection: Selection) -> Unlearned:
+        """Take back what was taught, with what it added to the counts of layouts.
+
+        Parameters
+        ----------
+        selection
+            What to take back.
+
+        Returns
+        -------
+        Unlearned
+            What was taken back.
+        """
+        found = self.session.unlearn(selection)
+        self.remember()
+        return found
 
     # ---- seeing
 
@@ -202,12 +241,17 @@ class Robot:
         Taught
             The stored view.
         """
-        taught = self.session.teach(self.scene, thing, label, by)
-        for lesson in self.lessons:
-            if lesson.scene is self.scene:
-                pointed = [role for role in lesson.waiting if plain_name(role) == plain_name(label)]
-                for role in pointed[:1]:
-                    self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
+        pointed = [
+            (lesson, role)
+            for lesson in self.lessons
+            if lesson.scene is self.scene
+            for role in lesson.waiting
+            if plain_name(role) == plain_name(label)
+        ][:1]
+        settles = (pointed[0][0].id, pointed[0][1]) if pointed else None
+        taught = self.session.teach(self.scene, thing, label, by, settles)
+        for lesson, role in pointed:
+            self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
         self._forget_look()
         return taught
 
@@ -230,9 +274,9 @@ class Robot:
         layout = LearnedLayout.told(script)
         name = layout.name
         known = self.layouts.get(name, layout)
-        lesson = TableLesson.of(len(self.lessons), name, self.scene, learned.grounding)
+        lesson = TableLesson.of(len(self.lessons), name, self.scene, learned.grounding, learned.lesson.id)
         self.lessons.append(lesson)
-        self.layouts[name] = LearnedLayout(name, known.script, known.experience + self._experience(known, lesson))
+        self.layouts[name] = known.with_table(script, self._experience(lesson))
         self._forget_look()
         return Told(lesson, learned)
 
@@ -270,7 +314,7 @@ class Robot:
             return
         if thing not in lesson.scene.ids:
             raise RobotError(f"`thing` must be a thing of the scene, got '{thing}'; {', '.join(lesson.scene.ids)}")
-        self.session.teach(lesson.scene, thing, plain_name(question.role), by)
+        self.session.teach(lesson.scene, thing, plain_name(question.role), by, (lesson.id, question.role))
         self._settle(lesson, question.role, Settled(thing, SettledBy.ANSWER, 1.0))
 
     def reconsider(self) -> tuple[tuple[int, str], ...]:
@@ -286,7 +330,9 @@ class Robot:
         done = []
         for number in range(len(self.lessons)):
             lesson = self.lessons[number]
-            layout = self.layouts[lesson.layout]
+            layout = self.layouts.get(lesson.layout)
+            if layout is None:  # it was taken back
+                continue
             knowledge = self.knowledge()
             seen = knowledge.recognised(lesson.scene)
             found = explain(layout.evidence(seen, knowledge.ontology, knowledge.meaning))
@@ -302,7 +348,7 @@ class Robot:
                     continue
                 if any(other != role and each.thing == thing for other, each in lesson.settled.items()):
                     continue
-                self.session.teach(lesson.scene, thing, plain_name(role), GROUNDING)
+                self.session.teach(lesson.scene, thing, plain_name(role), GROUNDING, (lesson.id, role))
                 lesson = self._settle(lesson, role, Settled(thing, SettledBy.HINDSIGHT, share))
                 done.append((number, role))
         return tuple(done)
@@ -312,15 +358,15 @@ class Robot:
         new = lesson.with_settled(role, settled)
         self.lessons[lesson.number] = new
         layout = self.layouts[lesson.layout]
-        seen = layout.experience + -self._experience(layout, lesson) + self._experience(layout, new)
+        seen = layout.experience + -self._experience(lesson) + self._experience(new)
         self.layouts[lesson.layout] = replace(layout, experience=seen)
         self._forget_look()
         return new
 
-    def _experience(self, layout: LearnedLayout, lesson: TableLesson) -> Experience:
-        """Return what a lesson adds to the experience of a layout: the places of the roles that are known."""
-        things = {role: lesson.scene[settled.thing] for role, settled in lesson.settled.items() if role in layout.roles}
-        return Experience.of_table(layout.roles, things, self.session.ontology.relations)
+    def _experience(self, lesson: TableLesson) -> Experience:
+        """Return what a lesson adds to the counts of its layout."""
+        things = {role: lesson.scene[settled.thing] for role, settled in lesson.settled.items()}
+        return Experience.of_table(lesson.roles, things, self.session.ontology.relations, lesson.present)
 
     def _forget_look(self) -> None:
         self._look = self._knowledge = None

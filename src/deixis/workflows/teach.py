@@ -23,6 +23,7 @@ def teach(
     knowledge: KnowledgeStore,
     views: ViewStore,
     teacher: str = "user",
+    settles: tuple[str, str] | None = None,
 ) -> Taught:
     """Keep the look of a thing in a scene as a view of a category, which is created if it is new.
 
@@ -43,6 +44,8 @@ def teach(
         The perceptual store.
     teacher
         Name of the person who teaches.
+    settles
+        Id of a lesson and a role in it, of which this is the thing.
 
     Returns
     -------
@@ -58,4 +61,4 @@ def teach(
     """
     scene = as_scene(scene)
     name = views.category_meant(new_category_name(category))
-    return keep_view(view_of_thing(scene, object, name, teacher), knowledge, views)
+    return keep_view(view_of_thing(scene, object, name, teacher, settles), knowledge, views)

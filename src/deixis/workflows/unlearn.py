@@ -27,7 +27,7 @@ from deixis.memory.episodes.changes import Add, Delete
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
-from deixis.view_store import ViewStore, boxes_key, category_name
+from deixis.view_store import SETTLES, ViewStore, boxes_key, category_name
 from deixis.workflows.read import as_scene
 
 if TYPE_CHECKING:
@@ -367,8 +367,14 @@ def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teac
 
 def _without(turns: Teachings, lessons: Sequence[str], chosen: _Chosen, view: str) -> Teachings:
     """Return the teachings of a view that stay."""
-    stay = (turn for turn in turns if turn.lesson is None or turn.lesson not in lessons)
+    stay = (turn for turn in turns if _origin(turn) not in lessons)
     return tuple(turn for turn in stay if not chosen.holds_of_teaching(turn, view))
+
+
+def _origin(turn: Teaching) -> str | None:
+    """Return the lesson that a teaching came from: its own, or the one that was settled in hindsight."""
+    settled = turn.metadata.get(SETTLES)
+    return str(settled[0]) if settled and not turn.is_by_hand else turn.lesson
 
 
 def _changes(before: Mapping[str, Teachings], after: Mapping[str, Teachings]) -> Iterator[ViewChange]:

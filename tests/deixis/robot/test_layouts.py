@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from deixis.learning.experience import Experience, long_axis
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
-from deixis.robot.layouts import Experience, LearnedLayout, angle_between, long_axis
+from deixis.robot.layouts import LearnedLayout, angle_between
 from deixis.workflows.read import read_script
 
 ROLES = ("fork", "knife", "plate")
