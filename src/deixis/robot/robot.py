@@ -385,10 +385,11 @@ def perceived(cloud: PointCloud) -> Scene:
     Scene
         The scene in the frame of the table.
     """
+    from deixis.perception.clouds.smoothing import smoothed
     from deixis.perception.occlusion import joined_behind_others
     from deixis.workflows.perceive import perceive
 
-    return joined_behind_others(perceive(cloud))
+    return joined_behind_others(perceive(smoothed(cloud)))
 
 
 def understood(text: str, session: Session) -> Script:
