@@ -65,6 +65,7 @@ COMMAND_GROUPS = {
         "time": "time_command",
         "activity": "activity_app",
     },
+    "Robot": {"robot": "robot_app"},
     "Experiments": {"demo": "demo", "experiment": "experiment"},
 }
 """Commands by group, in the order of ``--help``; each with its function in the module of ``deixis.cli`` for it."""

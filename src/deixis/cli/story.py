@@ -81,6 +81,7 @@ def tell(out: Path) -> None:
 
     with tempfile.TemporaryDirectory() as folder, Session(Path(folder) / "memory") as session:
         _remembered(tour, session, full, scene, out)
+    _running(tour)
     tour.write_page()
 
 
@@ -151,6 +152,22 @@ def _seen(tour: Tour, session: Session, full: Script, out: Path) -> None:
     tour.listing([f"{id:<5} {answer_words(answer)}" for id, answer in found.answers.items()])
     plot_recognised(found, out / "another.png")
     tour.picture("another.png", "The things recognised in another cloud")
+
+
+def _running(tour: Tour) -> None:
+    """Print the part of the tour in which the robot runs on a film of one table and two customers."""
+    from deixis.robot.live.run import LiveSettings, live_robot
+
+    tour.chapter(
+        "The robot runs: a teacher shows and tells, and asks about the next customer's table",
+        "deixis robot run --from simulator --seed 1 --memory out/robot",
+    )
+    lines: list[str] = []
+    with tempfile.TemporaryDirectory() as folder:
+        settings = LiveSettings("simulator", str(example("tea.layout")), seed=1)
+        with live_robot(Path(folder) / "memory", settings, lines.append) as robot:
+            robot.wait()
+    tour.listing(lines)
 
 
 def full_text(name: str) -> list[str]:

@@ -155,7 +155,7 @@ def point(
             f" 'right_wrist'; the joints are: {', '.join(names)[:200] or 'none'}"
         )
     pointings = tuple(pointed_at(gesture, seen, sure=sure) for gesture in gestures(frames))
-    labels, contradictions = taught_labels([_label(one, pointings, seen, sure) for one in heard], seen)
+    labels, contradictions = taught_labels([pointed_label(one, pointings, seen, sure) for one in heard], seen)
     return Shown(pointings, labels, contradictions, notes)
 
 
@@ -201,8 +201,27 @@ def spoken_name(text: str) -> SpokenName | None:
     return None
 
 
-def _label(utterance: Utterance, pointings: Sequence[Pointing], scene: Scene, sure: float) -> PointedLabel:
-    """Return the label of an utterance, before it is compared with the other labels."""
+def pointed_label(
+    utterance: Utterance, pointings: Sequence[Pointing], scene: Scene, sure: float = SURE
+) -> PointedLabel:
+    """Return what an utterance names, before it is compared with the other labels.
+
+    Parameters
+    ----------
+    utterance
+        The words.
+    pointings
+        Gestures with what they point at.
+    scene
+        The things.
+    sure
+        Probability from which on a thing is decided.
+
+    Returns
+    -------
+    PointedLabel
+        The name and the thing, or why nothing is taught.
+    """
     said = spoken_name(utterance.text)
     if said is None:
         return PointedLabel(utterance, None, refused="names nothing that could be pointed at")

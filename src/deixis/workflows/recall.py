@@ -352,7 +352,8 @@ class _Remembering:
             return None
         origins = (Origin.SAID, Origin.SHOWN)
         known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
-        named = frozenset(name for name in known if name.lower() == wanted.lower())
+        called = {wanted.lower(), wanted.lower().removeprefix("the ")}  # 'the teacher' is called 'teacher'
+        named = frozenset(name for name in known if name.lower() in called)
         if not named:
             raise _NotKnownError(f"nothing is recorded that '{wanted}' said or showed")
         return named

@@ -1,0 +1,181 @@
+"""Stories: what a robot sees and hears in the order of time, from a recorded folder or from the simulator.
+
+A folder has clouds (see :class:`~deixis.perception.tracking.stream.FolderSource`) and, if there are any, the words
+(``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds. Skeletons
+are in the frame of the camera.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from heapq import merge
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from deixis.grammar.utterances import Utterance
+from deixis.perception.pointing.skeleton import Skeleton
+from deixis.perception.tracking.frame import Frame
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.perception.simulator.camera import Camera
+    from deixis.perception.simulator.laying import LaidThing
+
+Event = Frame | Skeleton | Utterance
+
+WORDS, PEOPLE = "words.said.jsonl", "people.skeleton.jsonl"
+"""Names of the files of words and skeletons in the folder of a story."""
+
+TALK = 1.5
+"""Pause in seconds before and after what a simulated person says."""
+
+BREAK = 5.0
+"""Time in seconds between the two customers, in which the robot does not look."""
+
+
+@dataclass(frozen=True, eq=False)
+class Story:
+    """Events in the order of their times, which :meth:`events` yields one by one."""
+
+    frames: Iterable[Frame]
+    words: tuple[Utterance, ...] = ()
+    skeletons: tuple[Skeleton, ...] = ()
+
+    def events(self) -> Iterator[Event]:
+        """Yield the events in the order of their times.
+
+        Yields
+        ------
+        Event
+            A frame, a skeleton or an utterance; of several at one time, the frame first.
+        """
+        return merge(self.frames, self.skeletons, self.words, key=lambda event: event.at)
+
+
+def recorded_story(folder: str | Path, intrinsics: str | Path | None = None, grows: bool = False) -> Story:
+    """Return the story in a folder.
+
+    Parameters
+    ----------
+    folder
+        The folder.
+    intrinsics
+        File with the intrinsics of the camera, for depth images.
+    grows
+        True to wait for further clouds.
+
+    Returns
+    -------
+    Story
+        The story. Its clouds are read one by one.
+
+    Raises
+    ------
+    CloudError
+        If there is no such folder.
+    UtteranceError, PointingError
+        If a file of words or skeletons has an error.
+    """
+    from deixis.grammar.utterances import read_utterances
+    from deixis.perception.formats.skeletons import read_skeletons
+    from deixis.perception.tracking.stream import FolderSource
+
+    place = Path(folder)
+    source = FolderSource(place, grows=grows, intrinsics=intrinsics)
+    words = read_utterances(place / WORDS) if (place / WORDS).exists() else ()
+    skeletons = read_skeletons(place / PEOPLE).skeletons if (place / PEOPLE).exists() else ()
+    return Story(source.frames(), tuple(words), tuple(skeletons))
+
+
+def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
+    """Return a story of one table and two customers.
+
+    The table is laid for the first customer. A teacher points at two things and names them, and says how the table is
+    laid. For the second customer it is laid with other things of the same kinds: the last one is brought while the
+    robot looks, and one is forgotten. The teacher asks what is wrong.
+
+    Parameters
+    ----------
+    script
+        How the table is laid.
+    seed
+        Seed of the things, the teacher and the choices.
+    rate
+        Frames a second.
+
+    Returns
+    -------
+    Story
+        The story. Its frames are computed one by one.
+
+    Raises
+    ------
+    SimulationError
+        If no table can be laid as the script says.
+    """
+    from deixis.perception.simulator.camera import chair_camera
+    from deixis.perception.simulator.laying import LaidTable, top_under, truth_scene
+    from deixis.perception.simulator.motion import Bring, Rest, Stage
+    from deixis.perception.simulator.teacher import Teacher
+    from deixis.workflows.lay_table import lay_script
+    from deixis.workflows.tell import tell
+
+    rng = np.random.default_rng(seed)
+    first, second = (lay_script(script, seed=seed + k).table for k in (0, 1))
+    scene = truth_scene(first)
+    free = [k for k, thing in enumerate(first.things) if not _bears(thing, first.things)]
+    shown = sorted(rng.permutation(free)[:2].tolist())
+    others = [k for k in free if k not in shown] or free
+    forgotten, brought = (int(k) for k in (*rng.permutation(others), *shown)[:2])
+
+    recording = Teacher(scene, seed).points_at([scene.ids[k] for k in shown], hold=1.5)
+    words = [
+        Utterance(
+            f"This is a {first.things[k].name.replace('_', ' ')}.", TALK + aim.start, TALK + aim.finish, "teacher"
+        )
+        for k, aim in zip(shown, recording.aims, strict=True)
+    ]
+    told_at = TALK + recording.skeletons[-1].at + TALK
+    name = (script.name or "this table").replace("_", " ")
+    words.append(Utterance(f"This is how '{name}' is laid. {tell(script).text}", told_at, speaker="teacher"))
+
+    before = Stage(first.things, seed)
+    before.carry_out(Rest(told_at + TALK))
+    after = Stage([thing for k, thing in enumerate(second.things) if k not in (forgotten, brought)], seed)
+    after.carry_out(Rest(TALK))
+    after.carry_out(Bring(second.things[brought]))
+    after.carry_out(Rest(TALK))
+    top = top_under((*first.things, *second.things))
+    camera = chair_camera(LaidTable(top, (*first.things, *second.things)))
+    films = [stage.film(top, camera) for stage in (before, after)]
+    asked_at = films[0].seconds + BREAK + films[1].seconds
+    words.append(Utterance("What is wrong?", asked_at, speaker="teacher"))
+
+    def frames() -> Iterator[Frame]:
+        number = 0
+        for film, start in zip(films, (0.0, films[0].seconds + BREAK), strict=True):
+            for frame in film.frames(rate, seed):
+                yield Frame(frame.cloud, start + frame.at, number)
+                number += 1
+
+    return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons))
+
+
+def _bears(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
+    """Return True if another thing lies on a thing, at least in part."""
+    from deixis.perception.simulator.laying import overlap_in_plan, plan_box
+
+    own = plan_box(thing.mesh)
+    return any(
+        other.box[0, 2] > thing.box[0, 2] + 1e-4 and overlap_in_plan(own, plan_box(other.mesh)) for other in things
+    )
+
+
+def _as_seen(skeleton: Skeleton, camera: Camera) -> Skeleton:
+    """Return a skeleton in the frame of the camera, after the pause at the beginning of the story."""
+    places = camera.to_camera(np.array(list(skeleton.joints.values())))
+    joints = {name: tuple(place) for name, place in zip(skeleton.joints, places.tolist(), strict=True)}
+    return Skeleton(skeleton.at + TALK, joints, skeleton.person)
