@@ -130,7 +130,7 @@ def test_a_placed_viewer_turns_boxes_fronts_and_people() -> None:
     seen = scene.from_viewer()
     assert seen["cup"].minimum[1] > seen["jug"].minimum[1]  # the jug is nearer
     np.testing.assert_allclose(seen.fronts[0], (0.0, -1.0), atol=1e-12)
-    np.testing.assert_allclose(seen.speaker, (0.5, -9.0), atol=1e-12)
+    assert seen.speaker == pytest.approx((0.5, -9.0), abs=1e-12)
     assert seen.viewer is None and scene["cup"] == cup
 
 

@@ -25,7 +25,8 @@ def noisy_step(noise: float, coloured: bool = True) -> tuple[PointCloud, np.ndar
 
 
 def errors(cloud: PointCloud, true: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(cloud.points - true, axis=1).reshape(ROWS, COLUMNS)
+    found: np.ndarray = np.linalg.norm(cloud.points - true, axis=1).reshape(ROWS, COLUMNS)
+    return found
 
 
 def test_noise_falls_and_coloured_steps_stay() -> None:

@@ -195,8 +195,9 @@ def test_only_facts_are_pivotal_beside_claims(options: dict[str, Any]) -> None:
 def test_ranks_from_a_side_share_the_members_before_a_thing(chances: list[float], seed: int) -> None:
     n = len(chances)
     centres = np.random.default_rng(seed).permutation(n)[:, None] * np.ones(2)
-    found = [ordinal_degrees(f"{rank} from left", centres, np.array(chances)) for rank in range(1, n + 1)]
-    np.testing.assert_allclose(sum(one for one in found if one is not None), 1.0)
+    ranks = (ordinal_degrees(f"{rank} from left", centres, np.array(chances)) for rank in range(1, n + 1))
+    found = [one for one in ranks if one is not None]
+    np.testing.assert_allclose(sum(found), 1.0)
     by_hand = [np.prod([1 - chances[s] for s in range(n) if centres[s, 0] < centres[t, 0]]) for t in range(n)]
     np.testing.assert_allclose(found[0], by_hand)
 
