@@ -11,6 +11,7 @@ from deixis.grammar.english.nouns import (
     GENERAL,
     HOLDERS,
     PARTS,
+    PEOPLE,
     REMOVABLE,
     SUBSTANCES,
     SURFACES,
@@ -22,6 +23,7 @@ from deixis.grammar.english.nouns import (
 )
 from deixis.grammar.english.references import OPPOSITES, POLES, REGIONS, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
+from deixis.grammar.english.words import SAYING
 from deixis.ontology.claims import COLLECTIVE, PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
@@ -36,11 +38,24 @@ LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|pla
 """Beginning of a clause by which what should be is not so."""
 NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
 """Words by which a story says what is so in the end."""
+HABIT = re.compile(
+    r"\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left|stood|lay|hung|sat)\b", re.I
+)
+"""Words of what was done again and again."""
 WHILE_DOING = re.compile(
     r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
     re.IGNORECASE,
 )
 """Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
+CONDITION = re.compile(
+    r"\s*(?:if|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
+    r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
+    r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
+    r"(?:luck|room|space|time)\b[^,.;?]*,"
+    r"|\s*(?:should|were)\s+(?!be\b)[^,.;?]*,",
+    re.IGNORECASE,
+)
+"""Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
 UNSURE_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
 )
@@ -49,27 +64,43 @@ UNSURE_RELATIVE = re.compile(
 OBLIGED = frozenset({"should", "ought", "shall"})
 REVOKED = re.compile(
     r"^,?\s*(?:but|though|yet)\s+not\s+(?:today|now|here|yet|always|any\s*more|this\s+time|tonight|any\s+longer)\b|"
-    r"^,?\s*(?:but|though|although|yet)\s+(?:we|i|you|they|he|she|it)\s+"
-    r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$",
+    r"^[,;]?\s*(?:(?:but|though|although|yet)\s+)?(?:we|i|you|they|he|she|it)\s+"
+    r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$"
+    r"|^,?\s*or\s+(?:else\s+)?(?:not|(?:it|they|he|she)\s+(?:is|are|was|were|do|does|did)(?:n['\u2019]t|\s+not))\s*[.!]?$",
     re.IGNORECASE,
 )
 """End of a sentence that takes back what it said: *…, but we don't*."""
 UNREAL = re.compile(
     r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
     r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather)\b"
-    r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|planned|tried|tries|intends?|intended|"
+    r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
     r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
     r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
     r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
     r"|\b(?:i|we|you|he|she|they)\s+(?:was|were|are|am|is)\s+(?:asked|told|supposed|reminded|instructed|ordered)\s+to\b"
     r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
-    r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b",
+    r"|\blet(?:['\u2019]s|\s+us)\s+(?:hope|say|suppose|assume|pretend|imagine)\b"
+    r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b"
+    r"|(?<=[a-z]\s)(?:asks?|asked|tells?|told|orders|ordered|begs|begged|urge[sd]?|advise[sd]?|persuade[sd]?|expect(?:s|ed)|commanded)\s+"
+    r"(?:[\w'\u2019]+\s+){1,3}?(?:not\s+)?to\s+(?!the\b)[a-z]+"
+    r"|\b(?:refus(?:es?|ed)|declin(?:es?|ed)|forgot|forgets|neglect(?:s|ed)?|omit(?:s|ted)|"
+    r"hesitat(?:es|ed))\s+to\b|\b(?:look|search|hunt|ask|wish)(?:s|es|ed|ing)?\s+for\s+(?:an?|some|any)\b"
+    r"|^\s*in\s+(?:the|an?|this|that|his|her|my|our|your|their|one|[\w-]+['\u2019]s?)\s+(?:[\w'\u2019-]+\s+){0,2}?(?:story|novel|tale|fable|"
+    r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
+    r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )
-"""Words of a sentence that tells what a person says, wants or tries."""
+"""Words of a sentence that tells what a person says, wants, asks for or tries, or that retells a story."""
+REPORTED = re.compile(
+    rf"\b(?:he|she|they|{'|'.join(sorted(PEOPLE))})s?\s+(?:{'|'.join(sorted(SAYING))})\s+"
+    r"(?:the|an?|my|his|her|our|their|your|it|they|there)\b",
+    re.IGNORECASE,
+)
+"""Words of a sentence that tells what other people say: *my son insists the ball is …*."""
 LIMITED = re.compile(
     r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
-    r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b",
+    r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
+    r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
     re.IGNORECASE,
 )
 """Time outside which a statement need not hold."""
@@ -352,12 +383,13 @@ class Discourse:
             or not RARE.isdisjoint(clause.hedges)
         )
         uncertain = uncertain or (modal == "must" and clause.past)  # 'it must have lain there'
+        uncertain = uncertain or (modal == "would" and clause.positive)  # 'without the clamp it would lie there'
         none = clause.subject is not None and clause.subject.pronoun == "none"
         self.how = Qualification(
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
             optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
             condition=clause.condition or self.condition,
-            past=clause.past and not self.story and not NOW.search(self.text[slice(*clause.span)]), uncertain=uncertain,
+            past=self._is_past(clause), uncertain=uncertain,
         )  # fmt: skip
         subject = clause.subject
         if subject is not None and any(member.negated for member in subject.members):
@@ -411,7 +443,9 @@ class Discourse:
             clause = replace(clause, predicates=subject.predicates)
             subject = replace(subject, predicates=())
         whole = self.text[self.references.start : self.end]
-        if (REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)) and positive:
+        unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
+        unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1])
+        if unreal and positive:
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
             self.text[self.references.start : self.end]
@@ -471,6 +505,11 @@ class Discourse:
             self._alternative_to_the_last(first, entity)
         if modal in OBLIGED:
             self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _is_past(self, clause: Clause) -> bool:
+        """Return True for what was so, and need not be so now: *my mother always kept it here*."""
+        said = self.text[slice(*clause.span)]
+        return not self.story and not NOW.search(said) and (clause.past or HABIT.search(said) is not None)
 
     def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
         for negated in (False, True):
@@ -574,7 +613,7 @@ class Discourse:
             self._say(besides, phrase.predicates, phrase, focus=False)
         if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
             self._say(besides, phrase.predicates, phrase, focus=False)
-        elif phrase.predicates and entity.role is not Role.PERSON:
+        elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT):
             outer = self.how
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
             if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
@@ -753,7 +792,7 @@ class Discourse:
             if relation == "upside_down":
                 return  # the label, and not the bottle
             subject = subject.whole
-        if subject.role in (Role.VIEWER, Role.PERSON) or subject.noun in GAPS:
+        if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or subject.noun in GAPS:
             return
         if predicate.subject_part is not None and " " in predicate.subject_part.head:
             owner, _, part = predicate.subject_part.head.rpartition(" ")
@@ -893,6 +932,8 @@ class Discourse:
     def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
         same_group = subject.itself.group is not None and subject.itself.group is other.itself.group
         if other is subject or (same_group and relation == "inside"):
+            return
+        if other.role is Role.ABSTRACT:
             return
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
@@ -1381,10 +1422,7 @@ def condition_of(sentence: Sentence) -> str | None:
     str or None
         Text of the condition with single spaces, or None for a sentence that does not begin with one.
     """
-    first = sentence.text.split(None, 1)[:1]
-    if WHILE_DOING.match(sentence.text):
-        return " ".join(sentence.text.split(",", 1)[0].split())
-    if not first or first[0].casefold() not in ("if", "unless", "whenever", "assuming", "suppose"):
+    if not WHILE_DOING.match(sentence.text) and not CONDITION.match(sentence.text):
         return None
     return " ".join(sentence.text.split(",", 1)[0].split())
 

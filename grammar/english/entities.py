@@ -17,6 +17,7 @@ class Role(StrEnum):
     SURFACE = "surface"  # what everything stands on
     VIEWER = "viewer"
     PERSON = "person"
+    ABSTRACT = "abstract"  # what has no place: a decision, a story
     SURROUNDING = "surrounding"  # a wall, a window
     PART = "part"  # of a thing
 

@@ -120,6 +120,43 @@ PEOPLE = frozenset(
 )
 """Nouns of people, who are not objects of the scene."""
 
+ABSTRACT = frozenset(
+    [
+        "decision",
+        "question",
+        "idea",
+        "issue",
+        "topic",
+        "argument",
+        "agreement",
+        "discussion",
+        "debate",
+        "proposal",
+        "luck",
+        "emphasis",
+        "attention",
+        "responsibility",
+        "opinion",
+        "event",
+        "story",
+        "tale",
+        "joke",
+        "dream",
+        "day",
+        "week",
+        "month",
+        "year",
+        "past",
+        "future",
+        "hope",
+        "doubt",
+        "reason",
+        "fact",
+        "trace",
+    ]
+)
+"""Nouns of what has no place in a scene: *the decision on the table*."""
+
 SURROUNDINGS = frozenset(
     [
         "wall",

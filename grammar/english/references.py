@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.entities import Entity, Role, is_one_thing
 from deixis.grammar.english.nouns import (
+    ABSTRACT,
     GENERAL,
     GROUPS,
     PAIRED,
@@ -176,6 +177,8 @@ class References:
 
     def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
         noun, last = phrase.head, last_word(phrase.head)
+        if last in ABSTRACT and noun == last:
+            return self._earlier(phrase) or self._new(phrase, Role.ABSTRACT)
         if last == VIEWER or (last in PEOPLE and noun == last):
             entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
             return entity
@@ -633,7 +636,7 @@ class References:
         several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
-                if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON):
+                if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT):
                     continue
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:

@@ -12,6 +12,7 @@ from deixis.grammar.english.words import (
     DIRECTION_WORDS,
     IS_FORMS,
     ORDINALS,
+    PAST_FORMS,
     PRONOUNS,
     TYPOS,
     adjectives,
@@ -38,8 +39,49 @@ _CODES = re.compile(
 )
 """Codes of things, which say nothing of places: *(inv. 112)*, *samples 1\u20136*."""
 _IN_BRACKETS = re.compile(r"\(([^()\n]{3,60})\)")
+_CAPITAL = r"[A-Z][\w'\u2019]*"
+_TITLE = rf"{_CAPITAL}(?:\s+(?:(?:an?|the|of|and|on|in|at|by|to|for|with|from|under|over|behind|near)\s+)*{_CAPITAL})+"
+_TITLES = re.compile(
+    r"(?<=[a-z])\s+of\s+(?=(?:On|In|Under|Over|Behind|Beside|Above|Below|Near|At|By)\s)"
+    + _TITLE
+    + r"|(?<=[a-z]),?\s*[\"\u201c]"
+    + _TITLE
+    + r"[\"\u201d],?"
+    + r"|(?<=\b(?:song|book|film|play|poem|game))\s+"
+    + _TITLE
+    + r"|(?<=\bnovel|\bmovie|\balbum|\bstory|named)\s+"
+    + _TITLE
+    + r"|(?<=\bcalled)\s+"
+    + _TITLE
+)
+"""Titles of works and names of things, whose words say nothing of places: *my copy of Under the Volcano*."""
+_DEPICTED = re.compile(
+    r"(?<=\w)\s+of\s+(?:an?|two|three|some)\s+(?:[\w-]+\s+){1,2}?"
+    r"((?:on|in|under|behind|beside|above|near|over|at|with)\s+an?\s+(?:[\w-]+\s+){0,2}?[\w-]+"
+    r"(?:\s+(?:on|in|under|behind|beside|above|near|over|at|with)\s+(?:his|her|its|their|an?)\s+[\w-]+)*)"
+    r"|(?<=\w)\s+((?:on|in|under|behind|beside|above|near|over|at|with)\s+an?\s+[\w-]+)"
+    r"(?=\s+(?:printed|painted|drawn|engraved|embroidered|carved|etched|stamped|woven)\b)"
+)
+_DEPICTIONS = re.compile(
+    r"\b(?:picture|photo|photograph|painting|drawing|print|image|portrait|sketch|engraving|poster|postcard)s?$", re.I
+)
+_SHOWN = re.compile(
+    r"\b(?:(?:picture|photo|photograph|drawing|print|image|sketch|engraving)\s+(?:on|above|over|in|at|by|behind|beside)\s"
+    r"+(?:the|my|our|her|his|their)\s+[\w-]+|painting|portrait|poster|postcard|mural|tapestry|stamp)\s+"
+    r"((?:shows?|showed|depicts?|depicted|portrays?|portrayed|showing|depicting)\s[^,.;]*)",
+    re.I,
+)
+"""Words for the content of a picture, which is not in the scene: *the photo on the wall shows a lamp on a desk*."""
 _ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
 _RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
+_DENIALS = {
+    ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
+    ("not", "anywhere", "near"): "not near", ("not", "anywhere", "close", "to"): "not near",
+    ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
+    ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
+    ("minus",): "without",
+}  # fmt: skip
+"""Phrases that deny what follows them, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
@@ -211,6 +253,28 @@ def _deny_contrasts(words: list[Word]) -> None:
         if words[i].norm in ("anywhere", "everywhere") and words[i + 1].norm in ("except", "but"):
             words[i].norm, words[i].end = "not", words[i + 1].end
             del words[i + 1]
+    for i in range(len(words) - 2, -1, -1):
+        for length in (4, 3, 2, 1):
+            plain = _DENIALS.get(tuple(word.norm for word in words[i : i + length]))
+            if plain is not None and (i + length == len(words) or words[i + length].norm != "than"):
+                first, *others = plain.split()
+                words[i].norm = first
+                for word, norm in zip(words[i + 1 :], others, strict=False):
+                    word.norm = norm
+                words[i + len(others)].end = words[i + length - 1].end
+                del words[i + 1 + len(others) : i + length]
+                break
+    for i in range(len(words) - 2, 0, -1):
+        if words[i].norm == "once" and words[i + 1].norm in PAST_FORMS and words[i - 1].norm not in ("that", "which"):
+            del words[i]  # 'the cup once stood here'
+    for i in range(1, len(words) - 2):
+        if words[i].norm == "but" and words[i + 1].norm == "no":
+            words[i].norm = "and"  # 'a tray, but no cup on it'
+    denied = any(word.norm in ("not", "never", "no") for word in words)
+    for i in range(len(words) - 1, 0, -1):
+        last = i + 1 == len(words) or not words[i + 1].is_word
+        if words[i].norm == "yet" and denied and last and words[i - 1].is_word:
+            del words[i]  # 'it is not on the saucer yet'
     for i in range(len(words) - 3, -1, -1):
         if [word.norm for word in words[i : i + 3]] == ["not", "you", "dare"]:
             del words[i + 1 : i + 3]
@@ -225,6 +289,15 @@ def _deny_contrasts(words: list[Word]) -> None:
     for i in range(1, len(words) - 2):
         if (words[i].norm, words[i + 1].norm) in _CONTRASTS and words[i - 1].norm not in (";", ":", "."):
             words[i].norm, words[i + 1].norm = ",", "not"
+
+
+def _depicted(text: str, span: Span) -> Iterator[Span]:
+    """Yield the words of a sentence that tell what a picture shows, and titles of works."""
+    yield from (match.span(1) for match in _SHOWN.finditer(text, *span))
+    yield from (match.span() for match in _TITLES.finditer(text, *span))
+    for match in _DEPICTED.finditer(text, *span):
+        if match[1] is None or _DEPICTIONS.search(text[span[0] : match.start()]):
+            yield match.span(1 if match[1] is not None else 2)
 
 
 def _says_no_place(words: str) -> bool:
@@ -257,6 +330,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     found: list[Word] = []
     struck = [match.span() for marks in (_STRUCK, _CODES) for match in marks.finditer(text, *span)]
     struck += [match.span() for match in _IN_BRACKETS.finditer(text, *span) if _says_no_place(match[1])]
+    struck += _depicted(text, span)
     for match in _WORD.finditer(text, *span):
         raw = match[0]
         start, end = match.span()

@@ -137,6 +137,36 @@ IDIOMS = tuple(
         "under the circumstances",
         "under these circumstances",
         "under the weather",
+        "under wraps",
+        "under control",
+        "under fire",
+        "under one roof",
+        "under the hammer",
+        "in your court",
+        "in the same boat",
+        "in a nutshell",
+        "in good hands",
+        "in the works",
+        "in the know",
+        "in the mood",
+        "up in the air",
+        "on the right track",
+        "on the wrong track",
+        "on the cards",
+        "on the fence",
+        "on the agenda",
+        "on the market",
+        "on the menu",
+        "on the mend",
+        "on thin ice",
+        "on duty",
+        "on hold",
+        "on the fritz",
+        "on the blink",
+        "on loan",
+        "on record",
+        "behind the wheel",
+        "over the top",
         "in the first place",
         "in the long run",
         "in the meantime",
@@ -844,7 +874,10 @@ REPORTS = word_set(
     " maintained asserted swore testified alleges alleged"
 )
 """Verbs of persons who tell something that need not be so."""
-SAYING = word_set("swore swears says said claims claimed insists insisted believes thinks thought")
+SAYING = word_set(
+    "swore swears says said claims claimed insists insisted insists believes thinks thought reckons"
+    " maintains suspects guesses assumes supposes argues"
+)
 """Such verbs after which *that* can be left out: *the butler swore it hung there*."""
 TRANSITIVE_RELATIONS = {
     "hold": ("with", False),
