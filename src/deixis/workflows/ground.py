@@ -52,6 +52,10 @@ if TYPE_CHECKING:
 CONFLICT_SHARE = 0.15
 """Share of the time limit that may be spent on whether the facts can hold together."""
 
+TEXT_SIZES_SHARE = 0.3
+"""Weight of the usual sizes for texts in English, as a share of that for layouts: a noun in a text often does not have
+the size of its kind (*toy train*, *camp stove*), and two such nouns would make the scene another one."""
+
 SIDES_HELD = {ViewpointName.STATED: 1, ViewpointName.QUARTER: 3, ViewpointName.UNKNOWN: 7}
 """Times as many things as memory has to be for: the square of it is the number of sides looked from at once."""
 
@@ -206,7 +210,8 @@ class GroundingRequest:
     @cached_property
     def effective_meaning(self) -> Meaning:
         """The meaning, less what the request leaves out."""
-        weights = self.meaning.weights if self.sizes else replace(self.meaning.weights, sizes=0.0)
+        share = 0.0 if not self.sizes else 1.0 if self.script.reading is None else TEXT_SIZES_SHARE
+        weights = replace(self.meaning.weights, sizes=share * self.meaning.weights.sizes)
         return replace(self.meaning, graded=self.meaning.graded and not self.literal, weights=weights)
 
     def evidence(self, scene: Scene, keep_surface_free: bool = True) -> Evidence:

@@ -200,3 +200,15 @@ def test_left_is_as_the_placed_viewer_sees_it(viewpoint: list[float], cup: str, 
     found = package.ground(script, scene)
     assert found.matches["cup"].perceived == cup
     assert found.scene == scene
+
+
+def test_toys_in_a_text_need_not_have_usual_sizes(tmp_path: Path) -> None:
+    text = tmp_path / "shelf.txt"
+    text.write_text("The toy train is left of the doll. The toy car is right of the doll. The toy boat is behind it.\n")
+    boxes = {"a": (10, 10), "b": (30, 10), "c": (50, 10), "d": (30, 30)}
+    things = [{"id": i, "min": [x, y, 0], "max": [x + 9, y + 5, 6]} for i, (x, y) in boxes.items()]
+    scene = {"frame": "table", "viewpoint": "front", "unit": "cm", "objects": things}
+    found = package.ground(text, scene).matches
+    assert {name: match.perceived for name, match in found.items()} == {
+        "toy_train": "a", "doll": "b", "toy_car": "c", "toy_boat": "d"
+    }  # fmt: skip
