@@ -39,7 +39,9 @@ LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|pla
 NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
 """Words by which a story says what is so in the end."""
 HABIT = re.compile(
-    r"\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left|stood|lay|hung|sat)\b", re.I
+    r"\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left|stood|lay|hung|sat)\b"
+    r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b",
+    re.I,
 )
 """Words of what was done again and again."""
 WHILE_DOING = re.compile(
@@ -79,6 +81,9 @@ UNREAL = re.compile(
     r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
     r"|\b(?:i|we|you|he|she|they)\s+(?:was|were|are|am|is)\s+(?:asked|told|supposed|reminded|instructed|ordered)\s+to\b"
     r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
+    r"|\b(?:i|we|he|she|they)\s+(?:hopes?|wish(?:es)?|fears?)\s+(?:the|an?|my|his|her|our|their|it)\b"
+    r"|\b(?:i|we|he|she|they)(?:['\u2019]d|\s+had|['\u2019]ve|\s+have)\s+(?:planned|hoped|wanted|intended|meant)\s+to\b"
+    r"|\b(?:you|one|we|i)(?:['\u2019]d|\s+would)\s+expect\b"
     r"|\blet(?:['\u2019]s|\s+us)\s+(?:hope|say|suppose|assume|pretend|imagine)\b"
     r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b"
     r"|(?<=[a-z]\s)(?:asks?|asked|tells?|told|orders|ordered|begs|begged|urge[sd]?|advise[sd]?|persuade[sd]?|expect(?:s|ed)|commanded)\s+"

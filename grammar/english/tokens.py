@@ -67,12 +67,16 @@ _DEPICTIONS = re.compile(
 )
 _SHOWN = re.compile(
     r"\b(?:(?:picture|photo|photograph|drawing|print|image|sketch|engraving)\s+(?:on|above|over|in|at|by|behind|beside)\s"
-    r"+(?:the|my|our|her|his|their)\s+[\w-]+|painting|portrait|poster|postcard|mural|tapestry|stamp)\s+"
+    r"+(?:the|my|our|her|his|their)\s+[\w-]+|(?:painting|portrait|poster|postcard|mural|tapestry|stamp)"
+    r"(?:\s+(?:on|above|over|in|at|by|behind|beside)\s+(?:the|my|our|her|his|their)\s+[\w-]+)?)\s+"
     r"((?:shows?|showed|depicts?|depicted|portrays?|portrayed|showing|depicting)\s[^,.;]*)",
     re.I,
 )
 """Words for the content of a picture, which is not in the scene: *the photo on the wall shows a lamp on a desk*."""
 _ARROWS = frozenset({"\u2192", "\u21d2", "\u27a1", "\u2794"})
+_SUBJECTS = frozenset({"it", "they", "the", "there", "you", "we"})
+_CORRECTIONS = frozenset({"sorry", "correction", "wait", "no"})
+"""Words by which a speaker takes back the place just said."""
 _RARELY = frozenset({("hardly", "ever"), ("scarcely", "ever"), ("barely", "ever"), ("almost", "never")})
 _DENIALS = {
     ("no", "longer"): "never", ("with", "no"): "without", ("far", "from", "being"): "not", ("not", "a", "single"): "no",
@@ -268,12 +272,14 @@ def _deny_contrasts(words: list[Word]) -> None:
         if words[i].norm == "once" and words[i + 1].norm in PAST_FORMS and words[i - 1].norm not in ("that", "which"):
             del words[i]  # 'the cup once stood here'
     for i in range(1, len(words) - 2):
+        if words[i].norm in ("provided", "providing") and words[i - 1].norm == "," and words[i + 1].norm in _SUBJECTS:
+            words[i].norm = "if"  # 'right of it, provided it is clean'
         if words[i].norm == "but" and words[i + 1].norm == "no":
             words[i].norm = "and"  # 'a tray, but no cup on it'
     denied = any(word.norm in ("not", "never", "no") for word in words)
     for i in range(len(words) - 1, 0, -1):
         last = i + 1 == len(words) or not words[i + 1].is_word
-        if words[i].norm == "yet" and denied and last and words[i - 1].is_word:
+        if words[i].norm in ("yet", "anymore") and denied and last and words[i - 1].is_word:
             del words[i]  # 'it is not on the saucer yet'
     for i in range(len(words) - 3, -1, -1):
         if [word.norm for word in words[i : i + 3]] == ["not", "you", "dare"]:
@@ -298,6 +304,22 @@ def _depicted(text: str, span: Span) -> Iterator[Span]:
     for match in _DEPICTED.finditer(text, *span):
         if match[1] is None or _DEPICTIONS.search(text[span[0] : match.start()]):
             yield match.span(1 if match[1] is not None else 2)
+
+
+def _without_corrected(words: list[Word]) -> None:
+    """Leave out a place that the speaker takes back: *on the left, no, sorry, on the right*."""
+    for i in range(len(words) - 3, 1, -1):
+        corrects = words[i].norm in _CORRECTIONS and not words[i - 1].is_word and not words[i + 1].is_word
+        if not corrects or words[i + 2].norm not in prepositions():
+            continue
+        start = i - 1
+        while start > 0 and (not words[start].is_word or words[start].norm == "no"):
+            start -= 1
+        while start > 0 and (words[start].norm not in prepositions() or words[start].norm == "of"):
+            start -= 1
+        if start > 0:
+            del words[start : i + 2]
+            return
 
 
 def _says_no_place(words: str) -> bool:
@@ -360,6 +382,7 @@ def words_of(text: str, span: Span) -> list[Word]:
     _join_asides(text, found)
     _without_cleft(found)
     _deny_contrasts(found)
+    _without_corrected(found)
     for i in range(len(found) - 2, -1, -1):
         if found[i].norm in ("'ve", "have", "has", "'s", "'d") and found[i + 1].norm == "got":
             found[i].norm = "has" if found[i].norm in ("has", "'s") else "have"
