@@ -66,7 +66,10 @@ def joined_behind_others(scene: Scene) -> Scene:
     if scene.unit != "m" or any(not isinstance(thing.cloud, PointCloud) for thing in things):
         return scene
     while True:
-        pair = next((pair for pair in combinations(range(len(things)), 2) if _one_thing(things, *pair)), None)
+        # A glass becomes whole before its foot is compared with what lies beside it.
+        pairs = list(combinations(range(len(things)), 2))
+        floating = (pair for pair in pairs if _float_together(things, *pair))
+        pair = next(floating, None) or next((pair for pair in pairs if _one_thing(things, *pair)), None)
         if pair is None:
             break
         first, second = (things[place] for place in pair)
@@ -98,12 +101,14 @@ def _outline(thing: PerceivedObject) -> Array:
     return points[:: max(1, len(points) // MAX_POINTS)]
 
 
+def _float_together(things: list[PerceivedObject], a: int, b: int) -> bool:
+    return _floats(things[a], things[b]) or _floats(things[b], things[a])
+
+
 def _one_thing(things: list[PerceivedObject], a: int, b: int) -> bool:
     first, second = things[a], things[b]
     low = np.minimum(first.minimum[:2], second.minimum[:2])
     high = np.maximum(first.maximum[:2], second.maximum[:2])
-    if _floats(first, second) or _floats(second, first):
-        return True
     if max(first.maximum[2], second.maximum[2]) > MAX_HEIGHT or np.linalg.norm(high - low) > 1.1 * MAX_LENGTH:
         return False
     parts = [_outline(first), _outline(second)]

@@ -22,7 +22,7 @@ Image = NDArray[np.float64]
 REACH = 2
 """Number of pixels on each side of the middle that are used."""
 
-COLOUR_SPREAD, MIN_COLOUR_NOISE = 2.5, 1.5
+COLOUR_SPREAD, MIN_COLOUR_NOISE = 2.0, 1.5
 """Difference of two colours, in standard deviations of the noise of a channel, at which a pixel counts exp(-1/2); and
 the least such noise, as the colours are whole numbers."""
 

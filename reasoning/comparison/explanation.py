@@ -57,11 +57,11 @@ class State(IntEnum):
 class MistakeOdds:
     """Log-odds in nats of each mistake: that a role has it, that a thing is extra, that two roles are swapped."""
 
-    missing: float = -4.0
-    extra: float = -3.0
-    displaced: float = -4.5
+    missing: float = -3.4
+    extra: float = -1.5
+    displaced: float = -3.4
     turned: float = -4.0
-    swapped: float = -6.0
+    swapped: float = -8.5
 
 
 @dataclass(frozen=True, eq=False)

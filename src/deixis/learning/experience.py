@@ -1,4 +1,4 @@
-"""Counts over tables of one layout: which relations hold, how far apart things are, how they lie, how high they are.
+"""Counts over tables of one layout: which relations hold, how far apart things are, how they lie, how large they are.
 
 All of it is sums, so the order of the tables does not matter, and a table can be taken back.
 """
@@ -27,8 +27,12 @@ COMPARED = ("left", "top", "on")
 ELONGATED = 1.7
 """Ratio of the sides of a thing from which it has a direction."""
 
-HEIGHT_ERROR = 0.01
-"""Error of a height, in metres."""
+SIZE_ERROR = 0.01
+"""Error of a size, in metres."""
+
+COVERED = 0.5
+"""Share of a thing in plan above another thing from which its height is measured from its lower end, and not from the
+table, since the sides of a thing may be hidden by its top."""
 
 
 @dataclass(frozen=True)
@@ -126,8 +130,8 @@ class Experience:
         Offset in metres from the thing of the first role to that of the second, in x and y.
     axes
         Cosine and sine of twice the direction of each role's long thing, as sums.
-    heights
-        Logarithm of the height of each role's thing, see :func:`log_height`.
+    sizes
+        Logarithms of the sizes of each role's thing, see :func:`log_sizes`.
     """
 
     tables: int = 0
@@ -135,7 +139,7 @@ class Experience:
     held: Mapping[tuple[str, str, str], Tally] = field(default_factory=dict)
     apart: Mapping[Pair, Moments] = field(default_factory=dict)
     axes: Mapping[str, Moments] = field(default_factory=dict)
-    heights: Mapping[str, Moments] = field(default_factory=dict)
+    sizes: Mapping[str, Moments] = field(default_factory=dict)
 
     def __add__(self, other: Experience) -> Experience:
         return Experience(
@@ -144,7 +148,7 @@ class Experience:
             _added(self.held, other.held),
             _added(self.apart, other.apart),
             _added(self.axes, other.axes),
-            _added(self.heights, other.heights),
+            _added(self.sizes, other.sizes),
         )
 
     def __neg__(self) -> Experience:
@@ -154,7 +158,7 @@ class Experience:
             {key: -value for key, value in self.held.items()},
             {key: -value for key, value in self.apart.items()},
             {key: -value for key, value in self.axes.items()},
-            {key: -value for key, value in self.heights.items()},
+            {key: -value for key, value in self.sizes.items()},
         )
 
     @classmethod
@@ -204,9 +208,10 @@ class Experience:
             direction = long_axis(things[name])
             if direction is not None:
                 axes[name] = Moments.of((float(np.cos(2 * direction)), float(np.sin(2 * direction))))
-        heights = {name: Moments.of((float(log_height(box)),)) for name, box in zip(names, boxes, strict=True)}
+        measured = log_sizes([things[name] for name in names]).tolist()
+        sizes = {name: Moments.of(values) for name, values in zip(names, measured, strict=True)}
         filled = {role: Tally(float(role in things or role in present), 1.0) for role in roles}
-        return cls(1, filled, held, apart, axes, heights)
+        return cls(1, filled, held, apart, axes, sizes)
 
 
 def _added(first: Mapping[Key, Value], second: Mapping[Key, Value]) -> dict[Key, Value]:
@@ -218,21 +223,61 @@ def _added(first: Mapping[Key, Value], second: Mapping[Key, Value]) -> dict[Key,
     return total
 
 
-def log_height(boxes: Array) -> Array:
-    """Return logarithms of the heights of boxes, which differ little for things that are flat.
+def log_sizes(things: Sequence[PerceivedObject]) -> Array:
+    """Return logarithms of the length, width and height of things on one table, which differ little for small ones.
 
     Parameters
     ----------
-    boxes
-        Lower and upper corners in metres, shape (..., 2, 3).
+    things
+        The things, with boxes in metres.
 
     Returns
     -------
     ndarray
-        Natural logarithms of the height in metres plus ``HEIGHT_ERROR``, shape (...).
+        Natural logarithms of the sizes in metres plus ``SIZE_ERROR``, shape (n, 3).
     """
-    height: Array = np.log(boxes[..., 1, 2] - boxes[..., 0, 2] + HEIGHT_ERROR)
-    return height
+    if not things:
+        return np.zeros((0, 3))
+    boxes = np.array([(thing.minimum, thing.maximum) for thing in things])
+    low, high = boxes[:, 0], boxes[:, 1]
+    shared = np.minimum(high[:, None, :2], high[None, :, :2]) - np.maximum(low[:, None, :2], low[None, :, :2])
+    area = np.prod(high[:, :2] - low[:, :2], axis=1)
+    over = np.prod(np.clip(shared, 0, None), axis=2) >= COVERED * area[:, None]
+    resting = (over & (high[None, :, 2] < high[:, None, 2])).any(axis=1)
+    plan = [
+        sorted(size[:2] if thing.oriented is None else thing.oriented.extents[:2], reverse=True)
+        for thing, size in zip(things, (high - low).tolist(), strict=True)
+    ]
+    height = high[:, 2] - np.where(resting, low[:, 2], 0.0)
+    found: Array = np.log(np.column_stack([plan, height]) + SIZE_ERROR)
+    return found
+
+
+def predictive(values: Array, seen: Moments, prior: Array, weight: float) -> Array:
+    """Return the density of the next value of a quantity, for values of which some were seen.
+
+    Parameters
+    ----------
+    values
+        Values at which it is wanted, shape (..., d).
+    seen
+        Values that were seen, at least one.
+    prior
+        Prior standard deviations, shape (d,).
+    weight
+        Number of values that the prior counts as.
+
+    Returns
+    -------
+    ndarray
+        Density of each component, shape (..., d): that of Student's t, whose tails are long as long as few were seen.
+    """
+    from scipy.stats import t
+
+    n = seen.count
+    variance = (n * seen.deviation**2 + weight * np.asarray(prior) ** 2) / (n + weight) * (1 + 1 / n)
+    density: Array = t.pdf(values, n + weight - 1, seen.mean, np.sqrt(variance))
+    return density
 
 
 def long_axis(thing: PerceivedObject) -> float | None:

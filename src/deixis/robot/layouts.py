@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.grammar.script import Script
-from deixis.learning.experience import TOLERANCE, Experience, log_height, long_axis
+from deixis.learning.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
 from deixis.learning.lesson import layout_name
 from deixis.learning.scene_evidence import graph_evidence, named_by_candidates
 from deixis.ontology.facts import Fact
@@ -49,20 +49,24 @@ LEARNED_WEIGHT = 0.5
 """
 
 
+HELD_WEIGHT = 0.5
+"""Factor of the evidence of relations that hold, since those of one thing in its place depend on each other."""
+
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
 """Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
 
 FLOATING, SUPPORT_ERROR = 0.03, 0.02
 """Height in metres above the table from which a thing must rest on another one, and the error of that one's height."""
 
-SLENDER = 0.02
-"""Width in metres below which a thing that is more than twice as high as long cannot stand."""
+SLENDER, STEEP = 0.02, 2.5
+"""Width in metres below which a thing cannot stand if it is higher than ``STEEP`` times its width."""
 
-HEIGHT_DEVIATION, HEIGHT_PRIOR = 0.15, 2.0
-"""Prior standard deviation of the logarithm of a height, and the number of things that it counts as."""
+SIZE_DEVIATIONS, SIZE_PRIOR = (0.15, 0.15, 0.15), 2.0
+"""Prior standard deviations of the logarithms of length, width and height, and the number of things they count as."""
 
-HEIGHT_OUTLIERS, HEIGHT_SPREAD = 0.01, 0.8
-"""Share of things that are of any height, and the standard deviation of the logarithms of all heights."""
+SIZE_OUTLIERS, SIZE_SPREAD = 0.01, 0.8
+"""Share of things that are of any size along an axis, and the least standard deviation of the logarithms of all sizes.
+"""
 
 LOOKS_OUTLIERS = 0.002
 """Share of things whose candidates are independent of their names."""
@@ -238,10 +242,11 @@ class LearnedLayout:
         known = graph_evidence(self.graph, scene, ontology, meaning)
         ranked = [dict(thing.candidates) if named_by_candidates(thing) else None for thing in scene.objects]
         looks = candidate_ratios(self.graph, ranked, ontology.kinds, LOOKS_OUTLIERS)
-        identity = np.where([each is not None for each in ranked], looks, known.labels) + known.sizes
+        identity = np.where([each is not None for each in ranked], looks, known.labels) + self._sizes(
+            scene, known.sizes
+        )
         if known.colours is not None:
             identity = identity + known.colours
-        identity = identity + self._heights(scene.boxes)
         boxes, turn, straight = self._poses(scene)
         ends, kinds, tables = self._tables(boxes, len(scene.objects), ontology.relations)
         spare = dispensable(self.graph.facts())
@@ -281,19 +286,21 @@ class LearnedLayout:
                     straight[i, t] = made[key]
         return np.array(boxes).reshape(len(boxes), 2, 3), np.stack(turn, axis=1), straight
 
-    def _heights(self, boxes: Array) -> Array:
-        """Return the evidence of heights for each role's thing being each box, shape (n, m)."""
-        measured = log_height(boxes)
-        evidence = np.zeros((len(self.roles), len(boxes)))
-        chance = np.exp(-0.5 * ((measured - measured.mean()) / HEIGHT_SPREAD) ** 2) / HEIGHT_SPREAD
+    def _sizes(self, scene: Scene, usual: Array) -> Array:
+        """Return the evidence of sizes for each role's thing being each thing, shape (n, m).
+
+        The sizes that were seen replace the usual ones of a kind.
+        """
+        measured = log_sizes(scene.objects)
+        evidence = usual.copy()
+        spread = np.maximum(measured.std(axis=0), SIZE_SPREAD)
+        chance = np.exp(-0.5 * ((measured - measured.mean(axis=0)) / spread) ** 2) / spread / np.sqrt(2 * np.pi)
         for place, role in enumerate(self.roles):
-            seen = self.experience.heights.get(role)
-            if seen is None or seen.count < 0.5:
-                continue
-            n, own = seen.count, float(seen.deviation[0])
-            variance = (n * own**2 + HEIGHT_PRIOR * HEIGHT_DEVIATION**2) / (n + HEIGHT_PRIOR) * (1 + 1 / n)
-            likely = np.exp(-0.5 * (measured - seen.mean[0]) ** 2 / variance) / np.sqrt(variance)
-            evidence[place] = np.log((1 - HEIGHT_OUTLIERS) * likely / chance + HEIGHT_OUTLIERS)
+            seen = self.experience.sizes.get(role)
+            if seen is not None and seen.count > 0.5:
+                likely = predictive(measured, seen, np.array(SIZE_DEVIATIONS), SIZE_PRIOR)
+                ratios = np.log((1 - SIZE_OUTLIERS) * likely / chance + SIZE_OUTLIERS)
+                evidence[place] = ratios.sum(axis=1)
         return evidence
 
     def _offsets(self, boxes: Array, things: int) -> Iterator[tuple[int, int, Array]]:
@@ -306,10 +313,7 @@ class LearnedLayout:
             seen = self.experience.apart.get((first, second))
             if seen is None or seen.count < 1.5:
                 continue
-            n = seen.count
-            variance = (n * seen.deviation**2 + OFFSET_PRIOR * OFFSET_DEVIATION**2) / (n + OFFSET_PRIOR) * (1 + 1 / n)
-            distance = ((offset - seen.mean) ** 2 / variance).sum(axis=2)
-            density = np.exp(-0.5 * distance) / (2 * np.pi * np.sqrt(variance.prod()))
+            density = predictive(offset, seen, np.full(2, OFFSET_DEVIATION), OFFSET_PRIOR).prod(axis=2)
             table = np.log((1 - OFFSET_OUTLIERS) * density * REACH**2 + OFFSET_OUTLIERS)
             np.fill_diagonal(table, 0.0)
             yield graph.index(first), graph.index(second), table
@@ -332,7 +336,7 @@ class LearnedLayout:
                 chance = (float(holds[:things, :things].sum()) + 0.5) / (pairs + 1.0)
                 values: Array = np.full(holds.shape, np.log((1 - share) / (1 - chance)))
                 values[holds] = np.log(share / chance)
-                table = weight * values
+                table = weight * np.where(values > 0, HELD_WEIGHT * values, values)
                 np.fill_diagonal(table, 0.0)
                 place[key] = len(tables)
                 tables.append(table)
@@ -378,7 +382,8 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     np.fill_diagonal(under, False)
     floats = (low[:, 2] > FLOATING) & ~under.any(axis=1)
     size = high - low
-    slender = (size[:, :2].min(axis=1) < SLENDER) & (size[:, 2] > 2 * size[:, :2].max(axis=1))
+    width = size[:, :2].min(axis=1)
+    slender = (width < SLENDER) & (size[:, 2] > STEEP * width)
     found: NDArray[np.bool_] = (within & flat).any(axis=1) | floats | slender
     return found
 

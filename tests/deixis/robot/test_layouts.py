@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.learning.experience import Experience, long_axis
+from deixis.learning.experience import Experience, Moments, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
 from deixis.robot.layouts import LearnedLayout, angle_between
@@ -74,3 +74,19 @@ def test_round_things_have_no_direction() -> None:
     plate = PerceivedObject("p", (0, 0, 0), (1, 1, 1), oriented=OrientedBox((0, 0, 0), 0.3, (1.0, 0.9, 1.0)))
     assert long_axis(plate) is None
     assert angle_between(0.1, np.pi - 0.1) == pytest.approx(0.2)
+
+
+def test_height_counts_from_what_lies_below() -> None:
+    low = PerceivedObject("banana", (0.3, 0.0, 0.038), (0.5, 0.05, 0.044))  # only its top is seen
+    plate = PerceivedObject("plate", (0.0, 0.0, 0.0), (0.2, 0.2, 0.02))
+    napkin = PerceivedObject("napkin", (0.05, 0.05, 0.02), (0.15, 0.15, 0.03))
+    heights = np.exp(log_sizes([low, plate, napkin])[:, 2]) - 0.01
+    assert heights == pytest.approx([0.044, 0.02, 0.01])
+
+
+def test_predictions_narrow_as_more_is_seen() -> None:
+    few, many = Moments.of((0.0,)), Moments(30.0, (0.0,), (0.0,))
+    at = np.array([[0.0], [0.2]])
+    middle, tail = zip(*(predictive(at, seen, np.array([0.05]), 2.0)[:, 0] for seen in (few, many)), strict=True)
+    assert middle[1] > middle[0]
+    assert tail[1] < tail[0]

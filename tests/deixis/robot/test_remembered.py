@@ -39,7 +39,7 @@ def table(number: int, labels: Sequence[str | None] = ("fork", "plate", "knife")
 def counts(seen: Experience) -> Mapping[str, object]:
     """Return counts as values, rounded to 9 decimals."""
     found: dict[str, object] = {"tables": seen.tables}
-    for name in ("filled", "held", "apart", "axes", "heights"):
+    for name in ("filled", "held", "apart", "axes", "sizes"):
         for key, value in getattr(seen, name).items():
             listed = (value.held, value.of) if isinstance(value, Tally) else (value.count, *value.total, *value.squares)
             assert isinstance(value, Tally | Moments)

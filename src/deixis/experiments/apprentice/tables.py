@@ -2,8 +2,8 @@
 
 Only things that support no other thing are missing, displaced, swapped or turned, so that each mistake is one. A
 displaced thing clearly violates a fact of its layout by its new place; a turned one violates none by its box's place;
-two swapped things are of different kinds and fit in each other's place; an extra thing stands free. Nothing lies across
-other things by mistake.
+two swapped things are of different kinds, fit in each other's place, and clearly violate a fact there; an extra
+thing stands free. Nothing lies across other things by mistake.
 """
 
 from __future__ import annotations
@@ -198,6 +198,13 @@ class _Table:
             all(each is not None and number in each for each in found) for number in found[0] or () if number < 0
         )
 
+    def _swap_violates(self, names: tuple[str, str], moved: tuple[LaidThing, LaidThing]) -> bool:
+        """Return whether one fact about either of two things is clearly violated in the places of each other."""
+        return any(
+            self._with({names[1 - i]: moved[1 - i]})._violates(names[i], moved[i])  # the other one is there already
+            for i in range(2)
+        )
+
     def _turned(self, thing: LaidThing, rng: np.random.Generator) -> LaidThing | None:
         size = np.sort(thing.box[1, :2] - thing.box[0, :2])
         if size[1] < LONG * size[0]:
@@ -227,7 +234,7 @@ class _Table:
                 fits = all(self._free(one.box, names) for one in moved) and not _overlap(
                     moved[0].box, moved[1].box, GAP
                 )
-                if fits and not borne:
+                if fits and not borne and self._swap_violates(names, moved):
                     return self._with(dict(zip(names, moved, strict=True))), names
         return None
 
