@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -190,7 +189,7 @@ class ViewStore(Closing):
         -------
         dict
             Id of the thing by role, by the id of the lesson and the key of the boxes of its scene
-            (:func:`boxes_key`); the teaching that came last counts.
+            (:func:`deixis.learning.tables.boxes_key`); the teaching that came last counts.
         """
         return self._despite_damage(self.memory(), _settled) if self.exists() else {}
 
@@ -317,6 +316,7 @@ def view_of_thing(
     SceneError
         If the scene has no points of the thing.
     """
+    from deixis.learning.tables import boxes_key
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
@@ -324,22 +324,6 @@ def view_of_thing(
     if settles is not None:
         metadata = {**metadata, SETTLES: list(settles)}
     return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)
-
-
-def boxes_key(scene: Scene) -> str:
-    """Return a key of the boxes of a scene, by which two tables in one file are kept apart.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-
-    Returns
-    -------
-    str
-        Digest of the corners of all boxes, 16 characters.
-    """
-    return hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
 
 
 def category_name(text: str) -> str:

@@ -6,6 +6,7 @@ with the view that was taught then. So a lesson or a teaching that is taken back
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -111,9 +112,24 @@ def taught_tables(
                 yield table
 
 
+def boxes_key(scene: Scene) -> str:
+    """Return a key of the boxes of a scene, by which two tables in one file are kept apart.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    str
+        Digest of the corners of all boxes, 16 characters.
+    """
+    return hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
+
+
 def _table(memory: SemanticMemory, lesson: str, ontology: Ontology, settled: SettledRoles) -> TaughtTable | None:
     from deixis.perception.formats.scene_json import read_scene
-    from deixis.view_store import boxes_key
 
     said = memory.contributions(lesson)
     records = lesson_records(said.get(GraphName.LEARNED, ()), said.get(GraphName.EPISODES, ()))

@@ -22,12 +22,13 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
+from deixis.learning.tables import boxes_key
 from deixis.learning.teachings import Teaching, Teachings, prevailing, teachings_of, written
 from deixis.memory.episodes.changes import Add, Delete
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
-from deixis.view_store import SETTLES, ViewStore, boxes_key, category_name
+from deixis.view_store import SETTLES, ViewStore, category_name
 from deixis.workflows.read import as_scene
 
 if TYPE_CHECKING:
