@@ -27,6 +27,7 @@ import json
 import os
 import secrets
 import struct
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,6 +45,10 @@ MARKS = ox.NamedNode("https://w3id.org/deixis/graph/journal")
 """Graph of the semantic store with the id of the last write over both stores; queries and exports leave it out."""
 
 COMMITTED = ox.NamedNode("https://w3id.org/deixis/graph/journal/committed")
+
+READ_ATTEMPTS, READ_PAUSE = 10, 0.1
+"""Number of attempts to read a store that is open in this process, and seconds between them: while it is compacted, a
+reader may miss a file that was just removed."""
 
 _MAGIC = b"deixis journal 1\n"
 _LENGTHS = struct.Struct("<Iq")  # of a key, and of a value or -1 for a key to delete
@@ -174,11 +179,16 @@ def has_committed(memory: Path, id: str) -> bool:
     store = files.store_in(memory)
     if not store.is_dir():
         return False
-    try:
-        found = list(ox.Store.read_only(str(store)).quads_for_pattern(MARKS, COMMITTED, None, MARKS))
-    except (OSError, RuntimeError) as error:
-        raise MemoryFormatError(
-            f"the memory at {memory} has an interrupted write, and its store cannot be read to finish it "
-            f"({files.one_line(error)}); close it elsewhere and try again, or restore the folder from a copy"
-        ) from error
+    for attempt in range(READ_ATTEMPTS):
+        try:
+            found = list(ox.Store.read_only(str(store)).quads_for_pattern(MARKS, COMMITTED, None, MARKS))
+            break
+        except (OSError, RuntimeError) as error:
+            if attempt + 1 < READ_ATTEMPTS:
+                time.sleep(READ_PAUSE)
+                continue
+            raise MemoryFormatError(
+                f"the memory at {memory} has an interrupted write, and its store cannot be read to finish it "
+                f"({files.one_line(error)}); close it elsewhere and try again, or restore the folder from a copy"
+            ) from error
     return any(getattr(quad.object, "value", None) == id for quad in found)
