@@ -189,7 +189,7 @@ class ViewStore(Closing):
         -------
         dict
             Id of the thing by role, by the id of the lesson and the key of the boxes of its scene
-            (:func:`deixis.learning.tables.boxes_key`); the teaching that came last counts.
+            (:func:`deixis.learning.teachings.boxes_key`); the teaching that came last counts.
         """
         return self._despite_damage(self.memory(), _settled) if self.exists() else {}
 
@@ -316,7 +316,7 @@ def view_of_thing(
     SceneError
         If the scene has no points of the thing.
     """
-    from deixis.learning.tables import boxes_key
+    from deixis.learning.teachings import boxes_key
     from deixis.learning.views import view_of
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())

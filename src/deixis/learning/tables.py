@@ -6,7 +6,6 @@ with the view that was taught then. So a lesson or a teaching that is taken back
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
 from deixis.learning.experience import Experience
+from deixis.learning.teachings import boxes_key
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.ontology.lessons.read import layouts, lesson_records
 from deixis.ontology.lessons.types import LayoutConcept
@@ -110,22 +110,6 @@ def taught_tables(
             table = _table(memory, lesson, ontology, settled)
             if table is not None:
                 yield table
-
-
-def boxes_key(scene: Scene) -> str:
-    """Return a key of the boxes of a scene, by which two tables in one file are kept apart.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-
-    Returns
-    -------
-    str
-        Digest of the corners of all boxes, 16 characters.
-    """
-    return hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
 
 
 def _table(memory: SemanticMemory, lesson: str, ontology: Ontology, settled: SettledRoles) -> TaughtTable | None:

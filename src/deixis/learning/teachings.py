@@ -6,11 +6,13 @@ kept beside it, so that any of them can be taken back, in any order, and what is
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from deixis.memory.perceptual.records import Json
+from deixis.perception.scene import Scene
 
 GROUNDING = "grounding"
 """Name of the teacher of views that come from a grounding."""
@@ -135,6 +137,22 @@ def written(turns: Sequence[Teaching]) -> list[Json]:
         The teachings; none for a single one, which the view and its lesson state.
     """
     return [turn.to_json() for turn in turns] if len(turns) > 1 else []
+
+
+def boxes_key(scene: Scene) -> str:
+    """Return a key of the boxes of a scene, by which two tables in one file are kept apart.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Returns
+    -------
+    str
+        Digest of the corners of all boxes, 16 characters.
+    """
+    return hashlib.sha256(scene.boxes.tobytes()).hexdigest()[:16]
 
 
 def each_changed(

@@ -23,7 +23,9 @@ from deixis.reasoning.comparison.explanation import explain
 from deixis.robot.layouts import LearnedLayout
 from deixis.robot.lessons import QUESTION_COST, SETTLED, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
+from deixis.robot.unnamed import MIN_THINGS, NOTICED_FROM, LayoutQuestion, UnnamedKind, is_same_table
 from deixis.session import Session
+from deixis.view_store import category_name
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
@@ -70,6 +72,7 @@ class Robot:
         self.session = memory if isinstance(memory, Session) else Session(memory)
         self.layouts: dict[str, LearnedLayout] = {}
         self.lessons: list[TableLesson] = []
+        self.unnamed: list[UnnamedKind] = []
         self._scene: Scene | None = None
         self._look: Look | None = None
         self._knowledge: TableKnowledge | None = None
@@ -149,8 +152,31 @@ class Robot:
             scene = perceived(scene)
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
+        if self._scene is not None and not is_same_table(self._scene, scene):
+            self._keep_unnamed()
         self._scene, self._look = scene, None
         return scene
+
+    def _keep_unnamed(self) -> None:
+        """Keep the present table with those that are alike, if no layout explains it and no person described it."""
+        found = self._kind()
+        if found is not None:
+            place, kind = found
+            self.unnamed[place : place + 1] = [kind]
+
+    def _kind(self) -> tuple[int, UnnamedKind] | None:
+        """Return the kind of the present table with it, and its place among the unnamed ones; None for a known one."""
+        scene = self.scene
+        if len(scene.objects) < MIN_THINGS or any(lesson.scene is scene for lesson in self.lessons):
+            return None
+        look, knowledge = self.look(), self.knowledge()
+        if look.layout is not None:
+            return None
+        for place, kind in enumerate(self.unnamed):
+            more = kind.with_table(look.scene, knowledge.ontology, knowledge.meaning)
+            if more is not None:
+                return place, more
+        return len(self.unnamed), UnnamedKind.of(look.scene, knowledge.ontology)
 
     def knowledge(self) -> TableKnowledge:
         """Return what was learned so far, as far as looking at a table needs it.
@@ -271,14 +297,18 @@ class Robot:
         script = text if isinstance(text, Script) else understood(text, self.session)
         seen = self.knowledge().recognised(self.scene)
         learned = self.session.learn(script, seen)
+        lesson = self._learned(script, self.scene, learned)
+        return Told(lesson, learned)
+
+    def _learned(self, script: Script, scene: Scene, learned: Learned) -> TableLesson:
+        """Add a lesson of the memory to the robot's lessons, and its table to the layout."""
         layout = LearnedLayout.told(script)
         name = layout.name
-        known = self.layouts.get(name, layout)
-        lesson = TableLesson.of(len(self.lessons), name, self.scene, learned.grounding, learned.lesson.id)
+        lesson = TableLesson.of(len(self.lessons), name, scene, learned.grounding, learned.lesson.id)
         self.lessons.append(lesson)
-        self.layouts[name] = known.with_table(script, self._experience(lesson))
+        self.layouts[name] = self.layouts.get(name, layout).with_table(script, self._experience(lesson))
         self._forget_look()
-        return Told(lesson, learned)
+        return lesson
 
     # ---- what waits
 
@@ -288,6 +318,52 @@ class Robot:
         asked = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
         worth = [question for question in asked if question.gain > QUESTION_COST]
         return tuple(sorted(worth, key=lambda question: -question.gain))
+
+    @property
+    def layout_question(self) -> LayoutQuestion | None:
+        """Question for the name of a layout that has none and lies here again; None if there is nothing to ask."""
+        found = None if self._scene is None else self._kind()
+        if found is None or len(found[1].tables) < NOTICED_FROM or found[1].asked:
+            return None
+        return LayoutQuestion(found[1])
+
+    def name_layout(self, question: LayoutQuestion, name: str | None, by: str = "user") -> tuple[TableLesson, ...]:
+        """Take the name of a layout that came again, and learn the layout from all tables of its kind.
+
+        Parameters
+        ----------
+        question
+            The question.
+        name
+            Name of the layout; None if it has none, so that it is not asked again.
+        by
+            Name of the person who answers.
+
+        Returns
+        -------
+        tuple of TableLesson
+            A lesson for each table.
+
+        Raises
+        ------
+        SettingError
+            If the name is empty.
+        ScriptError
+            If the name cannot be that of a layout.
+        """
+        kind = question.kind
+        place = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
+        if name is None:
+            if place is not None:
+                self.unnamed[place] = replace(self.unnamed[place], asked=True)
+            return ()
+        script = kind.script(category_name(name), self.session.ontology)
+        examples = [(script, table.labelled) for table in kind.tables]
+        learned = self.session.learn_all(examples, teacher=by)
+        lessons = [self._learned(script, table.scene, one) for table, one in zip(kind.tables, learned, strict=True)]
+        if place is not None:
+            del self.unnamed[place]
+        return tuple(lessons)
 
     def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
         """Take the answer to a question, and teach what it settles.

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.tables import boxes_key
-from deixis.learning.teachings import Teaching, Teachings, prevailing, teachings_of, written
+from deixis.learning.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
 from deixis.memory.episodes.changes import Add, Delete
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.perception.scene import Scene
