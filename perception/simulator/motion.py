@@ -589,7 +589,7 @@ def laying_film(
     >>> table = lay([Placement("plate", "dinner plate", 0.0, 0.0), Placement("fork", "dinner fork", -0.25, 0.0)])
     >>> story = laying_film(table)
     >>> [len(story.poses(at)) for at in (0.0, story.seconds / 2, story.seconds)]
-    [0, 1, 2]
+    [0, 2, 2]
     """
     numbers = list(range(len(table.things))) if order is None else list(order)
     if sorted(numbers) != list(range(len(table.things))):

@@ -79,7 +79,7 @@ def kld_samples(bins: int, error: float, confidence: float) -> int:
     Examples
     --------
     >>> kld_samples(1, 0.05, 2.33), kld_samples(50, 0.05, 2.33)
-    (1, 749)
+    (1, 750)
     """
     if bins <= 1:
         return 1

@@ -225,7 +225,7 @@ def weigh(
     >>> known = no_unary_evidence(said, scene_relations(["p", "q"], boxes, relations))
     >>> found = weigh(known, np.array([0, 1]))
     >>> round(found.fits, 2), [round(one.probability, 3) for one in found.sides[:3]]
-    (0.99, [0.992, 0.001, 0.001])
+    (0.99, [0.991, 0.001, 0.001])
     """
     first = _maps_of(evidence, assignment, deadline.share(0.6))
     if first.found is None or not (math.isfinite(first.found.error) or first.found.believed):

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
+    from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
@@ -46,14 +47,17 @@ if TYPE_CHECKING:
     from deixis.workflows.perceive import perceive, write_scene
     from deixis.workflows.point import Shown, point
     from deixis.workflows.read import read_script
+    from deixis.workflows.recall import Recall
     from deixis.workflows.refer import refer
     from deixis.workflows.retrieve import Retrieval, retrieve
     from deixis.workflows.simulate import simulate
     from deixis.workflows.tell import tell
     from deixis.workflows.telling import Telling
+    from deixis.workflows.unlearn import Unlearned
 
 __version__ = VERSION
 __all__ = [
+    "ActivityGrounding",
     "Check",
     "DeixisError",
     "Fact",
@@ -68,7 +72,9 @@ __all__ = [
     "Placements",
     "PointCloud",
     "QueryResult",
+    "Recall",
     "Recognised",
+    "RecognisedActivity",
     "Reference",
     "Relation",
     "Retrieval",
@@ -77,6 +83,7 @@ __all__ = [
     "Session",
     "Shown",
     "Telling",
+    "Unlearned",
     "ask",
     "check",
     "format_script",
@@ -97,6 +104,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "ActivityGrounding": "deixis.reasoning.activities.grounding",
     "Check": "deixis.workflows.check",
     "DeixisError": "deixis.errors",
     "Fact": "deixis.ontology.facts",
@@ -111,7 +119,9 @@ _HOMES = {
     "Placements": "deixis.workflows.habits",
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
+    "Recall": "deixis.workflows.recall",
     "Recognised": "deixis.learning.views",
+    "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
     "Relation": "deixis.ontology.relation",
     "Retrieval": "deixis.workflows.retrieve",
@@ -120,6 +130,7 @@ _HOMES = {
     "Session": "deixis.session",
     "Shown": "deixis.workflows.point",
     "Telling": "deixis.workflows.telling",
+    "Unlearned": "deixis.workflows.unlearn",
     "ask": "deixis.workflows.ask",
     "check": "deixis.workflows.check",
     "format_script": "deixis.grammar.format",

@@ -95,6 +95,7 @@ CASES = [
     ("time", "time {e}/serving.fluents.json --relate fetch served"),
     ("time", "time {e}/serving.fluents.json --explain fetch.start served.start"),
     ("time", "time {t}/wrong.fluents.json"),
+    ("robot", "robot run --layout {t}/pair.layout --seed 2 --rate 0.5 --memory {t}/robot"),
     ("tracking", "track simulator --things 1 --actions 0"),
     ("validation", "validate"),
     ("validation", "validate {t}/wrong.ttl"),
@@ -136,6 +137,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     files = {
         "said.jsonl": json.dumps({"text": "the bin", "scene": str(EXAMPLES / "study.scene.json"), "target": "o14"}),
         "tea.layout": "layout tea\nfork left of plate\nplate left of knife\n",
+        "pair.layout": "layout pair\nfork left of plate\n",
         "desk.txt": "On the desk are two cups, each on its saucer. The red pen was on the pad. A lamp is in a corner.",
         "room.habits": "sneakers: rack\nboots: rack\nsweater: chair\nshorts: chair\n",
         "wrong.fluents.json": json.dumps({"origin": "noon", "fluents": [fluent], "relations": [too_short]}),

@@ -51,7 +51,7 @@ def packages() -> Iterator[tuple[str, Path]]:
     The packages at the top of the repository are found there, since links under ``src/deixis`` may be missing.
 
     >>> [name for name, _ in packages()][:3]
-    ['deixis', 'deixis.experiments', 'deixis.experiments.open_ended']
+    ['deixis', 'deixis.experiments', 'deixis.experiments.apprentice']
     """
 
     def below(name: str, path: Path) -> Iterator[tuple[str, Path]]:

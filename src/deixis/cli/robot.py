@@ -51,7 +51,10 @@ def run(
     from deixis.examples_data import example
     from deixis.memory.on_demand import default_memory
     from deixis.robot.live.run import LiveSettings, live_robot
+    from deixis.robot.live.story import recorded_story
 
+    if source != "simulator":
+        recorded_story(source, intrinsics, grows)  # raises the error of a folder that cannot be used
     settings = LiveSettings(
         source if source == "simulator" else str(Path(source)),
         str(layout or example("tea.layout")),

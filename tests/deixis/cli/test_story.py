@@ -25,6 +25,7 @@ CHAPTERS = [
     "9. Another table, with labelled things. What is wrong with it?",
     "10. The same table seen by a simulated depth camera: points instead of boxes",
     "11. Another cloud without a description. What does the robot recognise?",
+    "12. The robot runs: a teacher shows and tells, and asks about the next customer's table",
 ]
 
 
@@ -45,6 +46,7 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], mon
         "misplaced   dinner_fork (p3), where dinner_knife belongs",
         "one napkin too many",
         "12 things found on the table",
+        "I learned how 'tea' is laid",
     ):
         assert said in told
     for name in ("script1.png", "second_table.png", "table.png", "another.png"):
