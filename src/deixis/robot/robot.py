@@ -74,6 +74,7 @@ class Robot:
         self.lessons: list[TableLesson] = []
         self.unnamed: list[UnnamedKind] = []
         self._scene: Scene | None = None
+        self._fullest: Scene | None = None  # of the present table, which may be laid or cleared
         self._look: Look | None = None
         self._knowledge: TableKnowledge | None = None
         self.remember()
@@ -152,24 +153,27 @@ class Robot:
             scene = perceived(scene)
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
-        if self._scene is not None and not is_same_table(self._scene, scene):
-            self._keep_unnamed()
+        if self._fullest is not None and not is_same_table(self._fullest, scene):
+            self._keep_unnamed(self._fullest)
+            self._fullest = None
         self._scene, self._look = scene, None
+        if self._fullest is None or len(scene.objects) >= len(self._fullest.objects):
+            self._fullest = scene
         return scene
 
-    def _keep_unnamed(self) -> None:
-        """Keep the present table with those that are alike, if no layout explains it and no person described it."""
-        found = self._kind()
+    def _keep_unnamed(self, scene: Scene) -> None:
+        """Keep a table with those that are alike, if no layout explains it and no person described it."""
+        found = self._kind(scene)
         if found is not None:
             place, kind = found
             self.unnamed[place : place + 1] = [kind]
 
-    def _kind(self) -> tuple[int, UnnamedKind] | None:
-        """Return the kind of the present table with it, and its place among the unnamed ones; None for a known one."""
-        scene = self.scene
+    def _kind(self, scene: Scene) -> tuple[int, UnnamedKind] | None:
+        """Return the kind of a table with it, and its place among the unnamed ones; None for a known one."""
         if len(scene.objects) < MIN_THINGS or any(lesson.scene is scene for lesson in self.lessons):
             return None
-        look, knowledge = self.look(), self.knowledge()
+        knowledge = self.knowledge()
+        look = self.look() if scene is self._scene else knowledge.look(scene)
         if look.layout is not None:
             return None
         for place, kind in enumerate(self.unnamed):
@@ -322,7 +326,7 @@ class Robot:
     @property
     def layout_question(self) -> LayoutQuestion | None:
         """Question for the name of a layout that has none and lies here again; None if there is nothing to ask."""
-        found = None if self._scene is None else self._kind()
+        found = None if self._scene is None else self._kind(self._scene)
         if found is None or len(found[1].tables) < NOTICED_FROM or found[1].asked:
             return None
         return LayoutQuestion(found[1])

@@ -32,7 +32,7 @@ MIN_THINGS = 3
 NOTICED_FROM = 3
 """Number of tables of one kind from which its name is asked for."""
 
-SAME_PLACE = 0.02
+SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
 UNEXPLAINED = -2.0
@@ -177,7 +177,7 @@ class UnnamedKind:
 
 
 def is_same_table(first: Scene, second: Scene) -> bool:
-    """Say whether two scenes have the same things in the same places, as two frames of one table have.
+    """Say whether two scenes show one table, which may be laid or cleared meanwhile.
 
     Parameters
     ----------
@@ -187,13 +187,13 @@ def is_same_table(first: Scene, second: Scene) -> bool:
     Returns
     -------
     bool
-        True if each thing of one lies where one of the other lies.
+        True if more than half of the things of the scene with fewer things lie where things of the other one lie.
     """
-    if len(first.objects) != len(second.objects) or not first.objects:
-        return len(first.objects) == len(second.objects)
-    one, other = (scene.boxes.mean(axis=1) for scene in (first, second))
-    apart = np.linalg.norm(one[:, None] - other[None], axis=2)
-    return bool((apart.min(axis=1) < SAME_PLACE).all() and (apart.min(axis=0) < SAME_PLACE).all())
+    few, many = sorted((first, second), key=lambda scene: len(scene.objects))
+    if not few.objects:
+        return True
+    apart = np.linalg.norm(few.boxes.mean(axis=1)[:, None] - many.boxes.mean(axis=1)[None], axis=2)
+    return bool(2 * np.count_nonzero(apart.min(axis=1) < SAME_PLACE) > len(few.objects))
 
 
 def _roles(scene: Scene) -> list[str]:
