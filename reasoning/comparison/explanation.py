@@ -179,8 +179,8 @@ def explain(evidence: TableEvidence) -> Explanation:
     --------
     A fork and a knife, of which one lies where the other should:
 
-    >>> looks = np.array([[3.0, -3.0], [-3.0, 3.0]])
-    >>> left = np.array([[[0.0, -4.0], [3.0, 0.0]]])
+    >>> looks = np.array([[9.0, -9.0], [-9.0, 9.0]])
+    >>> left = np.array([[[0.0, -9.0], [3.0, 0.0]]])
     >>> none, ends = np.full((2, 2), NOTHING), np.array([[0, 1]])
     >>> table = TableEvidence(looks, np.zeros((2, 2)), none, ends, np.array([0]), left, np.zeros(2, bool))
     >>> [(str(mistake.kind), mistake.roles) for mistake in explain(table).mistakes]
