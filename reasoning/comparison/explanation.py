@@ -177,14 +177,14 @@ def explain(evidence: TableEvidence) -> Explanation:
 
     Examples
     --------
-    A fork and a knife, of which one lies where the other should:
+    A fork and a knife that lies on the wrong side of it; with one fact, two things that changed places cost more:
 
     >>> looks = np.array([[9.0, -9.0], [-9.0, 9.0]])
     >>> left = np.array([[[0.0, -9.0], [3.0, 0.0]]])
     >>> none, ends = np.full((2, 2), NOTHING), np.array([[0, 1]])
     >>> table = TableEvidence(looks, np.zeros((2, 2)), none, ends, np.array([0]), left, np.zeros(2, bool))
     >>> [(str(mistake.kind), mistake.roles) for mistake in explain(table).mistakes]
-    [('swapped', (0, 1))]
+    [('displaced', (1,))]
     """
     search = _Search(evidence)
     best: _States | None = None
