@@ -173,8 +173,9 @@ def _hidden(places: Array, eye: Array, others: list[PerceivedObject]) -> NDArray
 
 def _joined(first: PerceivedObject, second: PerceivedObject) -> PerceivedObject:
     one, two = _cloud(first), _cloud(second)
-    coloured = one.colours is not None and two.colours is not None
-    colours = np.concatenate([one.colours, two.colours]) if coloured else None
+    colours = None
+    if one.colours is not None and two.colours is not None:
+        colours = np.concatenate([one.colours, two.colours])
     cloud = PointCloud(np.concatenate([one.points, two.points]), colours, origin=one.origin)
     low = tuple(float(value) for value in np.minimum(first.minimum, second.minimum))
     high = tuple(float(value) for value in np.maximum(first.maximum, second.maximum))
