@@ -103,7 +103,7 @@ def run_commands(page: Path, folder: Path) -> list[Ran]:
     Raises
     ------
     RuntimeError
-        If a command ends with an exit code other than 0 (done) and 1 (the answer is no).
+        If a command ends with an exit code other than 0 (done), 1 (the answer is no) and 3 (undecided).
     """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -121,7 +121,7 @@ def run_commands(page: Path, folder: Path) -> list[Ran]:
             elif program == "deixis":
                 words = [sys.executable, "-m", "deixis", *shlex.split(rest)]
                 ran = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True)
-                if ran.returncode not in (0, 1):
+                if ran.returncode not in (0, 1, 3):
                     raise RuntimeError(f"{page.name}: {command.line}: exit code {ran.returncode}: {ran.stderr}")
                 done.append(Ran(command, ran.stdout))
     return done
