@@ -23,6 +23,7 @@ from deixis.errors import DeixisError
 from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.changes import Add, Change, Finish
 from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import Pointing, pointed_at
 from deixis.perception.pointing.gesture import GestureDetector
 from deixis.perception.pointing.skeleton import Skeleton
@@ -33,6 +34,7 @@ from deixis.perception.tracking.tracker import Tracker
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.story import Story, recorded_story, simulated_story
 from deixis.robot.modules import Board, Module
+from deixis.robot.robot import perceived
 from deixis.workflows.point import SAME_MOMENT, pointed_label, taught_labels
 
 AT, TABLE, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED = (
@@ -46,6 +48,9 @@ STILL = 0.6
 
 PAUSE = 0.5
 """Seconds without a skeleton after which a gesture has ended."""
+
+SAME_PLACE = 0.05
+"""Distance in metres between the middles of a detected and a tracked thing up to which they are one."""
 
 HELD_GESTURES = 20
 """Number of gestures that are kept for words that come later."""
@@ -141,6 +146,7 @@ class _Writer:
         self._written: tuple[tuple[str, float], ...] | None = None
         self._moved_at = -math.inf
         self._situation: Situation | None = None
+        self._cloud: PointCloud | None = None
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
@@ -156,6 +162,7 @@ class _Writer:
             self._point(self._detector.finish())
         self._at = event.at
         if isinstance(event, Frame):
+            self._cloud = event.cloud
             self._see(self._tracker.update(event.cloud, event.at))
         elif isinstance(event, Skeleton):
             self._watch(event)
@@ -220,11 +227,41 @@ class _Writer:
             return
         self._written = key
         file = self._folder / f"{self._board.new_id('table')}.scene.json"
-        write_scene(self._scene(situation), file)
+        write_scene(self._detected(situation), file)
         added = self._add(("table", TABLE, str(file)), situation.at, Source(Origin.SEEN, "tracker"))
         changes: list[Change] = [] if self._table is None else [Finish(self._table, self._time(situation.at))]
         self._table = added.fluent.id
         self._write([*changes, added])
+
+    def _detected(self, situation: Situation) -> Scene:
+        """Detect all things of the table that lies still, with the names of those that are tracked.
+
+        The tracker segments only what changed; a whole look, as at a table that is seen for the first time, is what the
+        robot learns from and compares with.
+        """
+        from scipy.optimize import linear_sum_assignment
+
+        tracked = self._scene(situation)
+        if self._cloud is None or situation.frame is None or not tracked.objects:
+            return tracked
+        try:
+            found = perceived(self._cloud)
+        except DeixisError:
+            return tracked
+        if found.detection is None or not found.objects:
+            return tracked
+        onto = situation.frame @ np.linalg.inv(found.detection.frame)
+        middles = found.boxes.mean(axis=1) @ onto[:3, :3].T + onto[:3, 3]
+        apart = np.linalg.norm(middles[:, None] - tracked.boxes.mean(axis=1)[None], axis=2)
+        ids: dict[str, str] = {}
+        for place, other in zip(*linear_sum_assignment(apart), strict=True):
+            if apart[place, other] <= SAME_PLACE:
+                ids[found.ids[place]] = tracked.ids[other]
+        for name in found.ids:
+            ids.setdefault(name, self._board.new_id("t"))
+        return replace(
+            found, objects=tuple(replace(thing, id=ids[thing.id]) for thing in found.objects), detection=None
+        )
 
     def _scene(self, situation: Situation) -> Scene:
         scene = situation.scene()
