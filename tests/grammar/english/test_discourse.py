@@ -98,6 +98,7 @@ def test_a_text_without_any_place_is_refused() -> None:
 @pytest.mark.parametrize(
     ("text", "weight"),
     [
+        ("The fork is usually left of the plate.", 0.8),
         ("The fork is usually right of the plate.", 0.8),
         ("The fork is probably bigger than the plate.", 0.7),
         ("The fork is perhaps right of the plate.", 0.5),
