@@ -20,7 +20,7 @@ from records import command_line, figure, recorded, share
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import UNKNOWN_VIEWPOINT, PerceivedObject, Scene
 from deixis.reasoning.errors import DescriptionError
-from deixis.workflows.refer import refer
+from deixis.workflows.descriptions.refer import refer
 
 SIDES = {"agent": -1.0, "user": 1.0}
 """Perspectives of the annotators with the sign of the axes of the picture: the addressee looks against them."""

@@ -39,8 +39,8 @@ from deixis.perception.simulator import tableware
 from deixis.perception.simulator.blocks import block
 from deixis.perception.simulator.size import Size
 from deixis.perception.simulator.views import views_of
-from deixis.workflows.lay_table import lay_script
-from deixis.workflows.simulate import Simulation, simulate
+from deixis.workflows.layouts.lay_table import lay_script
+from deixis.workflows.scenes.simulate import Simulation, simulate
 
 LCCP_HEIGHT = 0.005
 """Minimum height in metres above the plane of the points given to LCCP: with less, pieces of the table remain."""

@@ -32,7 +32,7 @@ from records import command_line, count, recorded, share
 
 from deixis.errors import DeixisError
 from deixis.grammar.english.reader import read_english
-from deixis.report.read import reading_to_dict
+from deixis.report.layouts.read import reading_to_dict
 
 SAME = {
     "next_to": "near", "larger": "bigger", "nearer": "closer", "farthest_from": "farthest", "centre": "middle",
@@ -240,8 +240,8 @@ def _shown(fact: Fact) -> str:
 
 def grounded(case: Path, names: Names) -> tuple[int, int]:
     """Return how many of the mentioned objects are right, and how many there are."""
-    from deixis.workflows.ground import ground
-    from deixis.workflows.read import read_script
+    from deixis.workflows.grounding.ground import ground
+    from deixis.workflows.layouts.read import read_script
 
     truth = json.loads((case / "truth.json").read_text(encoding="utf-8"))
     found = ground(read_script(case / "text.txt"), case / "table.scene.json", time_limit=20.0).matches

@@ -24,14 +24,14 @@ from pathlib import Path
 
 from records import command_line, figure, recorded
 
-import deixis.workflows.learn as learning
+import deixis.workflows.knowledge.learn as learning
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.script import Script
 from deixis.memory.folder import size
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 THINGS = 7
 UNKNOWN = [first + last for first in ("zor", "mil", "tef", "gau", "pim") for last in ("ble", "cket", "dril", "nop")]

@@ -21,7 +21,7 @@ from deixis.perception.pointing import aim
 from deixis.perception.pointing.gesture import Gesture, gestures
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 from deixis.perception.simulator.teacher import Aim, PointingNoise, Teacher
-from deixis.workflows.point import size_weights
+from deixis.workflows.scenes.point import size_weights
 
 KINDS = {
     "plate": (0.26, 0.26, 0.02),

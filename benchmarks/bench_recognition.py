@@ -42,10 +42,10 @@ from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILIT
 from deixis.perception.recognition.views import PackedViews, open_views, write_views
 from deixis.perception.simulator.tableware import make
 from deixis.perception.simulator.views import views_of
-from deixis.workflows.ground import ground
-from deixis.workflows.lay_table import lay_script
-from deixis.workflows.perceive import perceive
-from deixis.workflows.simulate import simulate
+from deixis.workflows.grounding.ground import ground
+from deixis.workflows.layouts.lay_table import lay_script
+from deixis.workflows.scenes.perceive import perceive
+from deixis.workflows.scenes.simulate import simulate
 
 KINDS = (
     *("dinner plate", "bowl", "cup", "mug", "glass", "water glass", "wine glass", "champagne glass"),

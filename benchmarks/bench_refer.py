@@ -27,7 +27,7 @@ from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.answer import DECIDED
 from deixis.reasoning.grounding.reference.model import Model
 from deixis.reasoning.grounding.reference.questions import answered, best_question
-from deixis.workflows.refer import MAX_QUESTIONS, read_description, refer, shipped_model
+from deixis.workflows.descriptions.refer import MAX_QUESTIONS, read_description, refer, shipped_model
 
 BINS = 10
 

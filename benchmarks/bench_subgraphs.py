@@ -18,7 +18,7 @@ from deixis.examples_data import example
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.grounding.similarity import node_similarity
 from deixis.reasoning.grounding.similarity_engine import described
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 
 def main() -> None:

@@ -21,8 +21,8 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.fitting import Example, fit, fit_calibration, initial_weights
 from deixis.reasoning.grounding.reference.model import Model
-from deixis.workflows.learn_reference import write_reference
-from deixis.workflows.refer import model_with, read_description
+from deixis.workflows.descriptions.learn_reference import write_reference
+from deixis.workflows.descriptions.refer import model_with, read_description
 
 FOLDS = 4
 GENERATED = 1500

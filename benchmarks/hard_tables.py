@@ -20,7 +20,7 @@ from deixis.perception.simulator.camera import KINECT, Camera, chair_camera, loo
 from deixis.perception.simulator.depth import DepthSensor, look, see
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
 from deixis.perception.simulator.rays import RayCaster
-from deixis.workflows.lay_table import lay_random, lay_script
+from deixis.workflows.layouts.lay_table import lay_random, lay_script
 
 LAYOUT = Path(__file__).parent.parent / "examples" / "formal_dinner.layout"
 LEAST = 200

@@ -14,8 +14,8 @@ from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.verify import verify
 from deixis.ontology.tbox import default_ontology
 from deixis.session import Session
-from deixis.workflows.lay_table import lay_script
-from deixis.workflows.simulate import simulate
+from deixis.workflows.layouts.lay_table import lay_script
+from deixis.workflows.scenes.simulate import simulate
 
 TEA = "layout tea\nfork left of plate; knife right of plate\n"
 TIMES = re.compile(r'"[^"]*"\^\^xsd:dateTime')
@@ -52,7 +52,8 @@ class Example:
             "teach otherwise": f"session.teach({self.scene(3)!r}, 'o1', 'gizmo')",
             "forget a lesson": "session.forget('tea-1')",
             "take back a table": (
-                f"from deixis.workflows.unlearn import Selection; session.unlearn(Selection(table={self.scene(3)!r}))"
+                "from deixis.workflows.knowledge.unlearn import Selection; "
+                f"session.unlearn(Selection(table={self.scene(3)!r}))"
             ),
             "forget a category": "session.forget_category('plate')",
             "rename": "session.rename_category('fork', 'prongs')",

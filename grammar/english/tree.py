@@ -1,7 +1,7 @@
 """The parsed form of English sentences: clauses, the predicates that they state, and noun phrases.
 
 The parser (``parse``) turns a text into these types. Two readers use them: ``discourse`` turns statements into the
-facts of a script, and :mod:`deixis.workflows.refer` turns a description into a query for one object.
+facts of a script, and :mod:`deixis.workflows.descriptions.refer` turns a description into a query for one object.
 """
 
 from __future__ import annotations

@@ -30,7 +30,7 @@ class Select(StrEnum):
 class ViewpointName(StrEnum):
     """Side from which left and right are meant: as stated in the scene, or to be recovered.
 
-    See :mod:`deixis.workflows.viewpoint`.
+    See :mod:`deixis.workflows.grounding.viewpoint`.
     """
 
     STATED = "stated"  # as the scene states it

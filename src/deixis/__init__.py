@@ -37,23 +37,23 @@ if TYPE_CHECKING:
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
-    from deixis.workflows.ask import ask
-    from deixis.workflows.check import Check, check
-    from deixis.workflows.ground import ground
-    from deixis.workflows.habits import Placements, habits
-    from deixis.workflows.imagine import Imagination, imagine
-    from deixis.workflows.infer import Inference, infer
-    from deixis.workflows.lint import Lint, lint
-    from deixis.workflows.perceive import perceive, write_scene
-    from deixis.workflows.point import Shown, point
-    from deixis.workflows.read import read_script
-    from deixis.workflows.recall import Recall
-    from deixis.workflows.refer import refer
-    from deixis.workflows.retrieve import Retrieval, retrieve
-    from deixis.workflows.simulate import simulate
-    from deixis.workflows.tell import tell
-    from deixis.workflows.telling import Telling
-    from deixis.workflows.unlearn import Unlearned
+    from deixis.workflows.descriptions.refer import refer
+    from deixis.workflows.descriptions.tell import tell
+    from deixis.workflows.descriptions.telling import Telling
+    from deixis.workflows.grounding.ask import ask
+    from deixis.workflows.grounding.check import Check, check
+    from deixis.workflows.grounding.ground import ground
+    from deixis.workflows.grounding.retrieve import Retrieval, retrieve
+    from deixis.workflows.knowledge.habits import Placements, habits
+    from deixis.workflows.knowledge.recall import Recall
+    from deixis.workflows.knowledge.unlearn import Unlearned
+    from deixis.workflows.layouts.imagine import Imagination, imagine
+    from deixis.workflows.layouts.infer import Inference, infer
+    from deixis.workflows.layouts.lint import Lint, lint
+    from deixis.workflows.layouts.read import read_script
+    from deixis.workflows.scenes.perceive import perceive, write_scene
+    from deixis.workflows.scenes.point import Shown, point
+    from deixis.workflows.scenes.simulate import simulate
 
 __version__ = VERSION
 __all__ = [
@@ -105,49 +105,49 @@ __all__ = [
 
 _HOMES = {
     "ActivityGrounding": "deixis.reasoning.activities.grounding",
-    "Check": "deixis.workflows.check",
+    "Check": "deixis.workflows.grounding.check",
     "DeixisError": "deixis.errors",
     "Fact": "deixis.ontology.facts",
     "Grounding": "deixis.reasoning.grounding.answer",
-    "Imagination": "deixis.workflows.imagine",
-    "Inference": "deixis.workflows.infer",
+    "Imagination": "deixis.workflows.layouts.imagine",
+    "Inference": "deixis.workflows.layouts.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",
-    "Lint": "deixis.workflows.lint",
+    "Lint": "deixis.workflows.layouts.lint",
     "Match": "deixis.ontology.lessons.types",
     "OrientedBox": "deixis.perception.scene",
     "PerceivedObject": "deixis.perception.scene",
-    "Placements": "deixis.workflows.habits",
+    "Placements": "deixis.workflows.knowledge.habits",
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
-    "Recall": "deixis.workflows.recall",
+    "Recall": "deixis.workflows.knowledge.recall",
     "Recognised": "deixis.learning.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
     "Relation": "deixis.ontology.relation",
-    "Retrieval": "deixis.workflows.retrieve",
+    "Retrieval": "deixis.workflows.grounding.retrieve",
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
-    "Shown": "deixis.workflows.point",
-    "Telling": "deixis.workflows.telling",
-    "Unlearned": "deixis.workflows.unlearn",
-    "ask": "deixis.workflows.ask",
-    "check": "deixis.workflows.check",
+    "Shown": "deixis.workflows.scenes.point",
+    "Telling": "deixis.workflows.descriptions.telling",
+    "Unlearned": "deixis.workflows.knowledge.unlearn",
+    "ask": "deixis.workflows.grounding.ask",
+    "check": "deixis.workflows.grounding.check",
     "format_script": "deixis.grammar.format",
-    "ground": "deixis.workflows.ground",
-    "habits": "deixis.workflows.habits",
-    "imagine": "deixis.workflows.imagine",
-    "infer": "deixis.workflows.infer",
-    "lint": "deixis.workflows.lint",
-    "perceive": "deixis.workflows.perceive",
-    "point": "deixis.workflows.point",
+    "ground": "deixis.workflows.grounding.ground",
+    "habits": "deixis.workflows.knowledge.habits",
+    "imagine": "deixis.workflows.layouts.imagine",
+    "infer": "deixis.workflows.layouts.infer",
+    "lint": "deixis.workflows.layouts.lint",
+    "perceive": "deixis.workflows.scenes.perceive",
+    "point": "deixis.workflows.scenes.point",
     "read_scene": "deixis.perception.formats.scene_json",
-    "read_script": "deixis.workflows.read",
-    "refer": "deixis.workflows.refer",
-    "retrieve": "deixis.workflows.retrieve",
-    "simulate": "deixis.workflows.simulate",
-    "tell": "deixis.workflows.tell",
-    "write_scene": "deixis.workflows.perceive",
+    "read_script": "deixis.workflows.layouts.read",
+    "refer": "deixis.workflows.descriptions.refer",
+    "retrieve": "deixis.workflows.grounding.retrieve",
+    "simulate": "deixis.workflows.scenes.simulate",
+    "tell": "deixis.workflows.descriptions.tell",
+    "write_scene": "deixis.workflows.scenes.perceive",
 }
 
 

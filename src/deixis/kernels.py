@@ -57,7 +57,7 @@ def compile_grounding(engine: str) -> None:
     from deixis.reasoning.grounding.ground import ground
     from deixis.reasoning.grounding.matching import exact, ladders
     from deixis.reasoning.kernel import load_compiled
-    from deixis.workflows.read import as_scene
+    from deixis.workflows.layouts.read import as_scene
 
     load_compiled()
     chosen = engine_named(engine)
@@ -79,7 +79,7 @@ def compile_inference() -> None:
     from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.reasoning.kernel import load_compiled
-    from deixis.workflows.infer import inference_of
+    from deixis.workflows.layouts.infer import inference_of
 
     load_compiled()
     inference = inference_of(parse_script("a left of b\nb left or above c\nc is not right of d\n"))
@@ -108,7 +108,7 @@ def compile_solving(wide: bool = True) -> None:
     from deixis.reasoning.qualitative.calculi.registry import calculus
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
     from deixis.reasoning.qualitative.networks.wide_search import WideSearch
-    from deixis.workflows.solve import Wish, solve_text
+    from deixis.workflows.reasoning.solve import Wish, solve_text
 
     load_compiled()
     wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
@@ -128,7 +128,7 @@ def compile_imagining() -> None:
     """Compile, or load compiled, the kernels that place the objects of an imagined table."""
     from deixis.grammar.parser import parse_script
     from deixis.reasoning.kernel import load_compiled
-    from deixis.workflows.imagine import imagine
+    from deixis.workflows.layouts.imagine import imagine
 
     load_compiled()
     imagine(parse_script("fork left of plate\nnapkin on plate\n"))

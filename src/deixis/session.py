@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from deixis.reasoning.description_logic.object_view import ObjectView
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.evidence.meaning import Meaning
-    from deixis.workflows.check import Check
-    from deixis.workflows.dialogue import Ask
-    from deixis.workflows.learn import Learned
-    from deixis.workflows.recall import Recall
-    from deixis.workflows.unlearn import Selection, Unlearned
+    from deixis.workflows.grounding.check import Check
+    from deixis.workflows.grounding.dialogue import Ask
+    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.knowledge.recall import Recall
+    from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
 
 Given = ParamSpec("Given")
@@ -139,8 +139,8 @@ class Session(Closing):
         DeixisError
             For bad input, as :func:`deixis.ground`.
         """
-        from deixis.workflows.ground import ground
-        from deixis.workflows.read import as_script
+        from deixis.workflows.grounding.ground import ground
+        from deixis.workflows.layouts.read import as_script
 
         return ground(
             as_script(script, self.ontology),
@@ -233,7 +233,7 @@ class Session(Closing):
         DeixisError
             If an example is invalid, or nothing that it names is found; nothing is kept then.
         """
-        from deixis.workflows.learn import learn
+        from deixis.workflows.knowledge.learn import learn
 
         return learn(examples, self.knowledge_store, self.view_store, engine, time_limit, progress, teacher)
 
@@ -260,7 +260,7 @@ class Session(Closing):
         Check
             The missing, misplaced and additional things, and the facts that do not hold.
         """
-        from deixis.workflows.check import check
+        from deixis.workflows.grounding.check import check
 
         return check(layout, scene, time_limit, self.knowledge_store)
 
@@ -301,7 +301,7 @@ class Session(Closing):
         SettingError
             The name of the category is invalid.
         """
-        from deixis.workflows.teach import teach
+        from deixis.workflows.scenes.teach import teach
 
         return teach(scene, object, category, self.knowledge_store, self.view_store, teacher, settles)
 
@@ -328,7 +328,7 @@ class Session(Closing):
         Recognised
             The scene with the names, and the recogniser's answer for each thing.
         """
-        from deixis.workflows.recognise import recognise
+        from deixis.workflows.scenes.recognise import recognise
 
         return recognise(scene, self.view_store, progress, left_out)
 
@@ -448,7 +448,7 @@ class Session(Closing):
         UnknownLessonError
             If there is no such lesson.
         """
-        from deixis.workflows.views_of_lessons import forget_lesson
+        from deixis.workflows.scenes.views_of_lessons import forget_lesson
 
         forget_lesson(lesson, self.knowledge_store, self.view_store)
 
@@ -476,7 +476,7 @@ class Session(Closing):
         UnknownLessonError
             If the selected lesson is not in the memory.
         """
-        from deixis.workflows.unlearn import unlearn
+        from deixis.workflows.knowledge.unlearn import unlearn
 
         return unlearn(selection, self.knowledge_store, self.view_store, dry_run)
 
@@ -507,7 +507,7 @@ class Session(Closing):
         """
         from deixis.memory.episodes.blackboard import Blackboard, has_episodes
         from deixis.memory.errors import MemoryFormatError
-        from deixis.workflows.recall import recall
+        from deixis.workflows.knowledge.recall import recall
 
         if not has_episodes(self.path):
             raise MemoryFormatError(f"the memory at {self.path} has no episodes; name another folder")
@@ -751,7 +751,7 @@ class Session(Closing):
             If the new name is invalid.
         """
         from deixis.view_store import category_name, new_category_name
-        from deixis.workflows.views_of_lessons import rename_category
+        from deixis.workflows.scenes.views_of_lessons import rename_category
 
         rename_category(category_name(old), new_category_name(new), self.knowledge_store, self.view_store)
 
@@ -770,7 +770,7 @@ class Session(Closing):
             If there is no category ``source``.
         """
         from deixis.view_store import category_name
-        from deixis.workflows.views_of_lessons import merge_categories
+        from deixis.workflows.scenes.views_of_lessons import merge_categories
 
         merge_categories(category_name(source), category_name(into), self.knowledge_store, self.view_store)
 
@@ -789,7 +789,7 @@ class Session(Closing):
             If there is no such category.
         """
         from deixis.view_store import category_name
-        from deixis.workflows.views_of_lessons import forget_category
+        from deixis.workflows.scenes.views_of_lessons import forget_category
 
         forget_category(category_name(name), self.knowledge_store, self.view_store)
 

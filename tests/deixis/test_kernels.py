@@ -18,18 +18,18 @@ import json, sys
 from numba.core.dispatcher import Dispatcher
 from deixis.deadline import Deadline
 from deixis.learning.scene_evidence import evidence_of
-from deixis.workflows.read import load_scene, read_script
+from deixis.workflows.layouts.read import load_scene, read_script
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.kernel import Kernel
 from deixis.grammar.formats.networks import read_networks
 from deixis.grammar.parser import parse_script
 from deixis.kernels import compile_grounding, compile_imagining, compile_inference, compile_solving
-from deixis.workflows.imagine import imagine
-from deixis.workflows.infer import inference_of
+from deixis.workflows.layouts.imagine import imagine
+from deixis.workflows.layouts.infer import inference_of
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.workflows.solve import Wish, solve_text
-from deixis.workflows.ground import ground as ask_ground
+from deixis.workflows.reasoning.solve import Wish, solve_text
+from deixis.workflows.grounding.ground import ground as ask_ground
 
 CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
 

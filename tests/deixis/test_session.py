@@ -19,7 +19,7 @@ from deixis.perception.errors import SceneError
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.answer import Grounding
-from deixis.report.ground import grounding_lines
+from deixis.report.grounding.ground import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))
 SCENE = deixis.read_scene(example("place_setting.scene.json"))
@@ -251,7 +251,7 @@ def test_show_gives_the_last_lesson_after_the_clock_went_back(tmp_path: Path, mo
     scene = mugs(SEEN)
     with deixis.Session(tmp_path / "memory") as session:
         session.learn(deixis.read_script(text="layout row\nred_mug left of plate"), scene)
-        monkeypatch.setattr("deixis.workflows.learn.datetime", Clock)
+        monkeypatch.setattr("deixis.workflows.knowledge.learn.datetime", Clock)
         session.learn(deixis.read_script(text="layout row\ngreen_mug left of plate"), scene)
         assert "green_mug" in session.show("row")
         assert session.memory().lessons() == ("row-1", "row-2")

@@ -24,8 +24,8 @@ from deixis.perception.errors import CloudError, SceneError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.reasoning.errors import SettingError
-from deixis.workflows.lay_table import lay_script
-from deixis.workflows.simulate import simulate
+from deixis.workflows.layouts.lay_table import lay_script
+from deixis.workflows.scenes.simulate import simulate
 
 TEA = "fork left of plate; knife right of plate"
 FULL = example("formal_dinner.layout")

@@ -17,7 +17,7 @@ from deixis.grammar.format import format_script
 from deixis.grammar.parser import parse_script
 from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
 from deixis.report.json_answers import script_to_dict
-from deixis.report.read import reading_to_dict
+from deixis.report.layouts.read import reading_to_dict
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "english.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```text\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)

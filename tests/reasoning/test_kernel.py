@@ -24,7 +24,7 @@ from deixis.reasoning.qualitative.networks.search import solve
 from deixis.reasoning.temporal.errors import TemporalConflictError
 from deixis.reasoning.temporal.fluent import AllenStatement, Fluent, Statement
 from deixis.reasoning.temporal.timeline import Timeline
-from deixis.workflows.infer import inference_of
+from deixis.workflows.layouts.infer import inference_of
 
 WORDS = st.sampled_from(["left of", "right of", "above", "below", "on", "under", "top left of", "bottom right of"])
 CHOICES = st.sampled_from(["left of or above", "not above", "right of or on", "not left of"])

@@ -64,7 +64,7 @@ def qualify_names(app: Sphinx, page: nodes.document) -> None:
 def full_name(module: str, name: str) -> str | None:
     """Return the full name of what a module calls by a short one; a package also knows the names of its members.
 
-    >>> full_name("deixis.workflows.ground", "Scene")
+    >>> full_name("deixis.workflows.grounding.ground", "Scene")
     'deixis.perception.scene.Scene'
     >>> full_name("deixis", "Ontology"), full_name("deixis", "axes")
     ('deixis.ontology.tbox.Ontology', None)

@@ -25,50 +25,60 @@ from deixis.cli.output import visible_output, what_is_kept
 
 COMMAND_GROUPS = {
     "Layouts": {
-        "read": "read",
-        "parse": "parse",
-        "fmt": "fmt",
-        "lint": "lint",
-        "tell": "tell",
-        "infer": "infer",
-        "imagine": "imagine",
-        "lsp": "lsp",
+        "read": "layouts.read:read",
+        "parse": "layouts.parse:parse",
+        "fmt": "layouts.fmt:fmt",
+        "lint": "layouts.lint:lint",
+        "infer": "layouts.infer:infer",
+        "imagine": "layouts.imagine:imagine",
+        "lsp": "layouts.lsp:lsp",
     },
     "Scenes and perception": {
-        "perceive": "perceive",
-        "recognise": "recognise",
-        "teach": "teach",
-        "ask": "ask",
-        "point": "point",
-        "relate": "relate",
-        "simulate": "simulate",
-        "track": "track",
+        "perceive": "scenes.perceive:perceive",
+        "recognise": "scenes.recognise:recognise",
+        "teach": "scenes.teach:teach",
+        "point": "scenes.point:point",
+        "relate": "scenes.relate:relate",
+        "simulate": "scenes.simulate:simulate",
+        "track": "scenes.track:track",
     },
-    "Grounding and checking": {"ground": "ground", "refer": "refer", "check": "check", "retrieve": "retrieve"},
+    "Grounding and checking": {
+        "ground": "grounding.ground:ground",
+        "ask": "grounding.ask:ask",
+        "check": "grounding.check:check",
+        "retrieve": "grounding.retrieve:retrieve",
+    },
+    "Descriptions and words": {
+        "refer": "descriptions.refer:refer",
+        "tell": "descriptions.tell:tell",
+        "relation": "descriptions.relation:relation",
+        "learn-relation": "descriptions.learn_relation:learn_relation",
+    },
     "Memory and queries": {
-        "learn": "learn",
-        "show": "show",
-        "query": "query",
-        "relation": "relation",
-        "learn-relation": "learn_relation",
-        "habits": "habits",
-        "category": "category_app",
-        "recall": "recall",
-        "unlearn": "unlearn",
-        "episodes": "episodes_app",
-        "memory": "memory_app",
+        "learn": "knowledge.learn:learn",
+        "show": "knowledge.show:show",
+        "query": "knowledge.query:query",
+        "habits": "knowledge.habits:habits",
+        "category": "knowledge.category:category_app",
+        "recall": "knowledge.recall:recall",
+        "unlearn": "knowledge.unlearn:unlearn",
+        "episodes": "knowledge.episodes:episodes_app",
+        "memory": "knowledge.memory:memory_app",
     },
     "Reasoning": {
-        "reason": "reason",
-        "validate": "validate",
-        "solve": "solve",
-        "time": "time_command",
-        "activity": "activity_app",
+        "reason": "reasoning.reason:reason",
+        "validate": "reasoning.validate:validate",
+        "solve": "reasoning.solve:solve",
+        "time": "reasoning.time:time_command",
+        "activity": "reasoning.activity:activity_app",
     },
-    "Robot": {"robot": "robot_app"},
-    "Experiments": {"demo": "demo", "experiment": "experiment"},
+    "Robot and experiments": {
+        "robot": "robot.robot:robot_app",
+        "demo": "robot.demo:demo",
+        "experiment": "robot.experiment:experiment",
+    },
 }
-"""Commands by group, in the order of ``--help``; each with its function in the module of ``deixis.cli`` for it."""
+"""Commands by group, in the order of ``--help``: each as ``module:function``, with its module in ``deixis.cli``."""
 
 COMMANDS = {name: function for group in COMMAND_GROUPS.values() for name, function in group.items()}
 
@@ -91,7 +101,8 @@ class CommandsOnDemand(TyperGroup):
         """Import a command and return it, or None where there is no command of that name."""
         if cmd_name not in COMMANDS:
             return None
-        command = getattr(import_module(f"deixis.cli.{cmd_name.replace('-', '_')}"), COMMANDS[cmd_name])
+        module, function = COMMANDS[cmd_name].split(":")
+        command = getattr(import_module(f"deixis.cli.{module}"), function)
         alone = typer.Typer(rich_markup_mode=None)
         if isinstance(command, typer.Typer):
             alone.add_typer(command, name=cmd_name)

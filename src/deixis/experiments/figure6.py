@@ -33,7 +33,7 @@ from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.similarity import node_similarity
 from deixis.reasoning.grounding.similarity_engine import described
 from deixis.reasoning.grounding.symmetry import interchangeable
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 
 def plot_points(points: Points, path: Path, title: str, rho: float) -> None:

@@ -75,7 +75,7 @@ def warnings(document: Document, time_limit: float = LINT_TIME_LIMIT) -> list[Pr
     list of Problem
         At most :data:`MAX_WARNINGS` warnings of ``deixis lint``, without those about included files.
     """
-    from deixis.workflows.lint import lint
+    from deixis.workflows.layouts.lint import lint
 
     ignored = ("N002", "F004", "L001") if document.reading.problems else ()
     found = lint(document.script, ignore=ignored, time_limit=time_limit).findings

@@ -70,7 +70,7 @@ def english_problems(document: EnglishText) -> list[Problem]:
     >>> [problem.code for problem in english_problems(EnglishText(text))]
     ['F003']
     """
-    from deixis.workflows.lint import lint
+    from deixis.workflows.layouts.lint import lint
 
     script = document.script
     if not document.text.strip():

@@ -107,7 +107,7 @@ def _seen_from(document: Document, fact: Fact, name: str) -> str | None:
 
 def _following(document: Document, name: str, stated: set[str], deadline: Deadline) -> tuple[list[str], bool]:
     """Return what follows for an object, and whether all of it was found within the time limit."""
-    from deixis.workflows.infer import inference_of
+    from deixis.workflows.layouts.infer import inference_of
 
     script = document.script
     if not script.facts:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
 from deixis.reasoning.comparison.checking import RoleVerdict
-from deixis.workflows.belonging import places_of
-from deixis.workflows.check import Check
+from deixis.workflows.grounding.belonging import places_of
+from deixis.workflows.grounding.check import Check
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

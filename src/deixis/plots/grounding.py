@@ -19,7 +19,7 @@ from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
 from deixis.reasoning.grounding.options import DECIDED
-from deixis.report.ground import MAX_LISTED, at_most_many
+from deixis.report.grounding.ground import MAX_LISTED, at_most_many
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,7 +117,7 @@ def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None 
         If the engine was called without a scene.
     """
     from deixis.reasoning.grounding.hypotheses import side_text
-    from deixis.workflows.viewpoint import scene_from
+    from deixis.workflows.grounding.viewpoint import scene_from
 
     if not isinstance(found.scene, Scene):
         raise DeixisError("this grounding has no scene to draw: an engine was called directly; use deixis.ground")

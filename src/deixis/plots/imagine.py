@@ -11,7 +11,7 @@ from deixis.ontology.sizes import Outline
 from deixis.perception.scene import PerceivedObject
 from deixis.plots.figure import INK, canvas, dress_table, save
 from deixis.plots.names import write_names
-from deixis.workflows.imagine import Imagination, ImaginedTable, Sized
+from deixis.workflows.layouts.imagine import Imagination, ImaginedTable, Sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

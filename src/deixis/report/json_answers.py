@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
     from deixis.reasoning.grounding.answer import FactOutcome, Grounding
-    from deixis.workflows.check import Check
-    from deixis.workflows.infer import Inference
-    from deixis.workflows.learn import Learned
+    from deixis.workflows.grounding.check import Check
+    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.layouts.infer import Inference
 
 
 def script_to_dict(script: Script) -> dict[str, Any]:

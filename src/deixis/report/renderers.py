@@ -38,56 +38,76 @@ class Renderer:
 
 
 RENDERERS = {
-    "Script": Renderer("report.json_answers:script_to_dict", "report.script:script_lines", "report.rows:script_rows"),
+    "Script": Renderer(
+        "report.json_answers:script_to_dict", "report.layouts.script:script_lines", "report.knowledge.rows:script_rows"
+    ),
     "Scene": Renderer(
         "perception.formats.scene_json:scene_to_dict",
-        "report.seen:scene_lines",
-        "report.rows:scene_rows",
+        "report.scenes.seen:scene_lines",
+        "report.knowledge.rows:scene_rows",
         "plots.seen:seen_figure",
     ),
-    "Match": Renderer("report.json_answers:match_to_dict", "report.ground:match_lines"),
+    "Match": Renderer("report.json_answers:match_to_dict", "report.grounding.ground:match_lines"),
     "Grounding": Renderer(
         "report.json_answers:grounding_to_dict",
-        "report.ground:grounding_lines",
-        "report.rows:grounding_rows",
+        "report.grounding.ground:grounding_lines",
+        "report.knowledge.rows:grounding_rows",
         "plots.grounding:answer_figure",
     ),
     "Reference": Renderer(
-        "report.refer:reference_to_dict", "report.refer:reference_lines", "report.refer:reference_rows"
+        "report.descriptions.refer:reference_to_dict",
+        "report.descriptions.refer:reference_lines",
+        "report.descriptions.refer:reference_rows",
     ),
     "Check": Renderer(
         "report.json_answers:check_to_dict",
-        "report.script:check_lines",
-        "report.rows:check_rows",
+        "report.layouts.script:check_lines",
+        "report.knowledge.rows:check_rows",
         "plots.check:check_figure",
     ),
     "Inference": Renderer(
-        "report.json_answers:inference_to_dict", "report.script:inference_lines", "report.rows:inference_rows"
+        "report.json_answers:inference_to_dict",
+        "report.layouts.script:inference_lines",
+        "report.knowledge.rows:inference_rows",
     ),
-    "Telling": Renderer("report.tell:telling_to_dict", "report.tell:telling_lines"),
-    "Placements": Renderer("report.habits:habits_to_dict", "report.habits:habits_lines", "report.habits:habits_rows"),
-    "ActivityGrounding": Renderer("report.activities:grounded_to_dict", "report.activities:grounded_lines"),
-    "RecognisedActivity": Renderer("report.activities:recognised_to_dict", "report.activities:recognised_lines"),
-    "Recall": Renderer("report.recall:recall_to_dict", "report.recall:recall_lines"),
-    "Unlearned": Renderer("report.unlearn:unlearned_to_dict", "report.unlearn:unlearned_lines"),
-    "Shown": Renderer("report.point:shown_to_dict", "report.point:shown_lines", "report.point:shown_rows"),
-    "Lint": Renderer("report.lint:lint_to_dict", "report.lint:lint_lines"),
+    "Telling": Renderer("report.descriptions.tell:telling_to_dict", "report.descriptions.tell:telling_lines"),
+    "Placements": Renderer(
+        "report.knowledge.habits:habits_to_dict",
+        "report.knowledge.habits:habits_lines",
+        "report.knowledge.habits:habits_rows",
+    ),
+    "ActivityGrounding": Renderer(
+        "report.reasoning.activities:grounded_to_dict", "report.reasoning.activities:grounded_lines"
+    ),
+    "RecognisedActivity": Renderer(
+        "report.reasoning.activities:recognised_to_dict", "report.reasoning.activities:recognised_lines"
+    ),
+    "Recall": Renderer("report.knowledge.recall:recall_to_dict", "report.knowledge.recall:recall_lines"),
+    "Unlearned": Renderer("report.knowledge.unlearn:unlearned_to_dict", "report.knowledge.unlearn:unlearned_lines"),
+    "Shown": Renderer(
+        "report.scenes.point:shown_to_dict", "report.scenes.point:shown_lines", "report.scenes.point:shown_rows"
+    ),
+    "Lint": Renderer("report.layouts.lint:lint_to_dict", "report.layouts.lint:lint_lines"),
     "Imagination": Renderer(
-        "report.imagine:imagination_to_dict",
-        "report.imagine:imagination_lines",
-        "report.rows:imagination_rows",
+        "report.layouts.imagine:imagination_to_dict",
+        "report.layouts.imagine:imagination_lines",
+        "report.knowledge.rows:imagination_rows",
         "plots.imagine:imagination_figure",
     ),
     "Recognised": Renderer(
-        "report.seen:recognised_to_dict",
-        "report.seen:recognised_lines",
-        "report.rows:recognised_rows",
+        "report.scenes.seen:recognised_to_dict",
+        "report.scenes.seen:recognised_lines",
+        "report.knowledge.rows:recognised_rows",
         "plots.seen:recognised_figure",
     ),
     "Retrieval": Renderer(
-        "report.retrieve:retrieval_to_dict", "report.retrieve:retrieval_lines", "report.rows:retrieval_rows"
+        "report.grounding.retrieve:retrieval_to_dict",
+        "report.grounding.retrieve:retrieval_lines",
+        "report.knowledge.rows:retrieval_rows",
     ),
-    "QueryResult": Renderer("report.rows:query_to_dict", "report.rows:query_lines", "report.rows:query_rows"),
+    "QueryResult": Renderer(
+        "report.knowledge.rows:query_to_dict", "report.knowledge.rows:query_lines", "report.knowledge.rows:query_rows"
+    ),
 }
 """Renderers by the name of the answer's class."""
 

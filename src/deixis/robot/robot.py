@@ -29,8 +29,8 @@ from deixis.view_store import category_name
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
-    from deixis.workflows.learn import Learned
-    from deixis.workflows.unlearn import Selection, Unlearned
+    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
 
 class RobotError(DeixisError, ValueError):
@@ -467,7 +467,7 @@ def perceived(cloud: PointCloud) -> Scene:
     """
     from deixis.perception.clouds.smoothing import smoothed
     from deixis.perception.occlusion import joined_behind_others
-    from deixis.workflows.perceive import perceive
+    from deixis.workflows.scenes.perceive import perceive
 
     return joined_behind_others(perceive(smoothed(cloud)))
 
@@ -492,7 +492,7 @@ def understood(text: str, session: Session) -> Script:
     ScriptError
         If it is neither.
     """
-    from deixis.workflows.read import read_script
+    from deixis.workflows.layouts.read import read_script
 
     try:
         return read_script(text=text, ontology=session.ontology)

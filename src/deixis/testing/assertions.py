@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.perception.scene import Scene
     from deixis.reasoning.grounding.answer import Grounding
-    from deixis.workflows.check import Check
-    from deixis.workflows.infer import Inference
+    from deixis.workflows.grounding.check import Check
+    from deixis.workflows.layouts.infer import Inference
 
 TIME_LIMIT = 30.0
 """Seconds that an assertion may take; more counts as a failure."""
@@ -33,7 +33,7 @@ def script_of(script: Script | str | Path, folder: Path | None = None) -> Script
         The script.
     """
     from deixis.grammar.script import Script
-    from deixis.workflows.read import SCRIPT_ENDING, read_script
+    from deixis.workflows.layouts.read import SCRIPT_ENDING, read_script
 
     if isinstance(script, Script):
         return script
@@ -57,7 +57,7 @@ def scene_of(scene: Scene | str | Path | Mapping[str, Any], folder: Path | None 
     Scene
         The scene.
     """
-    from deixis.workflows.read import as_scene
+    from deixis.workflows.layouts.read import as_scene
 
     return as_scene(_in(folder, scene) if isinstance(scene, str | Path) else scene)
 
@@ -102,8 +102,8 @@ def assert_grounds(
         If the script or the scene cannot be read.
     """
     from deixis.errors import DeixisError
-    from deixis.report.ground import grounding_lines
-    from deixis.workflows.ground import ground
+    from deixis.report.grounding.ground import grounding_lines
+    from deixis.workflows.grounding.ground import ground
 
     __tracebackhide__ = True
     described = script_of(script)
@@ -148,7 +148,7 @@ def assert_follows(script: Script | str | Path, fact: str) -> Inference:
         If it does not follow; the message shows a picture without it, or why it cannot hold.
     """
     from deixis.reasoning.entailment.why_not import why_not
-    from deixis.report.script import why_not_lines
+    from deixis.report.layouts.script import why_not_lines
 
     __tracebackhide__ = True
     inference, claim = _inferred(script, fact)
@@ -203,8 +203,8 @@ def assert_consistent(script: Script | str | Path) -> Inference:
     AssertionError
         If it contradicts itself; the message shows the minimal conflict.
     """
-    from deixis.report.script import inference_lines
-    from deixis.workflows.infer import infer
+    from deixis.report.layouts.script import inference_lines
+    from deixis.workflows.layouts.infer import infer
 
     __tracebackhide__ = True
     inference = infer(script_of(script), TIME_LIMIT)
@@ -233,9 +233,9 @@ def assert_contradictory(script: Script | str | Path) -> Inference:
     AssertionError
         If it does not; the message gives boxes that satisfy it.
     """
-    from deixis.report.imagine import imagination_lines
-    from deixis.workflows.imagine import imagine
-    from deixis.workflows.infer import infer
+    from deixis.report.layouts.imagine import imagination_lines
+    from deixis.workflows.layouts.imagine import imagine
+    from deixis.workflows.layouts.infer import infer
 
     __tracebackhide__ = True
     read = script_of(script)
@@ -280,8 +280,8 @@ def assert_checks(
     AssertionError
         If the faults are others; the message lists what ``deixis check`` prints.
     """
-    from deixis.report.script import check_lines
-    from deixis.workflows.check import check
+    from deixis.report.layouts.script import check_lines
+    from deixis.workflows.grounding.check import check
 
     __tracebackhide__ = True
     checked = check(script_of(layout), scene_of(scene), TIME_LIMIT)
@@ -308,7 +308,7 @@ def _listed(names: Collection[str]) -> str:
 
 
 def _inferred(script: Script | str | Path, fact: str) -> tuple[Inference, Any]:
-    from deixis.workflows.infer import plain_fact, require_names
+    from deixis.workflows.layouts.infer import plain_fact, require_names
 
     inference = assert_consistent(script)
     claim = plain_fact(fact, "`fact`")

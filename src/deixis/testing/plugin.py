@@ -90,7 +90,7 @@ class LayoutItem(pytest.Item):
     def runtest(self) -> None:
         """Check the expectation."""
         from deixis.testing.expectations import run
-        from deixis.workflows.read import read_script
+        from deixis.workflows.layouts.read import read_script
 
         run(self.expectation, read_script(self.path), self.path.parent)
 

@@ -18,7 +18,7 @@ from deixis.ontology.facts import Fact
 from deixis.ontology.tbox import default_ontology
 from deixis.ontology.triples import turtle
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 RELATIONS = default_ontology().relations
 TEXT = "layout place; fork left of plate; knife right of plate; cup above plate"

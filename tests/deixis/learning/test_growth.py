@@ -32,7 +32,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.description_logic import reasoners as description_logic
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 ONTOLOGY = default_ontology()
 PLATE = ONTOLOGY.kinds.of_word("dinner plate")

@@ -20,7 +20,7 @@ from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.implications import Implications
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 ROW = "layout row; fork left of plate; plate left of knife; napkin on plate; spoon probably right of knife"
 FORKS = """SELECT ?fork ?plate {

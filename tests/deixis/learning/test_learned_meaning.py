@@ -19,7 +19,7 @@ from deixis.reasoning.errors import NothingFoundError
 from deixis.reasoning.grounding.evidence.meaning import SHIPPED
 from deixis.reasoning.grounding.fitting.fit import FEW_SCENES
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 FULL, LABELLED = (example(name) for name in ("formal_dinner.layout", "place_setting.labelled.scene.json"))
 PLATE = "https://w3id.org/deixis/onto#DinnerPlate"

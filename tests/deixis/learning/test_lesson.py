@@ -23,7 +23,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.description_logic.reasoners import classify
 from deixis.reasoning.errors import InconsistencyError
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 FULL, SCRIPT1, SCENE = (example(n) for n in ("formal_dinner.layout", "script1.layout", "place_setting.scene.json"))
 LEARNED = "https://w3id.org/deixis/learned/"

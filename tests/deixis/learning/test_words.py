@@ -18,7 +18,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 ONTOLOGY = default_ontology()
 SCRIPT = "fork left of plate; knife right of plate"

@@ -9,7 +9,7 @@ import pytest
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.check import marks_of
 from deixis.session import Session
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 PLATE = PerceivedObject("p", (0.15, 0.0), (0.4, 0.25), label="plate")
 

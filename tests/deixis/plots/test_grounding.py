@@ -12,7 +12,7 @@ from deixis.grammar.parser import parse_script
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure
-from deixis.workflows.ground import ground
+from deixis.workflows.grounding.ground import ground
 
 
 def picture(script: str, unit: str = "m", viewpoint: str = "chair", frame: str = "table") -> Figure:

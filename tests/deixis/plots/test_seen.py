@@ -20,9 +20,9 @@ from deixis.perception.recognition.recogniser import Recognition
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots import seen as plot_seen
 from deixis.plots.camera import camera_of
-from deixis.workflows.lay_table import lay_script
-from deixis.workflows.perceive import perceive
-from deixis.workflows.simulate import simulate
+from deixis.workflows.layouts.lay_table import lay_script
+from deixis.workflows.scenes.perceive import perceive
+from deixis.workflows.scenes.simulate import simulate
 
 
 def table_before_a_wall() -> Scene:

@@ -13,7 +13,7 @@ from deixis.learning.experience import Experience, Moments, log_sizes, long_axis
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
 from deixis.robot.layouts import LearnedLayout, angle_between
-from deixis.workflows.read import read_script
+from deixis.workflows.layouts.read import read_script
 
 ROLES = ("fork", "knife", "plate")
 

@@ -12,7 +12,7 @@ from deixis.learning.experience import Experience, Moments, Tally
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 from deixis.robot.robot import Robot
-from deixis.workflows.unlearn import Selection
+from deixis.workflows.knowledge.unlearn import Selection
 
 PLACE = "layout place; fork left of plate; knife right of plate"
 TWINS = "layout twins; fork_1 beside plate; fork_2 beside plate"

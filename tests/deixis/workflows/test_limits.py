@@ -23,7 +23,7 @@ from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError, SettingErr
 from deixis.reasoning.grounding.answer import Standing
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.memory_budget import different_facts, leaves_room_for_chains, required_gigabytes
-from deixis.workflows.ground import GroundingRequest, answer
+from deixis.workflows.grounding.ground import GroundingRequest, answer
 
 
 def written(objects: int, folder: Path) -> tuple[Path, Path]:

@@ -16,7 +16,7 @@ from deixis.reasoning.activities.grounding import ground_activity, recognise_act
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Fluent, Statement
-from deixis.workflows.activities import learn, recognise
+from deixis.workflows.reasoning.activities import learn, recognise
 
 
 def laid(words: str) -> StepSequence:

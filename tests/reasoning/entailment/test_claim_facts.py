@@ -11,7 +11,7 @@ from deixis.grammar.parser import parse_script
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.claim_facts import COMPARATIVES, ROWS, facts_of_claims
-from deixis.workflows.infer import infer, verdict_of
+from deixis.workflows.layouts.infer import infer, verdict_of
 
 RELATIONS = default_ontology().relations
 

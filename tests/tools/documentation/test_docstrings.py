@@ -11,17 +11,17 @@ from documentation.docstrings import _exists as exists
 
 
 def test_names_that_are_imported_for_type_checking_are_known() -> None:
-    names = names_of("deixis.workflows.ground")
+    names = names_of("deixis.workflows.grounding.ground")
     assert names["Scene"] == "deixis.perception.scene.Scene"
-    assert names["GroundingRequest"] == "deixis.workflows.ground.GroundingRequest"
+    assert names["GroundingRequest"] == "deixis.workflows.grounding.ground.GroundingRequest"
 
 
 @pytest.mark.parametrize(
     ("name", "there"),
     [
-        ("deixis.workflows.ground", True),
-        ("deixis.workflows.ground.Stage", True),
-        ("deixis.workflows.ground.gone", False),
+        ("deixis.workflows.grounding.ground", True),
+        ("deixis.workflows.grounding.ground.Stage", True),
+        ("deixis.workflows.grounding.ground.gone", False),
     ],
 )
 def test_a_name_exists_as_a_module_or_in_one(name: str, there: bool) -> None:

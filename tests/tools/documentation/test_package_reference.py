@@ -17,8 +17,8 @@ def test_every_package_except_the_command_line_has_a_page() -> None:
 
 
 def test_a_page_has_a_section_for_each_public_module() -> None:
-    page = package_page("deixis.workflows", PACKAGE / "workflows", ())
-    assert ".. automodule:: deixis.workflows.ground\n   :members:" in page
+    page = package_page("deixis.workflows.grounding", PACKAGE / "workflows" / "grounding", ())
+    assert ".. automodule:: deixis.workflows.grounding.ground\n   :members:" in page
     assert "__init__" not in page
 
 

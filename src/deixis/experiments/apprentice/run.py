@@ -27,8 +27,8 @@ from deixis.perception.simulator.depth import DepthSensor
 from deixis.perception.simulator.teacher import Teacher
 from deixis.robot.looking import Look, TableKnowledge
 from deixis.robot.robot import Robot, perceived
-from deixis.workflows.read import read_script
-from deixis.workflows.simulate import CameraSetup, Simulation, simulate
+from deixis.workflows.layouts.read import read_script
+from deixis.workflows.scenes.simulate import CameraSetup, Simulation, simulate
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -194,7 +194,8 @@ def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[Taught]:
 def point_at(robot: Robot, things: Mapping[str, str], seed: int) -> set[str]:
     """Let a simulated teacher point at things of the present table, and say what each is.
 
-    The robot sees the noisy joints of the teacher's arms, and learns what :func:`deixis.workflows.point.point` decides.
+    The robot sees the noisy joints of the teacher's arms, and learns what :func:`deixis.workflows.scenes.point.point`
+    decides.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def point_at(robot: Robot, things: Mapping[str, str], seed: int) -> set[str]:
     set of str
         Names that were taught; the others were refused, since the gesture was not clear.
     """
-    from deixis.workflows.point import point
+    from deixis.workflows.scenes.point import point
 
     order = sorted(things, key=lambda id: things[id])
     recording = Teacher(robot.scene, seed).points_at(order, hold=1.0)
@@ -293,7 +294,7 @@ def singled_out(script: Script, look: Simulation) -> tuple[str, ...]:
     tuple of str
         Roles whose match in the true boxes is decided.
     """
-    from deixis.workflows.ground import ground
+    from deixis.workflows.grounding.ground import ground
 
     found = ground(script, look.truth.without_labels())
     return tuple(name for name, match in found.object_matches.items() if match.decided)

@@ -20,7 +20,7 @@ from deixis.ontology.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import MistakeKind
 from deixis.robot.looking import Fault, Look
-from deixis.workflows.simulate import Simulation
+from deixis.workflows.scenes.simulate import Simulation
 
 MIN_SHARED = 0.5
 """Intersection over union of points from which a detected thing is a true thing."""

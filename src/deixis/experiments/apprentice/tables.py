@@ -20,7 +20,7 @@ from deixis.perception.simulator.laying import LaidTable, LaidThing, Placement, 
 from deixis.perception.simulator.tableware import make
 from deixis.reasoning.comparison.explanation import MistakeKind
 from deixis.reasoning.entailment.realisation.verification import facts_that_hold
-from deixis.workflows.lay_table import LaidScript, lay_script
+from deixis.workflows.layouts.lay_table import LaidScript, lay_script
 
 Array = NDArray[np.float64]
 

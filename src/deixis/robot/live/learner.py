@@ -18,7 +18,7 @@ from deixis.robot.lessons import Question
 from deixis.robot.live.senses import AT, CALLED, ENDED, NOT_CALLED, SAID, TABLE
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, understood
-from deixis.workflows.point import spoken_name
+from deixis.workflows.scenes.point import spoken_name
 
 IS_A, LAYOUT, FAULT, SAYS, DONE = "isA", "layout", "fault", "says", "done"
 """Predicates: the category of a thing, the layout of the table, a mistake on it, what the robot says, and that it has

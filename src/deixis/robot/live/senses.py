@@ -35,7 +35,7 @@ from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.story import Story, recorded_story, simulated_story
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
-from deixis.workflows.point import SAME_MOMENT, pointed_label, taught_labels
+from deixis.workflows.scenes.point import SAME_MOMENT, pointed_label, taught_labels
 
 AT, TABLE, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED = (
     "at", "lookedLike", "called", "notCalled", "pointedAt", "said", "noticed", "ended",
@@ -106,7 +106,7 @@ class Senses(Module):
         """
         if self._source != "simulator":
             return recorded_story(self._source, self._intrinsics, self._grows)
-        from deixis.workflows.read import as_script
+        from deixis.workflows.layouts.read import as_script
 
         assert self._layout is not None, "the simulator needs a layout"
         return simulated_story(as_script(self._layout), self._seed, self._rate)
@@ -220,7 +220,7 @@ class _Writer:
 
     def _write_table(self, situation: Situation) -> None:
         """Write the present table as a scene, unless it was written already."""
-        from deixis.workflows.perceive import write_scene
+        from deixis.workflows.scenes.perceive import write_scene
 
         key = tuple((thing.id, thing.since) for thing in situation.things)
         if key == self._written:

@@ -120,8 +120,8 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     from deixis.perception.simulator.laying import LaidTable, top_under, truth_scene
     from deixis.perception.simulator.motion import Bring, Rest, Stage
     from deixis.perception.simulator.teacher import Teacher
-    from deixis.workflows.lay_table import lay_script
-    from deixis.workflows.tell import tell
+    from deixis.workflows.descriptions.tell import tell
+    from deixis.workflows.layouts.lay_table import lay_script
 
     rng = np.random.default_rng(seed)
     first, second = (lay_script(script, seed=seed + k).table for k in (0, 1))

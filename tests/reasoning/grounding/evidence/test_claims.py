@@ -14,7 +14,7 @@ from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.claims import MAX_THINGS, ClaimTables, claim_tables, ordinal_degrees
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
-from deixis.workflows.ground import GroundingRequest, ground
+from deixis.workflows.grounding.ground import GroundingRequest, ground
 
 R = default_ontology().relations
 
@@ -172,7 +172,7 @@ def test_a_text_with_places_grounds_things_without_labels() -> None:
 
 def test_scripts_without_claims_have_the_same_problem() -> None:
     from deixis.grammar.parser import parse_script
-    from deixis.workflows.read import as_scene
+    from deixis.workflows.layouts.read import as_scene
 
     things = [{"id": name, "min": box[0], "max": box[1]} for name, box in zip("pq", TABLE[:2].tolist(), strict=True)]
     request = GroundingRequest(parse_script("cup left of jug"), as_scene({"objects": things}))

@@ -12,7 +12,7 @@ from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.degrees import relation_degree
 from deixis.reasoning.grounding.evidence.meaning import CHANCE, shipped_models
 from deixis.reasoning.grounding.fitting.fit import chance_degree, random_scenes
-from deixis.workflows.ground import ground
+from deixis.workflows.grounding.ground import ground
 
 R = default_ontology().relations
 GRADED = R.of_reading(Reading.GRADED)

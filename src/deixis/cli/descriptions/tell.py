@@ -1,0 +1,39 @@
+"""The command ``deixis tell``: say a layout or a scene in English."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from deixis.cli.common import NO, AsJson, HideLabels, Image, TimeLimit, print_json, print_lines
+
+
+def tell(
+    source: Annotated[
+        str, typer.Argument(metavar="LAYOUT|SCENE", help="A layout (.layout), a text (.txt), or a scene (.scene.json).")
+    ],
+    all_facts: Annotated[
+        bool, typer.Option("--all", help="Say every fact, also what follows from the others.")
+    ] = False,
+    hide_labels: HideLabels = False,
+    image: Image = None,
+    time_limit: TimeLimit = 10.0,
+    as_json: AsJson = False,
+) -> None:
+    """Say a layout or a scene in English, in few words.
+
+    Exit 0 if the text is read as what it says, and singles out each object of a scene, 1 if not.
+    """
+    from deixis.workflows.descriptions.tell import holds_facts
+    from deixis.workflows.descriptions.tell import tell as run
+    from deixis.workflows.layouts.read import load_scene
+
+    given = source if holds_facts(source) else load_scene(source, hide_labels, image)
+    told = run(given, all_facts=all_facts, time_limit=time_limit)
+    if as_json:
+        print_json(told.to_dict())
+    else:
+        print_lines(told.to_text().splitlines())
+    if told.misread or any(thing.found is False for thing in told.objects):
+        raise typer.Exit(NO)

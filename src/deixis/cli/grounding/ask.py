@@ -1,0 +1,91 @@
+"""The command ``deixis ask``: have the robot ask which object a word means."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import NO, MemoryDir, PerceivedScene, print_line, print_lines, print_note
+from deixis.cli.completion import complete_categories
+from deixis.cli.output import StandardInput, note_change
+from deixis.cli.progress import progress_bar
+from deixis.printable import visible_line
+
+if TYPE_CHECKING:
+    from deixis.perception.scene import Scene
+
+
+def ask(
+    word: Annotated[
+        str, typer.Argument(metavar="WORD", help="A word, known or not.", autocompletion=complete_categories)
+    ],
+    scene: PerceivedScene,
+    points_at: Annotated[str | None, typer.Option(metavar="OBJECT", help="Answer with this id.")] = None,
+    teacher: Annotated[str, typer.Option(metavar="NAME", help="Name of the person who answers.")] = "user",
+    memory: MemoryDir = None,
+) -> None:
+    """Have the robot ask which object a word refers to; the object of the answer becomes the first view of the word.
+
+    For a known word, print the objects that it is recognised in, and ask nothing; --points-at adds one more view.
+    Exit 1 without an answer.
+    """
+    from deixis.report.scenes.seen import meant_lines, taught_line
+    from deixis.session import Session
+    from deixis.view_store import new_category_name
+    from deixis.workflows.layouts.read import load_scene
+
+    said, seen = new_category_name(word), load_scene(scene)
+    _require_something_to_show(seen)
+    with Session(memory) as session:
+        name = session.category_meant(said)
+        print_lines(meant_lines(said, name))
+        if name in session.categories() and points_at is None:
+            with progress_bar("reading the taught views") as progress:
+                answers = session.recognise(seen.without_labels(), progress, print_note).answers
+            ones = [f"{id} ({answer.probability:.2f})" for id, answer in answers.items() if answer.label == name]
+            print_line(
+                f"I know '{name}'. Here it is: {', '.join(ones)}." if ones else f"I know '{name}', and see none here."
+            )
+            raise typer.Exit(0 if ones else NO)
+    pointed = points_at or _pointed_at(name, seen)  # the memory is closed while the user thinks
+    if pointed is None:
+        print_line(f"I still do not know what '{name}' is.")
+        raise typer.Exit(NO)
+    with Session(memory) as session:
+        taught = session.teach(seen, pointed, name, teacher)
+        note_change(session.path)
+    print_line(taught_line(taught, pointed))
+
+
+def _require_something_to_show(scene: Scene) -> None:
+    """End the command before the question where the scene has no object, or no object with a cloud."""
+    from deixis.errors import DeixisError
+
+    if not scene.objects:
+        print_line(f"There are no objects in {scene.file} that a word could refer to.")
+        raise typer.Exit(NO)
+    if all(thing.cloud is None for thing in scene.objects):
+        raise DeixisError(
+            f"{scene.file}: no object in it has a cloud, so none can be taught; 'deixis perceive -o' writes clouds"
+        )
+
+
+def _pointed_at(name: str, scene: Scene) -> str | None:
+    """Ask until the answer is an id of the scene, and return it; None for an empty answer."""
+    from deixis.report.scenes.seen import scene_lines
+
+    print_lines(scene_lines(scene))
+    while True:
+        question = f"I do not know what '{name}' is. Which of these is one? (an id; an empty line for none) "
+        print(visible_line(question), end="", flush=True)
+        answer = StandardInput().readline().strip()
+        if not answer:
+            print()
+            return None
+        if answer not in scene.ids:
+            print_line(f"There is no object '{answer}' in this scene.")
+        elif scene[answer].cloud is None:
+            print_line(f"'{answer}' has no cloud, so its shape is not known.")
+        else:
+            return answer

@@ -1,0 +1,203 @@
+"""The commands ``deixis memory export``, ``import``, ``stats``, ``verify`` and ``forget``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import (
+    NO,
+    AsJson,
+    MemoryDir,
+    print_json,
+    print_line,
+    print_lines,
+    print_note,
+    print_written,
+    require_ending,
+    require_memory,
+)
+from deixis.cli.completion import complete_lessons
+from deixis.cli.output import note_change
+from deixis.cli.progress import progress_bar
+from deixis.report.marks import violation
+
+if TYPE_CHECKING:
+    from deixis.memory.verify import Verified
+
+memory_app = typer.Typer(
+    help="Export, import, count, verify or forget the content of the memory.", no_args_is_help=True
+)
+
+
+class DumpFormat(StrEnum):
+    """Formats of ``deixis memory export``."""
+
+    TRIG = "trig"
+    TURTLE = "turtle"
+    VIEWS = "views"
+
+
+@memory_app.command("export")
+def export(
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write a file instead of printing.")
+    ] = None,
+    format: Annotated[
+        DumpFormat,
+        typer.Option("--format", help="trig: all concepts; turtle: one graph, for Protégé; views: the taught views."),
+    ] = DumpFormat.TRIG,
+    memory: MemoryDir = None,
+) -> None:
+    """Write the content of the memory, sorted, so that equal content gives equal bytes."""
+    from deixis.errors import DeixisError
+    from deixis.memory.on_demand import default_memory
+
+    where = memory or default_memory()
+    if format is DumpFormat.VIEWS:
+        from deixis.memory.perceptual.in_folder import export_all
+
+        if out is None:
+            raise DeixisError("views are not text; name a file with -o")
+        require_ending(out, (".zip",), "an archive of views")
+        with progress_bar("exporting") as progress:
+            export_all(where, out, progress)
+        print_written(out)
+        return
+    if out is not None:
+        require_ending(out, _ENDINGS[format], f"an export as {format}")
+    _export_concepts(where, out, format)
+
+
+_ENDINGS = {DumpFormat.TRIG: (".trig",), DumpFormat.TURTLE: (".ttl",)}
+"""Endings of the exported files, by which ``import`` knows the format."""
+
+_VIEWS_TOO = "'--format views -o FILE' writes them"
+
+
+def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None:
+    """Write or print the concepts; print a note on standard error that the views are not included."""
+    from deixis.errors import DeixisError
+    from deixis.memory.semantic.exchange import export_memory
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        views = session.has_views()
+        if views and not session.remembers():
+            raise DeixisError(f"the memory at {memory} has views, but no lessons yet; {_VIEWS_TOO}")
+        text = export_memory(session.memory(), format.value)
+    if out is None:
+        sys.stdout.write(text)
+    else:
+        out.write_text(text, encoding="utf-8")
+        print_written(out)
+    if views:
+        print_note(f"the memory also has views, which are not in this export; {_VIEWS_TOO}")
+
+
+@memory_app.command("import")
+def import_(
+    dump: Annotated[Path, typer.Argument(metavar="FILE", help="An exported file, or triples in another format.")],
+    memory: MemoryDir = None,
+) -> None:
+    """Add exported content to the memory, and keep what is already there."""
+    from deixis.errors import DeixisError
+    from deixis.memory.on_demand import default_memory
+    from deixis.memory.perceptual.in_folder import import_all, is_archive
+    from deixis.session import Session
+
+    if not dump.exists():
+        raise DeixisError(f"{dump}: no such file")
+    if is_archive(dump):
+        where = memory or default_memory()
+        with progress_bar("importing") as progress:
+            done = import_all(dump, where, progress)
+        note_change(where)
+        print_line(f"Imported {dump} into the memory {where}.")
+        if done.relearn:
+            print_line(f"These categories must be learned again from their views: {', '.join(done.relearn)}.")
+        return
+    with Session(memory) as session:
+        session.import_(dump)
+        note_change(session.path)
+        print_line(f"Imported {dump} into the memory {session.path}.")
+
+
+@memory_app.command("stats")
+def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """Print how much the memory holds, and the ids of its lessons."""
+    from dataclasses import asdict
+
+    from deixis.memory.perceptual.in_folder import stats_of
+    from deixis.report.layouts.script import stats_lines
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        views = stats_of(session.path)
+        concepts = session.remembers() or views is None
+        counted = asdict(session.memory().stats()) if concepts else {}
+        lessons = session.memory().lessons() if concepts else ()
+    if views is not None:
+        counted["perceptual"] = asdict(views)
+    if as_json:
+        print_json({**counted, "lesson_ids": list(lessons)})
+    else:
+        print_lines(stats_lines(counted, lessons))
+
+
+@memory_app.command("verify")
+def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
+    """Check the memory for damage, and for concepts that do not follow from its lessons; exit 1 on any finding."""
+    from deixis.learning.update import stale
+    from deixis.memory.episodes.blackboard import has_episodes
+    from deixis.memory.on_demand import default_memory
+    from deixis.memory.verify import verify as run
+    from deixis.ontology.tbox import default_ontology
+
+    where = memory or default_memory()
+    episodes = has_episodes(where)
+    if not episodes:
+        require_memory(where)
+    with progress_bar("verifying") as progress:
+        found = run(where, progress, lambda store: stale(store, default_ontology()))
+    if as_json:
+        findings = [{"where": entry.where, "what": entry.what} for entry in found.findings]
+        print_json({"verified": {"concepts": found.semantic, "views": found.perceptual}, "findings": findings})
+    else:
+        print_lines(_verified_lines(found, episodes))
+    if found.findings:
+        raise typer.Exit(NO)
+
+
+def _verified_lines(found: Verified, episodes: bool) -> Iterator[str]:
+    there = {"concepts": found.semantic, "views": found.perceptual} | ({"episodes": True} if episodes else {})
+    yield from (violation(str(finding)) for finding in found.findings)
+    if not found.findings:
+        yield f"All {' and '.join(what for what, known in there.items() if known)} are undamaged."
+    yield from (f"There are no {what} in this memory." for what, known in there.items() if not known)
+
+
+@memory_app.command("forget")
+def forget(
+    lesson: Annotated[
+        str,
+        typer.Argument(
+            metavar="LESSON",
+            help="The lesson's id, as printed by 'learn' and 'memory stats'.",
+            autocompletion=complete_lessons,
+        ),
+    ],
+    memory: MemoryDir = None,
+) -> None:
+    """Forget a lesson and everything that follows from it alone; 'category forget' forgets views."""
+    from deixis.session import Session
+
+    with Session(memory) as session:
+        session.forget(lesson)
+    note_change(session.path)
+    print_line(f"Forgotten: {lesson}.")

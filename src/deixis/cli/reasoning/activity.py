@@ -1,0 +1,93 @@
+"""The commands ``deixis activity ground``, ``learn`` and ``recognise``: told and learned activities."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import NO, AsJson, MemoryDir, TimeLimit, print_json, print_line, print_lines
+
+if TYPE_CHECKING:
+    from deixis.reasoning.activities.activity import StepSequence
+
+activity_app = typer.Typer(
+    help="Ground, learn and recognise activities: steps in the order of time.", no_args_is_help=True
+)
+
+Known = Annotated[Path, typer.Option("--known", metavar="FILE", help="File of learned activities (JSON).")]
+Fluents = Annotated[
+    Path | None, typer.Argument(metavar="[FILE]", help="Fluents (.fluents.json); without it, the episodes of --memory.")
+]
+
+
+@activity_app.command("ground")
+def ground(
+    told: Annotated[str, typer.Argument(metavar="TEXT", help="Such as 'first the plate, then the forks'.")],
+    file: Fluents = None,
+    time_limit: TimeLimit = 10.0,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Match a told activity with fluents: what each step is, what is missing or in another order; exit 1 if any is."""
+    from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
+    from deixis.workflows.reasoning.activities import ground as run
+
+    found = run(told, _sequence(file, memory), time_limit)
+    if as_json:
+        print_json(grounded_to_dict(found))
+    else:
+        print_lines(grounded_lines(found))
+    if found.missing or found.swapped:
+        raise typer.Exit(NO)
+
+
+@activity_app.command("learn")
+def learn(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the activity.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Examples (.fluents.json).")],
+    known: Known = Path("activities.json"),
+) -> None:
+    """Learn an activity from examples, and add it to a file of activities."""
+    from deixis.workflows.reasoning.activities import learn as run
+
+    activity = run(name, files, known)
+    print_line(f"Learned '{name}' from {activity.examples} examples: {len(activity.steps)} steps; in {known}")
+
+
+@activity_app.command("recognise")
+def recognise(
+    file: Fluents = None,
+    known: Known = Path("activities.json"),
+    time_limit: TimeLimit = 10.0,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Say which of the known activities happened; exit 1 if none of them did."""
+    from deixis.report.reasoning.activities import recognised_lines, recognised_to_dict
+    from deixis.workflows.reasoning.activities import recognise as run
+
+    found = run(_sequence(file, memory), known, time_limit)
+    if as_json:
+        print_json(recognised_to_dict(found))
+    else:
+        print_lines(recognised_lines(found))
+    if found.name is None:
+        raise typer.Exit(NO)
+
+
+def _sequence(file: Path | None, memory: Path | None) -> StepSequence:
+    """Return the sequence of a file, or of the episodes of a memory."""
+    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+    from deixis.memory.errors import MemoryFormatError
+    from deixis.memory.on_demand import default_memory
+    from deixis.workflows.reasoning.activities import sequence_of, sequence_of_episodes
+
+    if file is not None:
+        return sequence_of(file)
+    folder = memory or default_memory()
+    if not has_episodes(folder):
+        raise MemoryFormatError(f"the memory at {folder} has no episodes; name a file of fluents")
+    with Blackboard.open(folder) as board:
+        return sequence_of_episodes(board)

@@ -1,0 +1,1 @@
+"""Commands that run the robot, the demo and the experiments."""

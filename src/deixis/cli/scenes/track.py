@@ -1,0 +1,89 @@
+"""The command ``deixis track``: follow the things on a table through a stream of clouds."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from deixis.cli.common import AsJson, print_json, print_lines
+
+if TYPE_CHECKING:
+    from deixis.perception.tracking.frame import Frame
+    from deixis.perception.tracking.stream import CloudSource
+    from deixis.perception.tracking.thing import Situation
+    from deixis.workflows.scenes.track import TrackedEvent
+
+
+def track(
+    source: Annotated[
+        list[str], typer.Argument(metavar="SOURCE...", help="A folder of clouds, cloud files, or 'simulator'.")
+    ],
+    rate: Annotated[float, typer.Option(metavar="HZ", help="Frames a second, where the source has no times.")] = 10.0,
+    grows: Annotated[bool, typer.Option("--grows", help="Wait for further files in the folder.")] = False,
+    patience: Annotated[float, typer.Option(metavar="SECONDS", help="End of waiting without a new file.")] = 10.0,
+    intrinsics: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json) of depth images.")
+    ] = None,
+    live: Annotated[bool, typer.Option("--live", help="Drop frames that come too fast.")] = False,
+    things: Annotated[int, typer.Option(min=1, max=12, help="Simulator: things at the start.")] = 4,
+    actions: Annotated[int, typer.Option(min=0, max=100, help="Simulator: actions of the hand.")] = 4,
+    seed: Annotated[int, typer.Option(min=0, help="Simulator: seed of things, actions and noise.")] = 0,
+    record: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Write the frames as a recorded sequence, too.")
+    ] = None,
+    lines: Annotated[bool, typer.Option("--lines", help="Print a line of JSON after each frame.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Follow the things on a table through a stream of clouds: what is where, since when."""
+    from deixis.report.scenes.track import event_line, situation_to_dict, tracking_lines, tracking_to_dict
+    from deixis.workflows.scenes.track import track as run
+
+    def each(now: Situation, events: Sequence[TrackedEvent]) -> None:
+        if lines:
+            print(json.dumps(situation_to_dict(now), ensure_ascii=False), flush=True)
+        elif not as_json:
+            print_lines(map(event_line, events))
+            sys.stdout.flush()
+
+    stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed))
+    found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
+    if as_json:
+        print_json(tracking_to_dict(found))
+    elif not lines:
+        print_lines(tracking_lines(found))
+
+
+def _source(
+    names: list[str],
+    rate: float,
+    grows: bool,
+    patience: float,
+    intrinsics: Path | None,
+    simulated: tuple[int, int, int],
+) -> CloudSource:
+    from deixis.workflows.scenes.track import cloud_source
+
+    if names == ["simulator"]:
+        from deixis.perception.simulator.stories import FilmSource, random_film
+
+        things, actions, seed = simulated
+        return FilmSource(random_film(things, actions, seed), rate, seed)
+    return cloud_source(names, rate, grows, patience, intrinsics)
+
+
+class _Recorded:
+    """Source whose frames are also written."""
+
+    def __init__(self, source: CloudSource, folder: Path) -> None:
+        self._source, self._folder = source, folder
+
+    def frames(self) -> Iterator[Frame]:
+        """Yield the frames after they were written."""
+        from deixis.perception.tracking.stream import recording
+
+        return recording(self._source.frames(), self._folder)

@@ -1,0 +1,1 @@
+"""Text and JSON of answers about descriptions and words."""

@@ -1,0 +1,73 @@
+"""A layout or a scene in English: lines for the terminal, and plain data."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from deixis.report.layouts.read import content_to_dict
+from deixis.report.marks import doubt
+
+if TYPE_CHECKING:
+    from deixis.grammar.reading import StatedFact
+    from deixis.workflows.descriptions.telling import Telling
+
+WIDTH = 100
+"""Columns of the text."""
+
+
+def telling_lines(told: Telling) -> list[str]:
+    """Return the text, filled to the width of the terminal, then what it could not say.
+
+    Parameters
+    ----------
+    told
+        Answer of ``deixis tell``.
+
+    Returns
+    -------
+    list of str
+        Lines of at most :data:`WIDTH` characters unless a word is longer; then the warnings, marked as doubt.
+    """
+    lines = textwrap.wrap(told.text, WIDTH, break_long_words=False, break_on_hyphens=False) or ["Nothing is stated."]
+    lines += [doubt(f"Not read as it is meant: {content}") for content in told.misread]
+    lost = [thing.id for thing in told.objects if thing.found is False]
+    if lost:
+        lines.append(doubt(f"Not singled out: {', '.join(lost)}."))
+    return lines + [doubt(f"Note: {note}") for note in told.notes]
+
+
+def telling_to_dict(told: Telling) -> dict[str, Any]:
+    """Return the text, its sentences with the facts that they state, and the words for each object.
+
+    Parameters
+    ----------
+    told
+        Answer of ``deixis tell``.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``file``, ``text``, ``sentences``, ``objects``, ``left_out``, ``misread`` and
+        ``notes``. ``found`` of an object is False where its words do not single it out.
+    """
+    return {
+        "file": told.file,
+        "text": told.text,
+        "sentences": [
+            {"text": sentence.text, "facts": [_stated_to_dict(told.facts[i]) for i in sentence.facts]}
+            for sentence in told.sentences
+        ],
+        "objects": [
+            {"id": thing.id, "words": thing.words, "description": thing.description, "found": thing.found}
+            for thing in told.objects
+        ],
+        "left_out": [content_to_dict(fact) for fact in told.left_out],
+        "misread": [content_to_dict(content) for content in told.misread],
+        "notes": list(told.notes),
+    }
+
+
+def _stated_to_dict(stated: StatedFact) -> dict[str, Any]:
+    marks = {"condition": stated.condition, "past": stated.past, "uncertain": stated.uncertain}
+    return content_to_dict(stated.content) | marks

@@ -1,0 +1,1 @@
+"""Text and JSON of groundings and of comparisons of tables with layouts."""

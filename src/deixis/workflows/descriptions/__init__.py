@@ -1,0 +1,1 @@
+"""Workflows on descriptions: refer to objects, tell layouts and scenes, learn the words for it."""

@@ -1,0 +1,208 @@
+"""Learn the weights of ``deixis refer`` from descriptions of objects whose answers are known."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.errors import DeixisError, OntologyError
+from deixis.perception.scene import Scene
+from deixis.reasoning.errors import DescriptionError, SettingError
+from deixis.workflows.descriptions.refer import (
+    line_of_batch,
+    model_with,
+    read_description,
+    scene_of_line,
+    shipped_model,
+)
+
+if TYPE_CHECKING:
+    from deixis.reasoning.grounding.reference.fitting import Example
+    from deixis.reasoning.grounding.reference.model import Model
+
+Array = NDArray[np.float64]
+
+ITERATIONS = 40
+"""Maximum number of iterations of the fit."""
+
+CHANGED = 0.02
+"""Least change of a weight for which its word is listed as learned."""
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedReference:
+    """Weights of reference after learning.
+
+    ``descriptions`` is the number of descriptions that taught something; ``left_out`` has a line for each other one,
+    with the reason. ``changed`` has the largest change of a weight of each word or feature family that changed, the
+    largest first. ``right`` holds how many of the descriptions the model answers right before and after.
+    """
+
+    model: Model
+    descriptions: int
+    changed: Mapping[str, float]
+    right: tuple[int, int]
+    left_out: tuple[str, ...] = ()
+
+
+def learn_reference(
+    lines: Iterable[str], folder: Path, strength: float = 3.0, prior: Model | None = None
+) -> LearnedReference:
+    """Fit the words of descriptions, with their frames, to descriptions whose target is known.
+
+    Parameters
+    ----------
+    lines
+        Lines of JSON with the keys ``text``, ``scene`` (a file, relative to ``folder``) and ``target`` (the id of the
+        object that is meant).
+    folder
+        Folder of the lines.
+    strength
+        Weight of the prior, above 0: the cost in nats of changing one weight by 1.
+    prior
+        Model from which the fit starts; the shipped one by default.
+
+    Returns
+    -------
+    LearnedReference
+        The model, and what it was learned from.
+
+    Raises
+    ------
+    DescriptionError
+        If no line teaches anything.
+    SettingError
+        If ``strength`` is not above 0.
+
+    Notes
+    -----
+    Penalised maximum likelihood, as for the shipped weights
+    (:func:`deixis.reasoning.grounding.reference.fitting.fit`). Weights of words that no description has stay.
+    """
+    from deixis.ontology.tbox import default_ontology
+    from deixis.reasoning.grounding.reference.fitting import fit, initial_weights
+
+    if not 0 < strength < np.inf:
+        raise SettingError(f"the strength of the shipped weights must be above 0, got {strength:g}")
+    examples, left_out = _examples(lines, folder)
+    before = prior or shipped_model()
+    if not examples:
+        raise DescriptionError("; ".join(("nothing to learn", *left_out)))
+    unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
+    start = replace(before, weights={**unset, **before.weights})
+    learned = replace(start, weights=fit(start, examples, strength, ITERATIONS))
+    steps = {name: float(np.abs(values - start.weights[name]).max()) for name, values in learned.weights.items()}
+    changed = {name: step for name, step in sorted(steps.items(), key=lambda one: -one[1]) if step >= CHANGED}
+    right = (_right(before, examples), _right(learned, examples))
+    return LearnedReference(learned, len(examples), changed, right, tuple(left_out))
+
+
+def _examples(lines: Iterable[str], folder: Path) -> tuple[list[Example], list[str]]:
+    """Return the examples of the lines, and a line for each that teaches nothing with the reason."""
+    scenes: dict[str, Scene] = {}
+    examples, left_out = [], []
+    for number, line in enumerate(lines, start=1):
+        if not line.strip():
+            continue
+        try:
+            examples.append(_example(line, folder, scenes))
+        except DeixisError as error:
+            left_out.append(f"line {number}: {error}")
+    return examples, left_out
+
+
+def _example(line: str, folder: Path, scenes: dict[str, Scene]) -> Example:
+    from deixis.reasoning.grounding.reference.fitting import Example
+
+    data = line_of_batch(line, ("text", "scene", "target"))
+    scene, query = scene_of_line(data, folder, scenes), read_description(data["text"])
+    if data["target"] not in scene.ids:
+        raise DescriptionError(f"{scene.file}: there is no object '{data['target']}'; give an id of the scene")
+    found = Example(query, scene.room, scene.ids.index(data["target"]))
+    if found.target not in shipped_model().candidates(query, scene.room):
+        raise DescriptionError(f"the noun '{query.target.noun}' cannot name the object '{data['target']}'")
+    return found
+
+
+def _right(model: Model, examples: Iterable[Example]) -> int:
+    return sum(int(model.probabilities(one.query, one.room).argmax()) == one.target for one in examples)
+
+
+def write_reference(model: Model, file: Path, source: str) -> None:
+    """Write the weights of a model as JSON, by the names of their features.
+
+    Parameters
+    ----------
+    model
+        The model.
+    file
+        The file.
+    source
+        Where the weights come from, as a text in the file.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written.
+    """
+    from deixis.ontology.tbox import default_ontology
+    from deixis.reasoning.grounding.reference.fitting import named_weights
+
+    data = {"source": source, "weights": named_weights(model.weights, default_ontology().colours)}
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise DeixisError(f"{file}: cannot write the weights: {error.strerror}") from error
+
+
+def read_reference(file: Path) -> Model:
+    """Return the model of a file that :func:`write_reference` wrote.
+
+    Parameters
+    ----------
+    file
+        The file.
+
+    Returns
+    -------
+    Model
+        The model.
+
+    Raises
+    ------
+    OntologyError
+        If the file cannot be read or is not a file of weights.
+    """
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise OntologyError(f"{file}: cannot be read: {error.strerror}") from error
+    except (ValueError, RecursionError) as error:
+        raise OntologyError(f"{file}: not JSON: {error}; 'deixis learn-relation --descriptions' writes one") from error
+    return model_with(_weights(data, file))
+
+
+def _weights(data: Any, file: Path) -> dict[str, Array]:
+    from deixis.ontology.tbox import default_ontology
+    from deixis.reasoning.grounding.reference.fitting import weight_names
+
+    blocks = data.get("weights") if isinstance(data, dict) else None
+    if not isinstance(blocks, dict) or not all(isinstance(values, dict) for values in blocks.values()):
+        raise OntologyError(f"{file}: there must be an object 'weights' with an object of numbers for each word")
+    names = weight_names(default_ontology().colours)
+    found = {}
+    for block, values in blocks.items():
+        expected = names.get(block, names.get(block.partition("/")[0]))
+        if expected is None or tuple(values) != tuple(expected):
+            raise OntologyError(f"{file}: the weights of '{block}' are not those of this version; learn them again")
+        if not all(isinstance(value, (int, float)) and np.isfinite(value) for value in values.values()):
+            raise OntologyError(f"{file}: the weights of '{block}' must be finite numbers")
+        found[block] = np.array(list(values.values()), dtype=np.float64)
+    return found

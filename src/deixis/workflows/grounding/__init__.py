@@ -1,0 +1,1 @@
+"""Workflows that ground a script in a scene and compare the two."""

@@ -1,0 +1,65 @@
+"""Grounding that asks, with the dialogue written to a stream: the Python side of ``deixis ground --ask``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+from deixis.grammar.script import Script
+from deixis.perception.scene import Scene
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
+from deixis.reasoning.grounding.questions.inquiry import Exchange
+from deixis.reasoning.grounding.questions.situation import Situation
+from deixis.workflows.grounding.dialogue import AnswerSource, Dialogue
+from deixis.workflows.grounding.ground import ground
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """Result of a dialogue: the grounding, and the questions with their answers."""
+
+    grounding: Grounding
+    exchanges: tuple[Exchange, ...]
+
+
+def ask(
+    script: Script | str | Path,
+    scene: Scene | str | Path | Mapping[str, Any],
+    source: Callable[[Situation], AnswerSource],
+    out: TextIO,
+    meaning: Meaning = SHIPPED,
+    time_limit: float = DEFAULT_TIME_LIMIT,
+) -> Asked:
+    """Ground a script with a dialogue that is written to a stream.
+
+    This is :func:`deixis.ground` with ``ask=Dialogue(source, out)``.
+
+    Parameters
+    ----------
+    script, scene
+        The script and the scene, or their files.
+    source
+        Makes, from the questions' situation, what answers them.
+    out
+        Stream for the questions.
+    meaning
+        Words and sizes, as shipped or as a memory has learned them.
+    time_limit
+        Seconds until the answer, without the time that the answers take.
+
+    Returns
+    -------
+    Asked
+        The grounding, and the questions with their answers.
+
+    Raises
+    ------
+    DeixisError
+        For bad input, as :func:`deixis.ground`.
+    """
+    found = ground(script, scene, ask=Dialogue(source, out), meaning=meaning, time_limit=time_limit)
+    return Asked(found, found.exchanges or ())

@@ -1,0 +1,130 @@
+"""A table is compared with a layout: what is missing, misplaced, miscoloured and extra, and which claims fail."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.answers import Answer
+from deixis.grammar.script import Script
+from deixis.knowledge_store import KnowledgeStore
+from deixis.learning.scene_evidence import (
+    conflict_notes,
+    graph_evidence,
+    scene_labels,
+    surface_thing,
+    viewpoint_notes,
+)
+from deixis.ontology.tbox import default_ontology
+from deixis.perception.scene import Scene
+from deixis.reasoning.comparison.claims import violated
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
+from deixis.workflows.layouts.read import as_scene, as_script, is_script_file
+
+if TYPE_CHECKING:
+    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.ontology.tbox import Ontology
+    from deixis.reasoning.comparison.checking import TableCheck
+
+
+@dataclass(frozen=True, repr=False)
+class Check(Answer):
+    """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for."""
+
+    layout: LayoutConcept
+    table: TableCheck
+    scene: Scene
+    ontology: Ontology
+
+    def summary(self) -> str:
+        """Return the layout's name, and how many objects have each verdict."""
+        verdicts = Counter(role.verdict.value for role in self.table.roles)
+        verdicts["extra"] = len(self.table.extra)
+        verdicts["violated facts"] = len(self.table.broken)
+        verdicts["violated claims"] = len(list(violated(self.table.claims)))
+        counts = ", ".join(f"{number} {verdict}" for verdict, number in verdicts.items() if number)
+        return f"of {self.layout.name!r}: {'nothing wrong' if self.table.well else 'not as described'}, {counts}"
+
+    @property
+    def conforms(self) -> bool:
+        """True if the scene conforms to the layout's SHACL shapes."""
+        return self._validated[0]
+
+    @property
+    def report(self) -> str:
+        """The SHACL validation report, in Turtle."""
+        return self._validated[1]
+
+    @cached_property
+    def _validated(self) -> tuple[bool, str]:
+        from deixis.workflows.grounding.shacl_report import shacl_report
+
+        return shacl_report(self.layout, self.scene, self.table, self.ontology.relations)
+
+
+def check(
+    layout: str | Path | Script,
+    scene: Scene | str | Path | Mapping[str, Any],
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    knowledge: KnowledgeStore | None = None,
+) -> Check:
+    """Check a table against a layout.
+
+    Parameters
+    ----------
+    layout
+        A script or its file, or the name of a layout in ``knowledge``.
+    scene
+        The table, its file, or parsed JSON.
+    time_limit
+        Seconds for the grounding.
+    knowledge
+        Memory with layouts, words and sizes; without one, words and sizes are taken as they are shipped.
+
+    Returns
+    -------
+    Check
+        The verdict on each role, extra things, violated facts and a SHACL report.
+
+    Raises
+    ------
+    DeixisError
+        If a file is invalid, or there is no layout of that name.
+    """
+    from deixis.learning.lesson import layout_concept
+    from deixis.reasoning.comparison.checking import checked_table
+
+    if not isinstance(layout, str | Path | Script):
+        raise SettingError(f"`layout` must be a script, its file or the name of a layout, got {layout!r:.60}")
+    known = default_ontology() if knowledge is None else knowledge.ontology
+    if isinstance(layout, Script) or is_script_file(layout):
+        concept = layout_concept(as_script(layout, known), "script")
+    elif knowledge is None:
+        told = f"layout must be a script or its file (.layout) where there is no memory, got the name '{layout}'"
+        raise SettingError(told)
+    else:
+        concept = knowledge.layout(str(layout))
+    scene, graph = as_scene(scene), concept.graph(known.relations)
+    meaning = SHIPPED if knowledge is None else knowledge.meaning()
+    implied = Implications(graph)
+    # a check takes labels as identities
+    evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0, claims=concept.claims)
+    evidence = evidence.with_surface(surface_thing(concept.surface, graph, scene, known.kinds))
+    evidence = replace(evidence, consistent=implied.consistent)
+    notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
+    labels, engine = scene_labels(scene), engine_named("exact", sides=AS_IT_STANDS)
+    table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
+    found = table.grounding
+    kept = tuple(note for note in found.notes if "similarity" not in note)  # a check shows no similarity
+    table = replace(table, grounding=replace(found, notes=notes + kept))
+    return Check(concept, table, scene, known)

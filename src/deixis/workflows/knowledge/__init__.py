@@ -1,0 +1,1 @@
+"""Workflows on the memory: learn, recall, unlearn, episodes, habits."""

@@ -1,0 +1,503 @@
+"""Services over the blackboard: files of fluents, consistency, classes, memories by name, and consolidation."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from deixis.deadline import Deadline
+from deixis.errors import DeixisError
+from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Add, Logged
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, episode, experiences
+from deixis.memory.episodes.subscription import Subscription
+from deixis.ontology.facts import Fact
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.tbox import Ontology
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.temporal.errors import TemporalConflictError
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
+from deixis.reasoning.temporal.timeline import Timeline
+
+if TYPE_CHECKING:
+    from deixis.grammar.script import Script
+    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.perception.scene import Scene
+    from deixis.workflows.knowledge.learn import Learned
+
+MAX_SITUATIONS = 200
+"""Maximum number of situations of an aggregate whose spatial consistency is checked."""
+
+
+class Memory(StrEnum):
+    """The five memories of the robot."""
+
+    WORKING = "working"
+    EPISODIC = "episodic"
+    SEMANTIC = "semantic"
+    PERCEPTUAL = "perceptual"
+    PROCEDURAL = "procedural"
+
+
+class _Learner(Protocol):
+    """The methods of a session that these services call."""
+
+    @property
+    def ontology(self) -> Ontology:
+        """Words that scripts may use."""
+        ...
+
+    def learn(self, script: Script, scene: Scene) -> Learned:
+        """Ground a script in a scene, and keep the layout and the look of its objects."""
+        ...
+
+    def remembers(self) -> bool:
+        """Say whether there is a semantic memory."""
+        ...
+
+    def layouts(self) -> tuple[LayoutConcept, ...]:
+        """Return all learned layouts."""
+        ...
+
+    def has_views(self) -> bool:
+        """Say whether there is a perceptual memory."""
+        ...
+
+    def categories(self) -> dict[str, int]:
+        """Return the number of views of each taught category."""
+        ...
+
+
+def text_of_fluents(
+    board: Blackboard, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+) -> str:
+    """Return what held in a window as a file of fluents, which ``deixis time`` reads.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    pattern
+        Subject, predicate and object; None matches everything.
+    start, end
+        Ends of the window in seconds; by default it has no end on that side.
+
+    Returns
+    -------
+    str
+        Text of the file.
+    """
+    held = board.holding(pattern, start, end)
+    return format_fluents(FluentFile(board.origin.isoformat(), tuple(each.fluent for each in held)))
+
+
+def fluents_of_text(text: str, file: str, source: Source) -> tuple[EpisodicFluent, ...]:
+    """Return the fluents of a file for the blackboard.
+
+    Parameters
+    ----------
+    text
+        Text of a file of fluents.
+    file
+        Its name in messages.
+    source
+        How they became known, and by whom.
+
+    Returns
+    -------
+    tuple of EpisodicFluent
+        The fluents, each certain.
+
+    Raises
+    ------
+    FluentFileError
+        If the text has an error; the message names the place.
+    """
+    return tuple(EpisodicFluent(fluent, 1.0, source) for fluent in parse_fluents(text, file).fluents)
+
+
+def fluent_to_dict(fluent: EpisodicFluent) -> dict[str, Any]:
+    """Return a fluent of the blackboard as plain data.
+
+    Parameters
+    ----------
+    fluent
+        The fluent.
+
+    Returns
+    -------
+    dict
+        Its id, statement, times as in a file of fluents, certainty and source.
+    """
+    said, source = fluent.statement, fluent.source
+    return {
+        "id": fluent.id,
+        "statement": [said.subject, said.predicate, *([] if said.object is None else [said.object])],
+        "start": bounds_to_json(fluent.start),
+        "finish": bounds_to_json(fluent.finish),
+        "certainty": fluent.certainty,
+        "origin": source.origin.value,
+        "by": source.by,
+        "event": source.event,
+    }
+
+
+def span_of(fluents: Sequence[EpisodicFluent]) -> tuple[float, float]:
+    """Return the stretch of time in which the known starts and finishes of fluents lie.
+
+    Parameters
+    ----------
+    fluents
+        The fluents.
+
+    Returns
+    -------
+    tuple of float
+        Start and finish in seconds.
+
+    Raises
+    ------
+    DeixisError
+        If no two times are known.
+    """
+    ends = [time for each in fluents for bounds in (each.start, each.finish) for time in (bounds.lower, bounds.upper)]
+    known = [time for time in ends if math.isfinite(time)]
+    if len(set(known)) < 2:
+        raise DeixisError("an experience needs at least two known times of its fluents")
+    return min(known), max(known)
+
+
+@dataclass(frozen=True)
+class Consistency:
+    """Contradictions in an aggregate of fluents, one line each; all are empty for a consistent one.
+
+    ``undecided`` names what the limits of time and size left open.
+    """
+
+    temporal: tuple[str, ...] = ()
+    spatial: tuple[str, ...] = ()
+    logical: tuple[str, ...] = ()
+    undecided: tuple[str, ...] = ()
+
+    @property
+    def consistent(self) -> bool:
+        """True if no contradiction was found."""
+        return not (self.temporal or self.spatial or self.logical)
+
+
+def check_consistency(
+    fluents: Sequence[EpisodicFluent], ontology: Ontology, time_limit: float = 30.0, logical: bool = True
+) -> Consistency:
+    """Check whether fluents can all be true: by their times, in space at each time, and by the ontology.
+
+    Parameters
+    ----------
+    fluents
+        The aggregate.
+    ontology
+        Relations, and kinds of things.
+    time_limit
+        Seconds for all checks.
+    logical
+        False to leave out the check by the ontology, which takes about a second.
+
+    Returns
+    -------
+    Consistency
+        The contradictions. Spatial ones are of relations that certainly hold at one time; logical ones are found by the
+        rules of OWL 2 RL.
+    """
+    deadline = Deadline.after(time_limit)
+    undecided: list[str] = []
+    temporal = tuple(_temporal(fluents, deadline))
+    spatial = tuple(_spatial(fluents, ontology, deadline, undecided))
+    found = tuple(_logical(fluents, ontology, deadline)) if logical else ()
+    return Consistency(temporal, spatial, found, tuple(undecided))
+
+
+def _temporal(fluents: Sequence[EpisodicFluent], deadline: Deadline) -> Iterator[str]:
+    timeline = Timeline()
+    for each in fluents:
+        try:
+            timeline.add(each.fluent, max(0.1, deadline.left))
+        except TemporalConflictError as conflict:
+            yield str(conflict).splitlines()[0]
+        except DeixisError as error:
+            yield str(error)
+    by_statement: dict[str, list[EpisodicFluent]] = {}
+    for each in fluents:
+        if each.statement.predicate == "at":
+            by_statement.setdefault(each.statement.subject, []).append(each)
+    for subject, places in by_statement.items():
+        places.sort(key=lambda each: (each.start.upper, each.id))
+        for one, other in pairwise(places):
+            together = one.must_hold(other.start.upper, math.inf) and one.finish.lower > other.start.upper
+            if one.statement.object != other.statement.object and together:
+                yield f"'{subject}' is at two places at {other.start.upper:g} s: '{one.id}' and '{other.id}'"
+
+
+def _spatial(
+    fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: Deadline, undecided: list[str]
+) -> Iterator[str]:
+    known = {relation.name: relation for relation in ontology.relations.values()}
+    known |= {relation.iri.rpartition("#")[2]: relation for relation in ontology.relations.values()}
+    related = [each for each in fluents if each.statement.predicate in known and each.statement.object is not None]
+    times = sorted({each.start.upper for each in related if math.isfinite(each.start.upper)}) or [0.0]
+    if len(times) > MAX_SITUATIONS:
+        undecided.append(f"only the first {MAX_SITUATIONS} of {len(times)} situations were checked in space")
+    seen: set[frozenset[str]] = set()
+    for time in times[:MAX_SITUATIONS]:
+        held = [each for each in related if each.must_hold(time, time)]
+        ids = frozenset(each.id for each in held)
+        if ids in seen:
+            continue
+        seen.add(ids)
+        if deadline.passed:
+            undecided.append("the time limit left situations unchecked in space")
+            return
+        facts = [
+            Fact(each.statement.subject, (known[each.statement.predicate],), str(each.statement.object))
+            for each in held
+        ]
+        names = sorted({name for fact in facts for name in (fact.subject, fact.object)})
+        implied = Implications(RelationGraph.from_facts(ontology.relations, names, facts), max(0.1, deadline.left))
+        conflict = None if implied.consistent else find_conflict(implied)
+        if conflict is not None:
+            stated = ", ".join(map(str, conflict.facts))
+            yield f"at {time:g} s: {conflict.reason} ({stated})"
+
+
+def _logical(fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: Deadline) -> Iterator[str]:
+    import pyoxigraph as ox
+
+    from deixis.memory.episodes.rdf import TYPE, statement_triple, thing_iri
+    from deixis.memory.semantic.rdf.graphs import GraphName
+    from deixis.memory.semantic.rdf.package import packaged
+    from deixis.ontology.triples import with_blank_nodes
+    from deixis.reasoning.description_logic.entailment import LogicEngine, entail
+
+    triples = set(packaged()[GraphName.ONTOLOGY])
+    for each in fluents:
+        said = each.statement
+        if said.predicate == "isA" and said.object is not None:
+            kind, _ = ontology.of_name(said.object)
+            if kind is not None:
+                triples.add(ox.Triple(thing_iri(said.subject), TYPE, ox.NamedNode(kind.iri)))
+        elif said.object is not None and said.predicate in ontology.relations:
+            triples.add(statement_triple(said))
+    text = (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
+    if not entail(text, LogicEngine.RL, max(0.1, deadline.left)).consistent:
+        kinds = "; ".join(sorted(str(each.statement) for each in fluents if each.statement.predicate == "isA"))
+        yield f"the kinds and relations contradict the ontology: {kinds}"
+
+
+class KnownClass(NamedTuple):
+    """A class of things: its name, its broader classes, and the individuals that are of it now."""
+
+    name: str
+    broader: tuple[str, ...]
+    individuals: tuple[str, ...]
+
+
+def known_classes(board: Blackboard, ontology: Ontology, under: str | None = None) -> tuple[KnownClass, ...]:
+    """Return the classes of the ontology and of the blackboard, with their individuals.
+
+    Parameters
+    ----------
+    board
+        The blackboard, whose statements ``isA`` that hold now give the individuals.
+    ontology
+        The kinds of things.
+    under
+        Name of a class; only its subclasses and itself.
+
+    Returns
+    -------
+    tuple of KnownClass
+        The classes by name.
+    """
+    names = {kind.iri: kind.name for kind in ontology.kinds}
+    broader = {kind.name: tuple(sorted(names[iri] for iri in kind.broader if iri in names)) for kind in ontology.kinds}
+    members: dict[str, list[str]] = {}
+    for each in board.now(Pattern(predicate="isA")):
+        said = str(each.statement.object)
+        kind, _ = ontology.of_name(said)
+        name = said if kind is None else kind.name
+        broader.setdefault(name, ())
+        members.setdefault(name, []).append(each.statement.subject)
+    if under is not None:
+        kind, _ = ontology.of_name(under)
+        top = under if kind is None else kind.name
+        broader = {name: above for name, above in broader.items() if name == top or top in above}
+    return tuple(KnownClass(name, broader[name], tuple(members.get(name, ()))) for name in sorted(broader))
+
+
+def memory_lines(which: Memory, board: Blackboard, session: _Learner) -> Iterator[str]:
+    """Yield the content of one of the five memories, one line for each entry.
+
+    Parameters
+    ----------
+    which
+        The memory.
+    board
+        The blackboard.
+    session
+        The session with the semantic and the perceptual memory.
+
+    Yields
+    ------
+    str
+        A fluent of the current situation, an experience, a learned layout, or a category with its views; nothing for
+        the procedural memory, which comes with the acting robot.
+    """
+    if which is Memory.WORKING:
+        yield from map(str, board.now())
+    elif which is Memory.EPISODIC:
+        yield from map(str, experiences(board))
+    elif which is Memory.SEMANTIC and session.remembers():
+        yield from (f"layout {layout.name}" for layout in session.layouts())
+    elif which is Memory.PERCEPTUAL and session.has_views():
+        yield from (f"category {name}: {views} views" for name, views in session.categories().items())
+
+
+def scene_of(fluents: Sequence[EpisodicFluent], at: float) -> Scene | None:
+    """Return the scene that fluents describe at a time.
+
+    Parameters
+    ----------
+    fluents
+        Fluents; the object of ``at`` is a box in metres, ``[x0, y0, z0, x1, y1, z1]`` or without z, that of ``isA`` a
+        label.
+    at
+        The time in seconds.
+
+    Returns
+    -------
+    Scene or None
+        The scene; None if no thing has a box then.
+    """
+    from deixis.perception.scene import PerceivedObject, Scene
+
+    held = [each for each in fluents if each.may_hold(at, at)]
+    labels = {each.statement.subject: each for each in held if each.statement.predicate == "isA"}
+    things = []
+    for each in held:
+        if each.statement.predicate == "at":
+            corners = _box(str(each.statement.object))
+            label = labels.get(each.statement.subject)
+            named = {} if label is None else {"label": label.statement.object, "confidence": label.certainty}
+            if corners is not None:
+                half = len(corners) // 2
+                things.append(PerceivedObject(each.statement.subject, corners[:half], corners[half:], **named))  # type: ignore[arg-type]
+    return Scene(tuple(things)) if things else None
+
+
+def _box(text: str) -> tuple[float, ...] | None:
+    try:
+        corners = json.loads(text)
+        return tuple(map(float, corners)) if len(corners) in (4, 6) else None
+    except (ValueError, TypeError, KeyError):
+        return None
+
+
+def _understood(said: Sequence[str], session: _Learner) -> Script:
+    """Return the script that words state, in the layout language or else in English."""
+    from deixis.grammar.errors import ScriptError
+    from deixis.workflows.layouts.read import read_script
+
+    text = "\n".join(said)
+    try:
+        return read_script(text=text, ontology=session.ontology)
+    except ScriptError:
+        return read_script(text=text, ontology=session.ontology, english=True)
+
+
+@dataclass(frozen=True)
+class Consolidation:
+    """Lessons learned from experiences by their names, and why other experiences taught nothing."""
+
+    lessons: dict[str, str]
+    left_out: dict[str, str]
+
+
+def consolidate(board: Blackboard, session: _Learner, by: str = "consolidation") -> Consolidation:
+    """Learn a layout from each finished experience that a person described, once.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    session
+        The session that learns: it grounds the words in what lay on the table at the end of the experience.
+    by
+        Name under which the lessons are written to the blackboard.
+
+    Returns
+    -------
+    Consolidation
+        The lessons, and the reasons for the others. An experience is marked when it was consolidated.
+    """
+    done = {each.statement.subject for each in board.holding(Pattern(predicate=CONSOLIDATED))}
+    lessons: dict[str, str] = {}
+    left_out: dict[str, str] = {}
+    for each in experiences(board):
+        if each.finish is None or each.name in done:
+            continue
+        fluents = episode(board, each.name)
+        last = math.nextafter(each.finish, -math.inf)
+        said = [
+            str(f.statement.object)
+            for f in fluents
+            if f.statement.predicate == "said" and f.start.lower >= each.start  # in this experience, not before
+        ]
+        scene = scene_of(fluents, last)
+        if not said or scene is None:
+            left_out[each.name] = "nothing was said in it" if not said else "no thing has a place in it"
+            continue
+        try:
+            script = replace(_understood(said, session), name=re.sub(r"\W+", "_", each.name), title=each.name)
+            lesson = session.learn(script, scene).lesson.id
+        except DeixisError as error:
+            left_out[each.name] = str(error).splitlines()[0]
+            continue
+        lessons[each.name] = lesson
+        source = Source(Origin.INFERRED, by, each.id)
+        marker = episodic(board.new_id("c"), (each.name, CONSOLIDATED, lesson), start=each.finish, source=source)
+        board.write(Add(marker), by=by)
+    return Consolidation(lessons, left_out)
+
+
+def consolidate_in_background(
+    board: Blackboard, session: _Learner, done: Callable[[Consolidation], object] = lambda result: None
+) -> Subscription:
+    """Consolidate each experience when its recording finishes, in a thread of its own.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    session
+        The session that learns; its methods must be safe to call from threads.
+    done
+        Called with each result.
+
+    Returns
+    -------
+    Subscription
+        The subscription; cancel it to end the task.
+    """
+
+    def recorded(change: Logged) -> None:
+        if change.after is not None and not change.after.is_open:
+            done(consolidate(board, session))
+
+    return board.subscribe("consolidation", Pattern(predicate=RECORDED), recorded)

@@ -1,0 +1,144 @@
+"""A script and a scene become a lesson: the layout, and what its objects look like."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from deixis.grammar.script import Script
+from deixis.knowledge_store import KnowledgeStore
+from deixis.ontology.lessons.types import ANONYMOUS
+from deixis.perception.scene import Scene
+from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
+from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
+from deixis.version import VERSION
+from deixis.view_store import ViewStore, views_of_matches
+from deixis.workflows.grounding.ground import GroundingRequest, answer
+from deixis.workflows.layouts.read import as_scene, as_script
+from deixis.workflows.scenes.views_of_lessons import keep_lessons
+
+if TYPE_CHECKING:
+    from deixis.learning.views import KeptName, Taught
+    from deixis.memory.perceptual.records import View
+    from deixis.ontology.lessons.types import Lesson
+
+
+@dataclass(frozen=True)
+class Learned:
+    """Result of learning one lesson."""
+
+    lesson: Lesson
+    grounding: Grounding
+    seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
+    kept_names: tuple[KeptName, ...] = ()  # what it would call otherwise than a teacher did
+
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """The objects whose category it taught."""
+        return tuple(match.object for match in self.lesson.categories())
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """The objects that it recorded as not decided."""
+        return tuple(match.object for match in self.lesson.matches if not match.decided)
+
+
+def learn(
+    examples: Sequence[tuple[Script | str | Path, Scene | str | Path | Mapping[str, Any]]],
+    knowledge: KnowledgeStore,
+    views: ViewStore,
+    engine: str = "exact",
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    progress: Callable[[int, int], None] | None = None,
+    teacher: str = ANONYMOUS,
+) -> tuple[Learned, ...]:
+    """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
+
+    Each is grounded with what the memory had learned before this call. Doubtful and interchangeable matches are kept as
+    such and teach no category; the posterior of each match is kept too, for :meth:`KnowledgeStore.learn_relations`.
+    Sizes are learned at once. A thing that a teacher named keeps that name.
+
+    Parameters
+    ----------
+    examples
+        Pairs of a script and its scene, or of their files.
+    knowledge
+        The semantic store.
+    views
+        The perceptual store.
+    engine
+        Name of the engine.
+    time_limit
+        Seconds for each grounding.
+    progress
+        Called with the number of grounded examples and of all.
+    teacher
+        Name of the person who teaches.
+
+    Returns
+    -------
+    tuple of Learned
+        A lesson for each example, with its grounding.
+
+    Raises
+    ------
+    DeixisError
+        If a script contradicts itself or what was learned before; nothing is changed then.
+    """
+    pairs = list(examples)
+    for pair in pairs:
+        if isinstance(pair, str | Mapping) or not isinstance(pair, Sequence) or len(pair) != 2:
+            raise SettingError(f"`examples` must be pairs of a script and its scene, got {pair!r:.60} among them")
+    if knowledge.exists():
+        knowledge.memory().require_writable()
+    taken: set[str] = set()
+    learned = []
+    for done, (script, scene) in enumerate(pairs, 1):
+        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken, teacher))
+        if progress is not None:
+            progress(done, len(pairs))
+    if not learned:
+        return ()
+    groups = [views.except_taught(seen) for _, seen in learned]
+    new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
+    named = {one.lesson.id: seen for one, seen in learned}
+    found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views, named))
+    for (one, _), (new, kept) in zip(learned, groups, strict=True):
+        found.append(replace(one, seen=tuple(left[: len(new)]), kept_names=kept))
+        del left[: len(new)]
+    return tuple(found)
+
+
+def _lesson(
+    script: Script | str | Path,
+    scene: Scene | str | Path | Mapping[str, Any],
+    knowledge: KnowledgeStore,
+    engine: str,
+    time_limit: float,
+    taken: set[str],
+    teacher: str,
+) -> tuple[Learned, list[View]]:
+    """Return the lesson that a script and a scene are, not kept yet, and its views; put its id among those taken."""
+    from deixis.learning.lesson import Occasion, layout_name, lesson_of
+    from deixis.ontology.lessons.types import next_lesson_id
+
+    script, scene = as_script(script, knowledge.ontology), as_scene(scene)
+    request = GroundingRequest(script, scene, engine, time_limit=time_limit, meaning=knowledge.meaning())
+    conflict = request.conflict
+    if conflict is not None:
+        lines = ", ".join(str(fact.source) for fact in conflict.facts)
+        raise InconsistencyError(f"the script contradicts itself, nothing was learned: {conflict.reason} ({lines})")
+    started = datetime.now(UTC)
+    found = answer(request)
+    if not found.object_matches:
+        where = f"the script {script.file} names was found in the scene {scene.file}"
+        raise NothingFoundError(f"nothing that {where}, so nothing was learned")
+    knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
+    lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
+    taken.add(lesson_id)
+    lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION, teacher))
+    return Learned(lesson, found), views_of_matches(scene, lesson.matches)

@@ -1,0 +1,1 @@
+"""Workflows on layouts: read, lint, infer, lay an example table."""

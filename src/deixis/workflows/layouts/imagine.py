@@ -1,0 +1,318 @@
+"""Lay example tables that satisfy a script, or explain why there is no such table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.answers import Answer, count
+from deixis.deadline import Deadline
+from deixis.grammar.script import Script
+from deixis.ontology.facts import Fact
+from deixis.ontology.graph import RelationGraph
+from deixis.ontology.kinds import Kind, Kinds, with_article
+from deixis.ontology.sizes import SizeRange
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
+from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims
+from deixis.reasoning.entailment.conflict import find_conflict
+from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.entailment.realisation.demands import is_firm
+from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.workflows.layouts.arrange import Arrangement, arrange
+
+TIME_LIMIT = 30.0
+MAX_ATTEMPTS = 5
+"""Maximum number of attempts to find a table that differs from those before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """An object of a script, the kind it is taken for (None: not known), and how large such things usually are."""
+
+    name: str
+    kind: Kind | None
+    size: SizeRange
+
+    def __str__(self) -> str:
+        return f"{self.name}, {'of unknown kind' if self.kind is None else with_article(self.kind.label)}: {self.size}"
+
+
+@dataclass(frozen=True, slots=True)
+class Waived:
+    """A fact that need not hold and does not, and what excludes it: facts, and things of their usual sizes."""
+
+    fact: Fact
+    because: tuple[Fact, ...]
+    sizes: tuple[Sized, ...]
+
+
+@dataclass(frozen=True)
+class ImaginedTable:
+    """An example table. ``holds`` are the facts that it satisfies; ``overlapping`` are pairs of names.
+
+    ``not_shown`` are facts of graded words such as *near* that no place was found for; ``claims`` are outcomes of the
+    script's claims.
+    """
+
+    scene: Scene
+    objects: tuple[Sized, ...]
+    holds: tuple[Fact, ...]
+    waived: tuple[Waived, ...]
+    overlapping: tuple[tuple[str, str], ...]
+    named_otherwise: tuple[Fact, ...]
+    not_shown: tuple[Fact, ...]
+    finished: bool
+    claims: tuple[ClaimOutcome, ...] = ()
+
+
+@dataclass(frozen=True)
+class NoTable:
+    """Firm facts that no table satisfies; with ``sizes``, none on which these things have their usual sizes.
+
+    ``minimal`` where without any one of them there is such a table. ``reason``: in words, where they are few.
+    """
+
+    facts: tuple[Fact, ...]
+    sizes: tuple[Sized, ...]
+    minimal: bool
+    reason: str | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Imagination(Answer):
+    """Example tables of a script, or why it has no table; neither where the time limit was reached before."""
+
+    script: Script
+    tables: tuple[ImaginedTable, ...] = ()
+    none: NoTable | None = None
+
+    def summary(self) -> str:
+        """Return the number of tables, or the verdict without one."""
+        if self.tables:
+            return f"of {self.script.file}: {count(len(self.tables), 'example table')}"
+        return f"of {self.script.file}: {'no table satisfies it' if self.none else 'undecided within the time limit'}"
+
+    @property
+    def decided(self) -> bool:
+        """True if a table was found, or proved impossible."""
+        return bool(self.tables) or self.none is not None
+
+
+def imagine(
+    script: Script, *, any_size: bool = False, seed: int = 0, count: int = 1, time_limit: float = TIME_LIMIT
+) -> Imagination:
+    """Lay example tables that satisfy every firm fact of a script in its stated reading, and the others where possible.
+
+    The first table of seed 0 is the plain one, with typical sizes; all others are drawn.
+
+    Parameters
+    ----------
+    script
+        The script.
+    any_size
+        True to allow whatever sizes it takes, not only those usual for the kinds.
+    seed
+        Seed of the random numbers.
+    count
+        Number of tables.
+    time_limit
+        Seconds for each table.
+
+    Returns
+    -------
+    Imagination
+        The tables with the facts that each gives up, or the minimal set of facts and sizes that allows no table.
+
+    Raises
+    ------
+    SettingError
+        If a setting is out of range.
+
+    Examples
+    --------
+    >>> from deixis.grammar.parser import parse_script
+    >>> found = imagine(parse_script("fork left of plate; knife right of plate"))
+    >>> [thing.label for thing in found.tables[0].scene.objects]
+    ['fork', 'plate', 'knife']
+    >>> str(imagine(parse_script("dinner_plate on teaspoon")).none.sizes[1])
+    'teaspoon, a teaspoon: 11 to 16 cm long and 2.2 to 3.6 cm wide'
+    """
+    if count < 1 or seed < 0 or not time_limit >= 0:
+        raise SettingError(
+            f"count is 1 or more, seed and time limit are 0 or more, not {count}, {seed} and {time_limit:g}"
+        )
+    graph = _with_claims(script).affirming()
+    objects = sized_objects(script, graph)
+    tables: list[ImaginedTable] = []
+    for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):
+        if isinstance(found, Impossible):
+            return Imagination(script, none=_no_table(graph, objects, found))
+        if isinstance(found, Picture):
+            tables.append(_table(script, graph, objects, found, np.random.default_rng([seed, len(tables)]), time_limit))
+    return Imagination(script, tuple(tables))
+
+
+def _pictures(
+    graph: RelationGraph,
+    objects: Sequence[Sized],
+    any_size: bool,
+    seed: int,
+    count: int,
+    time_limit: float,
+    kinds: Kinds,
+) -> Iterator[Picture | Impossible | Undecided]:
+    """Yield different pictures, at most ``count``, or the reason why there is no further one."""
+    sizes, lying = [thing.size for thing in objects], lying_cutlery(graph, objects, kinds)
+    seen: set[bytes] = set()
+    for number in range(count):
+        for attempt in range(MAX_ATTEMPTS):
+            plain = seed == number == attempt == 0
+            rng = None if plain else np.random.default_rng([seed, number, attempt])
+            found = realise(graph, sizes, lying=lying, any_size=any_size, deadline=Deadline.after(time_limit), rng=rng)
+            if not isinstance(found, Picture):
+                yield found
+                return
+            if found.boxes.tobytes() not in seen:
+                seen.add(found.boxes.tobytes())
+                yield found
+                break
+
+
+def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
+    """Return every object with its kind, declared or said by its name, and its usual size.
+
+    Parameters
+    ----------
+    script
+        The script.
+    graph
+        Its relation graph.
+
+    Returns
+    -------
+    tuple of Sized
+        Objects in the order of the graph, each with the kind that is declared or that its name says.
+    """
+    kinds = script.ontology.kinds
+    found = [kinds[iri] if iri else None for iri in graph.kinds or (None,) * len(graph.nodes)]
+    sizes = [script.ontology.sizes.of(kind.iri if kind else None) for kind in found]
+    return tuple(Sized(*entry) for entry in zip(graph.nodes, found, sizes, strict=True))
+
+
+def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
+    """Return which things rather lie across: cutlery that is said to lie above something, as for dessert.
+
+    Parameters
+    ----------
+    graph
+        The relation graph of the script.
+    objects
+        Its objects with their kinds.
+    kinds
+        The known kinds.
+
+    Returns
+    -------
+    list of bool
+        True for each object that lies across.
+    """
+    cutlery = kinds.of_word("cutlery")
+    above = {fact.subject for fact in graph.facts() if fact.plain and fact.relations[0].word == "top"}
+    return [
+        thing.name in above and thing.kind is not None and cutlery is not None and kinds.is_a(thing.kind, cutlery)
+        for thing in objects
+    ]
+
+
+def _with_claims(script: Script) -> RelationGraph:
+    """Return the graph of a script, with the facts that its claims imply after the stated ones."""
+    graph = script.graph()
+    found = facts_of_claims(script.claims, graph.nodes, graph.vocabulary)
+    found = tuple(entry for entry in found if not entry.fact.relations[0].by_model)
+    return with_facts_of_claims(graph, found) if found else graph
+
+
+def _table(
+    script: Script,
+    graph: RelationGraph,
+    objects: tuple[Sized, ...],
+    picture: Picture,
+    rng: np.random.Generator,
+    time_limit: float,
+) -> ImaginedTable:
+    stated = range(len(script.facts))
+    given_up = {entry.edge for entry in picture.given_up}
+    graded = {edge for edge in range(len(graph)) if any(r.by_model for r in graph.fact(edge).relations)} - given_up
+    claims: tuple[ClaimOutcome, ...] = ()
+    if graded or script.claims:
+        kept = tuple(edge for edge in range(len(graph)) if edge not in given_up | graded)
+        task = Arrangement(graph, script.claims, kept, tuple(sorted(graded)))
+        if task.firm(picture.boxes):
+            arranged = arrange(task, picture.boxes, rng, Deadline.after(time_limit))
+            picture = replace(picture, boxes=arranged)
+        upper = {graph.nodes[pair[0]] for pair in task.together}
+        claims = tuple(_on_table(entry, upper) for entry in task.outcomes(picture.boxes))
+    things = tuple(
+        PerceivedObject(f"o{number}", tuple(box[0]), tuple(box[1]), label=name)
+        for number, (name, box) in enumerate(zip(graph.nodes, picture.boxes.tolist(), strict=True), start=1)
+    )
+    not_shown = _not_shown(graph, picture.boxes) - given_up
+    return ImaginedTable(
+        scene=Scene(things, viewpoint=script.viewpoint or "chair"),
+        objects=objects,
+        holds=tuple(graph.fact(edge) for edge in stated if edge not in given_up | not_shown),
+        waived=tuple(
+            Waived(
+                fact=graph.fact(entry.edge),
+                because=tuple(graph.fact(edge) for edge in entry.because),
+                sizes=tuple(objects[i] for i in entry.sizes),
+            )
+            for entry in picture.given_up
+            if entry.edge in stated
+        ),
+        overlapping=tuple((graph.nodes[a], graph.nodes[b]) for a, b in picture.overlapping),
+        named_otherwise=tuple(graph.fact(edge) for edge in picture.named_otherwise if edge in stated),
+        not_shown=tuple(graph.fact(edge) for edge in sorted(not_shown) if edge in stated),
+        finished=picture.finished,
+        claims=claims,
+    )
+
+
+def _on_table(entry: ClaimOutcome, upper: set[str]) -> ClaimOutcome:
+    """Return a claim that something stands on the surface as satisfied, except of what lies on or in another thing.
+
+    The table that is imagined is the surface, and a plan has no heights to measure.
+    """
+    claim = entry.claim
+    on_surface = claim.relation == "on" and not claim.arguments and claim.positive
+    if not on_surface or upper & set(claim.subjects):
+        return entry
+    return replace(entry, verdict=ClaimVerdict.SATISFIED, degree=1.0, measured="it stands on the table")
+
+
+def _not_shown(graph: RelationGraph, boxes: NDArray[np.float64]) -> set[int]:
+    """Return the edges of graded words that the model of the word denies of the boxes (n, 2, 2)."""
+    from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
+
+    if not any(relation.by_model for fact in graph.facts() for relation in fact.relations):
+        return set()
+    evidence = no_unary_evidence(graph, scene_relations(graph.nodes, boxes, graph.vocabulary))
+    degrees = evidence.degrees(np.arange(len(graph.nodes)))
+    return {int(evidence.facts[place]) for place in evidence.modelled if degrees[place] == 0.0}
+
+
+def _no_table(graph: RelationGraph, objects: tuple[Sized, ...], found: Impossible) -> NoTable:
+    """Return why there is no table; a contradiction in the words of inference where it sees one that is as small."""
+    facts = tuple(graph.fact(edge) for edge in found.edges)
+    if found.sizes:
+        return NoTable(facts, tuple(objects[i] for i in found.sizes), found.minimal)
+    conflict = find_conflict(Implications(graph))
+    if conflict is not None and len(conflict.facts) <= len(facts) and all(map(is_firm, conflict.facts)):
+        return NoTable(conflict.facts, (), found.minimal, conflict.reason)
+    return NoTable(facts, (), found.minimal)

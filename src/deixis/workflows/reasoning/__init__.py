@@ -1,0 +1,1 @@
+"""Workflows on ontologies, constraint networks and activities."""

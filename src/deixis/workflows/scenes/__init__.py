@@ -1,0 +1,1 @@
+"""Workflows on scenes: perceive, recognise, teach, track, point, simulate."""

@@ -1,0 +1,71 @@
+"""Adjectives that a memory keeps, and forgets with their sentences."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from commands import deixis as run
+
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.perception.scene import PerceivedObject, Scene
+from deixis.reasoning.errors import DescriptionError
+from deixis.workflows.descriptions.remembered_attributes import (
+    forget_sentence,
+    remember_sentence,
+    remembered_attributes,
+)
+
+DARK, LIGHT = (32, 48, 128), (208, 216, 160)
+
+
+def table(blick: int) -> Scene:
+    return Scene(
+        tuple(
+            PerceivedObject(f"o{i}", (0.2 * i, 0, 0), (0.2 * i + 0.1, 0.1, 0.1), colour=DARK if i == blick else LIGHT)
+            for i in range(3)
+        )
+    )
+
+
+def test_a_forgotten_sentence_was_never_said() -> None:
+    with Blackboard.transient() as board:
+        remember_sentence(board, "the blick one", table(0), "o0")
+        before = remembered_attributes(board)["blick"].shares
+        second = remember_sentence(board, "the blick one", table(2), "o2")
+        assert remembered_attributes(board)["blick"].shares != before
+        forget_sentence(board, second)
+        assert remembered_attributes(board)["blick"].shares == before
+
+
+def test_a_sentence_counts_once() -> None:
+    with Blackboard.transient() as board:
+        first = remember_sentence(board, "the blick one", table(0), "o0")
+        assert remember_sentence(board, "the blick one", table(0), "o0") == first
+        assert len(remembered_attributes(board)["blick"].examples) == 3
+
+
+def test_sentences_that_teach_nothing_are_errors() -> None:
+    with Blackboard.transient() as board:
+        with pytest.raises(DescriptionError, match="no adjective"):
+            remember_sentence(board, "the red cup", table(0), "o0")
+        with pytest.raises(DescriptionError, match="no sentence 'x'"):
+            forget_sentence(board, "x")
+
+
+def test_the_command_teaches_and_uses_a_memory(tmp_path: Path) -> None:
+    for place in range(3):
+        things = [
+            {"id": f"o{i}", "min": [0.2 * i, 0, 0], "max": [0.2 * i + 0.1, 0.1, 0.1], "colour": colour}
+            for i in range(3)
+            for colour in ["#203080" if i == place else "#d0d8a0"]
+        ]
+        (tmp_path / f"t{place}.scene.json").write_text(json.dumps({"objects": things}), encoding="utf-8")
+    for place in (0, 1):
+        said = "the blick one", tmp_path / f"t{place}.scene.json", "--memory", tmp_path / "m", "--picked", f"o{place}"
+        code, out, err = run("refer", *said)
+        assert (code, err) == (0, "") and out.startswith("Learned from sentence-")
+    code, out, _ = run("refer", "the blick one", tmp_path / "t2.scene.json", "--memory", tmp_path / "m")
+    assert out.startswith("o2 ")
+    assert run("refer", "the blick one", tmp_path / "t2.scene.json", "--picked", "o2")[0] == 2

@@ -1,0 +1,176 @@
+"""Answer questions about then and now: a told history, and random ones against their states at each second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import datetime, timedelta
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Add
+from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.workflows.knowledge.recall import Recall, moment_of, recall
+
+NOW = datetime.now().astimezone().replace(hour=12, minute=30, second=0, microsecond=0)
+SEEN, ADA, BOB = (
+    Source(Origin.SEEN, "tracker"),
+    Source(Origin.SHOWN, "Ada", "gesture 1"),
+    Source(Origin.SHOWN, "Bob"),
+)
+
+
+@pytest.fixture(scope="module")
+def board() -> Iterator[Blackboard]:
+    """An hour, from 11:30 to 12:30: a fork is moved onto a plate, a cup comes and goes."""
+    with Blackboard.transient(origin=NOW - timedelta(hours=1)) as board:
+        told = [
+            (("t1", "isA", "dinner_fork"), 0, None, ADA, 1.0),
+            (("t2", "isA", "plate"), 10, None, SEEN, 0.9),
+            (("t3", "isA", "cup"), 20, None, BOB, 1.0),
+            (("t1", "left", "t2"), 10, 600, SEEN, 1.0),
+            (("t1", "on", "t2"), 600, None, SEEN, 0.97),
+            (("t2", "on", "table"), 10, None, SEEN, 1.0),
+            (("t3", "right", "t2"), 20, Bounds(2000, 2010), SEEN, 1.0),
+            (("Ada", "said", "put the fork on the plate"), 590, 591, Source(Origin.SAID, "Ada", "sentence 1"), 1.0),
+        ]
+        for number, (said, start, finish, source, certainty) in enumerate(told):
+            fluent = episodic(f"f{number}", said, start=start, finish=finish, source=source, certainty=certainty)
+            board.add(fluent, by="test")
+        yield board
+
+
+def ask(board: Blackboard, question: str) -> Recall:
+    return recall(question, board, at=3600.0)
+
+
+FORK_NOW = "dinner fork is on the plate since 11:40:00 (seen, certainty 0.97)."
+FORK_THEN = "dinner fork was left of the plate from 11:30:10 to 11:40:00 (seen)."
+CUP_THEN = "The cup was right of the plate from 11:30:20 to between 12:03:20 and 12:03:30 (seen)."
+NO_SPOON = "Not known: nothing on the blackboard is called 'spoon'; it has: cup, dinner fork, plate, table."
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        ("where is the fork?", f"The {FORK_NOW}"),
+        ("where was the fork before?", f"The {FORK_THEN}"),
+        ("where was the fork at 11:35?", f"The {FORK_THEN}"),
+        ("where was t1 at 11:35 am?", f"The {FORK_THEN}"),
+        ("what was taken away since noon?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
+        ("what was taken away before noon?", "Not known: nothing is recorded as taken away for that time."),
+        ("which one did I show you first?", "Ada showed the dinner fork at 11:30:00."),
+        ("what was the last thing Bob showed you?", "Bob showed the cup at 11:30:20."),
+        ("what is on the plate now?", f"The {FORK_NOW}"),
+        ("when did the cup go?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
+        ("when did the cup come?", "The cup came at 11:30:20 (seen)."),
+        ("when was the fork moved?", "The dinner fork was moved at 11:40:00 (seen, certainty 0.97)."),
+        ("has the fork been moved since noon?", f"No: the {FORK_NOW}"),
+        ("was the cup taken away?", "Yes: the cup went between 12:03:20 and 12:03:30 (seen)."),
+        ("which of the things was taken away last?", "The cup went between 12:03:20 and 12:03:30 (seen)."),
+        ("where did I put the fork?", f"The {FORK_NOW}"),
+        ("when did you last see the cup?", CUP_THEN),
+        ("what have I shown you last?", "Bob showed the cup at 11:30:20."),
+        ("where is the cup?", "Not known: the cup is gone since 12:03:30."),
+        ("where was the cup before?", CUP_THEN),
+        ("where is the spoon?", NO_SPOON),
+        ("what did Ada say?", "Ada said at 11:39:50: put the fork on the plate."),
+        ("what did Eve say?", "Not known: nothing is recorded that 'eve' said or showed."),
+        ("who showed you the cup?", "Bob showed the cup at 11:30:20."),
+        ("was the fork left of the plate 55 minutes ago?", f"Yes: the {FORK_THEN}"),
+        ("is the fork left of the plate?", f"No: the {FORK_NOW}"),
+        ("how many things were on the table when the cup was taken away?", "1: the plate."),
+        ("where was the fork before the cup came?", f"The {FORK_THEN}"),
+        ("since when is the cutlery on the plate?", f"The {FORK_NOW}"),
+    ],
+)  # fmt: skip
+def test_questions_are_answered_with_times_and_sources(board: Blackboard, question: str, answer: str) -> None:
+    found = ask(board, question)
+    assert found.answer == answer
+    assert found.known == (not found.answer.startswith("Not known"))
+    assert (found.reason is None) == found.known
+
+
+def test_a_speaker_can_be_named(board: Blackboard) -> None:
+    assert recall("what did I show you first?", board, at=3600.0, speaker="bob").answer.startswith("Bob showed the cup")
+
+
+def test_an_empty_blackboard_knows_nothing() -> None:
+    with Blackboard.transient() as board:
+        assert recall("where is the fork?", board).reason == (
+            "nothing on the blackboard is called 'fork', which is empty"
+        )
+        assert recall("what is there?", board).answer == "Not known: nothing is recorded as there."
+
+
+def test_a_time_without_zone_is_local() -> None:
+    assert moment_of("2026-11-23T12:30").utcoffset() is not None
+    with pytest.raises(SettingError, match="a time must be as in"):
+        moment_of("noonish")
+
+
+PLACES = [None, ("on", "table"), ("left", "plate"), ("on", "plate")]
+LENGTH = 12
+States = dict[str, list[tuple[str, str] | None]]
+
+
+@st.composite
+def histories(draw: st.DrawFn) -> States:
+    """Draw where each of two things is in each second; they may be absent."""
+    seconds = st.lists(st.sampled_from(PLACES), min_size=LENGTH, max_size=LENGTH)
+    return {name: draw(seconds) for name in ("fork", "cup")}
+
+
+def write(states: States, board: Blackboard) -> None:
+    number = 0
+    for name, places in states.items():
+        board.add(episodic(f"i{name}", (name, "isA", name), start=0.0, source=SEEN), by="test")
+        for second, place in enumerate(places):
+            if place is None or (second and places[second - 1] == place):
+                continue
+            end = next((later for later in range(second, LENGTH) if places[later] != place), None)
+            fluent = episodic(f"f{number}", (name, *place), start=float(second), finish=end, source=SEEN)
+            board.write(Add(fluent), by="test")
+            number += 1
+
+
+def facts(found: Recall) -> set[tuple[str, str, str | None]]:
+    said = (fact.fluent.statement for fact in found.facts)
+    return {(each.subject, each.predicate, each.object) for each in said}
+
+
+def gone(places: list[tuple[str, str] | None]) -> list[int]:
+    """Return the seconds in which a thing was taken away."""
+    return [second for second in range(1, LENGTH) if places[second] is None and places[second - 1] is not None]
+
+
+@settings(max_examples=8, deadline=None)
+@given(histories(), st.integers(0, LENGTH - 1))
+def test_answers_about_random_histories_are_their_states(states: States, second: int) -> None:
+    now = LENGTH - 0.5
+    with Blackboard.transient() as board:
+        write(states, board)
+        ago = f"{now - second - 0.5:g} seconds ago"
+        for name, places in states.items():
+            then, last = places[second], places[-1]
+            at_then = recall(f"where was the {name} {ago}?", board, at=now)
+            assert facts(at_then) == (set() if then is None else {(name, *then)})
+            at_now = recall(f"where is the {name}?", board, at=now)
+            assert facts(at_now) == (set() if last is None else {(name, *last)})
+            ended = [at for at in range(1, LENGTH) if places[at] != places[at - 1] and places[at - 1] is not None]
+            before = recall(f"where was the {name} before?", board, at=now)
+            assert facts(before) == ({(name, *(places[ended[-1] - 1] or ()))} if ended else set())
+            went = recall(f"when did the {name} go?", board, at=now)
+            assert [fact.fluent.finish.upper for fact in went.facts] == gone(places)
+        window = f"in the last {now - second:g} seconds"
+        taken = recall(f"what was taken away {window}?", board, at=now)
+        expected = {name for name, places in states.items() if any(at >= second for at in gone(places))}
+        assert {fact.fluent.statement.subject for fact in taken.facts} == expected
+        on = recall(f"what was on the plate {ago}?", board, at=now)
+        assert facts(on) == {
+            (name, *place) for name, places in states.items() if (place := places[second]) == ("on", "plate")
+        }
