@@ -637,18 +637,20 @@ def _beside(member: NounPhrase, several: NounPhrase) -> NounPhrase:
 def _with_own_parts(parts: tuple[Any, ...]) -> tuple[Any, ...]:
     """Join *its nozzle turned towards the viewer* to the thing before it, of which it is a part."""
     kept: list[Any] = [parts[0]]
+    owner_at = 0  # in `kept`: modifiers may stand between the thing and its part
     for joint, part in zip(parts[1::2], parts[2::2], strict=True):
         phrase = part.phrase if isinstance(part, Noun) else None
-        before = kept[-1]
+        before = kept[owner_at]
         said = phrase.predicates if phrase is not None else ()
         aims = bool(said) and all(p.relation in ("facing", "pointing", "state") for p in said)
         owner = None if phrase is None or phrase.owner is None else phrase.owner.pronoun
         if phrase is not None and aims and owner == "it" and before.phrase.head:
             bare = replace(phrase, predicates=())
             said = tuple(replace(p, subject_part=bare) for p in said)
-            kept[-1] = Noun(_restricted(before.phrase, said), (*before.extra, *part.extra))
+            kept[owner_at] = Noun(_restricted(before.phrase, said), (*before.extra, *part.extra))
         else:
             kept += [joint, part]
+            owner_at = len(kept) - 1 if phrase is not None else owner_at
     return tuple(kept)
 
 

@@ -258,7 +258,7 @@ def _deny_contrasts(words: list[Word]) -> None:
             words[i].norm, words[i].end = "not", words[i + 1].end
             del words[i + 1]
     for i in range(len(words) - 2, -1, -1):
-        for length in (4, 3, 2, 1):
+        for length in range(min(4, len(words) - i), 0, -1):
             plain = _DENIALS.get(tuple(word.norm for word in words[i : i + length]))
             if plain is not None and (i + length == len(words) or words[i + length].norm != "than"):
                 first, *others = plain.split()
@@ -428,8 +428,9 @@ def _pieces(norm: str) -> Iterator[tuple[str, bool]]:
         return
     if norm.endswith("n't"):
         stem = {"ca": "can", "wo": "will", "sha": "shall"}.get(norm[:-3], norm[:-3])
-        yield stem, True
-        yield "not", False
+        if stem:
+            yield stem, True
+        yield "not", not stem
         return
     for clitic in _CLITICS:
         if norm.endswith(clitic):

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 from episodic_fluents import SEEN
+from timing import BUSY_SECONDS, until
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add
@@ -26,14 +25,6 @@ def say(board: Blackboard, *words: str, predicate: str = "said") -> None:
         board.write(Add(episodic(board.new_id("s"), ("anna", predicate, word), start=0.0, source=SEEN)), by="anna")
 
 
-def until(condition: Callable[[], bool], seconds: float = 20.0) -> bool:
-    """Wait until a condition holds."""
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        time.sleep(0.01)
-    return condition()
-
-
 def heard(board: Blackboard) -> list[str | None]:
     """Return what the echo heard, in the order of the log."""
     found = board.changes(pattern=Pattern(predicate="heard"))
@@ -48,7 +39,7 @@ def test_modules_get_changes_in_order_and_keep_to_declarations(tmp_path: Path, p
         with Runtime(board, [ECHO, TRESPASSER], processes, lines.append) as runtime:
             say(board, *words)
             assert until(lambda: len(heard(board)) == 6 and len(board.now(Pattern("trespasser"))) == 2), lines
-            assert runtime.wait(board.sequence, 10)
+            assert runtime.wait(board.sequence, BUSY_SECONDS)
             assert set(runtime.positions().values()) == {board.sequence}
         assert heard(board) == words
         assert [each.statement.object for each in board.now(Pattern("trespasser"))] == [

@@ -1,12 +1,12 @@
 """Streams of clouds: folders, recordings, and live sources whose late frames are dropped."""
 
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from timing import BUSY_SECONDS
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
@@ -53,11 +53,10 @@ def test_damaged_file_gives_a_frame_with_its_problem(tmp_path: Path) -> None:
 
 def test_growing_folder_yields_files_that_come_later(tmp_path: Path) -> None:
     write_cloud(tmp_path / "a.pcd", cloud(1))
-    later = threading.Timer(0.3, write_cloud, (tmp_path / "b.pcd", cloud(2)))
-    later.start()
-    found = list(FolderSource(tmp_path, grows=True, patience=0.8).frames())
-    later.join()
-    assert [float(frame.cloud.points[0, 0]) for frame in found] == [1.0, 2.0]
+    frames = FolderSource(tmp_path, grows=True, patience=0.8).frames()
+    first = next(frames)
+    write_cloud(tmp_path / "b.pcd", cloud(2))
+    assert [float(frame.cloud.points[0, 0]) for frame in (first, *frames)] == [1.0, 2.0]
 
 
 @pytest.mark.parametrize("text", ["file,seconds\na.pcd,soon\n", "file,seconds\n../a.pcd,1\n"])
@@ -69,15 +68,18 @@ def test_wrong_times_name_file_and_line(tmp_path: Path, text: str) -> None:
 
 
 def test_late_frames_are_dropped_and_counted() -> None:
+    sent = threading.Event()
+
     class Camera:
         def frames(self) -> Iterator[Frame]:
             yield from frames(20)
+            sent.set()
 
     latest = LatestFrames(Camera(), waiting=2)
     numbers = []
     for frame in latest.frames():
         numbers.append(frame.number)
-        time.sleep(0.02)
+        assert sent.wait(BUSY_SECONDS)
     assert numbers == sorted(numbers) and numbers[-1] == 19
     assert len(numbers) + latest.dropped == 20 and latest.dropped > 0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from timing import BUSY_SECONDS
 
 from deixis.grammar.parser import parse_script
 from deixis.grammar.utterances import Utterance
@@ -24,7 +25,7 @@ def heard(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str], st
     lines: list[str] = []
     settings = LiveSettings("simulator", str(folder / "pair.layout"), seed=2, rate=2.0)
     with live_robot(folder / "memory", settings, lines.append) as robot:
-        assert robot.wait(120.0)
+        assert robot.wait(10 * BUSY_SECONDS)
         return folder / "memory", lines, robot.layout(), [thing.name for thing in robot.things()]
 
 
@@ -60,7 +61,7 @@ def test_folder_without_clouds_ends_the_story(tmp_path: Path) -> None:
     (tmp_path / "clouds").mkdir()
     lines: list[str] = []
     with live_robot(tmp_path / "memory", LiveSettings(str(tmp_path / "clouds")), lines.append) as robot:
-        assert robot.wait(30.0)
+        assert robot.wait(BUSY_SECONDS)
     assert any("no clouds in this folder" in line for line in lines)
     with pytest.raises(Exception, match="no such folder"):
         recorded_story(tmp_path / "nothing")

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from episodic_fluents import SEEN, on
+from timing import BUSY_SECONDS
 
 from deixis.grammar.formats.fluents import parse_fluents
 from deixis.grammar.script import Script
@@ -143,5 +144,5 @@ def test_finished_experience_is_consolidated_in_the_background(board: Blackboard
     board.add(episodic("p1", ("t1", "at", "[0, 0, 0, 0.2, 0.2, 0.1]"), start=1.0, source=SEEN), by="test")
     board.add(episodic("s1", ("anna", "said", "fork right of plate"), start=2.0, source=SEEN), by="test")
     finish_recording(board, "lunch", 3.0, by="test")
-    assert task.wait(board.sequence, 10)
+    assert task.wait(board.sequence, BUSY_SECONDS)
     assert [result.lessons for result in results] == [{"lunch": "lesson-1"}]

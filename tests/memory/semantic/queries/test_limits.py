@@ -17,6 +17,7 @@ import pytest
 import rdflib.plugins.sparql
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from timing import BUSY_SECONDS, processor_time_below, until
 
 import deixis
 from deixis.memory.errors import QueryError, QueryMemoryError, QueryTimeoutError
@@ -63,7 +64,7 @@ def test_the_time_limit_ends_a_query(filled: SemanticMemory, query: str) -> None
     start = time.monotonic()
     with pytest.raises(QueryTimeoutError, match=r"within the time limit of 0\.2 s"):
         filled.query(query, time_limit=0.2)
-    assert time.monotonic() - start < 5
+    assert time.monotonic() - start < BUSY_SECONDS
     assert len(filled.query(SMALL).rows) == 1
 
 
@@ -145,11 +146,10 @@ LONG = {
 
 @pytest.mark.parametrize("hostile", LONG.values(), ids=LONG)
 def test_long_queries_are_looked_at_in_linear_time(hostile: Callable[[int], str]) -> None:
-    start = time.process_time()
-    for length in (4000, 100_000):
-        with contextlib.suppress(QueryError):
-            check_query(hostile(length))
-    assert time.process_time() - start < 5
+    with processor_time_below(5):
+        for length in (4000, 100_000):
+            with contextlib.suppress(QueryError):
+                check_query(hostile(length))
 
 
 def test_a_query_may_hold_many_values(filled: SemanticMemory) -> None:
@@ -188,14 +188,14 @@ PIECES = [
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(pieces=st.lists(st.tuples(st.sampled_from(PIECES), st.integers(1, 150)), max_size=12))
 def test_whatever_is_asked_is_answered_or_refused(filled: SemanticMemory, pieces: list[tuple[str, int]]) -> None:
-    start = time.monotonic()
-    told = ""
+    told, start = "", time.monotonic()
     try:
-        filled.query("ASK { " + "".join(piece * times for piece, times in pieces) + " }", 0.3, 256 * MIB)
+        with processor_time_below(6):
+            filled.query("ASK { " + "".join(piece * times for piece, times in pieces) + " }", 0.3, 256 * MIB)
     except QueryError as error:
         told = str(error)
     assert "the process that ran it" not in told and "too deeply, or too long" not in told
-    assert time.monotonic() - start < 6
+    assert time.monotonic() - start < BUSY_SECONDS
 
 
 iris = st.sampled_from(["urn:a", "urn:ü", "https://w3id.org/deixis/onto#Fork"]).map(ox.NamedNode)
@@ -279,8 +279,10 @@ def test_waiting_for_another_query_counts(filled: SemanticMemory) -> None:
             filled.query(COUNT_PRODUCT, 1.0)
 
     slow = threading.Thread(target=ask_endlessly)
+    filled.query(SMALL)
+    assert filled._queries is not None
     slow.start()
-    time.sleep(0.2)
+    assert until(filled._queries._turn.locked)
     with pytest.raises(QueryTimeoutError):
         filled.query(SMALL, time_limit=0.1)
     slow.join()
@@ -321,7 +323,7 @@ def test_the_process_ends_with_its_owner(tmp_path: Path, number: signal.Signals)
         time.sleep(0.3)  # in the middle of the query
         assert Path(f"/proc/{process}").exists()
         owner.send_signal(number)
-        owner.wait(timeout=10)
+        owner.wait(timeout=BUSY_SECONDS)
     assert gone(process)
 
 
