@@ -21,6 +21,7 @@ from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.simulator.camera import Camera, chair_camera
+from deixis.perception.simulator.camera_paths import CameraPath
 from deixis.perception.simulator.depth import DepthSensor, coloured, measured_look
 from deixis.perception.simulator.hand import SKIN, hand
 from deixis.perception.simulator.laying import (
@@ -202,53 +203,6 @@ class FilmedFrame(Frame):
         )
 
 
-@dataclass(frozen=True)
-class HeadMotion:
-    """Slow movement of a camera on a person's head: sums of sines, whose phases and periods are random.
-
-    Parameters
-    ----------
-    shift
-        Largest movement along each axis, in metres.
-    turn
-        Largest turn about each axis, in radians.
-    periods
-        Shortest and longest period, in seconds.
-    seed
-        Seed of periods and phases.
-    """
-
-    shift: float = 0.05
-    turn: float = np.deg2rad(4.0)
-    periods: tuple[float, float] = (3.0, 9.0)
-    seed: int = 0
-
-    def moved(self, camera: Camera, at: float) -> Camera:
-        """Return the camera as it is at a time.
-
-        Parameters
-        ----------
-        camera
-            Camera in its mean pose.
-        at
-            Time in seconds.
-
-        Returns
-        -------
-        Camera
-            The camera with another pose.
-        """
-        from scipy.spatial.transform import Rotation
-
-        rng = np.random.default_rng(self.seed)
-        periods, phases = rng.uniform(*self.periods, (6, 2)), rng.uniform(0, 2 * np.pi, (6, 2))
-        waves = np.sin(2 * np.pi * at / periods + phases).mean(axis=1)
-        offset = np.eye(4)
-        offset[:3, :3] = Rotation.from_rotvec(self.turn * waves[:3]).as_matrix()
-        offset[:3, 3] = self.shift * waves[3:]
-        return replace(camera, pose=camera.pose @ offset)
-
-
 @dataclass(frozen=True, eq=False)
 class FilmedThing:
     """Thing of a film: its mesh in its own frame, and where it is over time.
@@ -372,7 +326,7 @@ class Film:
         Length of the film.
     camera
         Mean pose of the camera.
-    head
+    path
         Movement of the camera, or None if it stands still.
     """
 
@@ -381,7 +335,7 @@ class Film:
     legs: tuple[HandLeg, ...]
     seconds: float
     camera: Camera
-    head: HeadMotion | None = None
+    path: CameraPath | None = None
 
     @property
     def hand_label(self) -> int:
@@ -467,7 +421,7 @@ class Film:
         rng: np.random.Generator,
         scale: float,
     ) -> FilmedFrame:
-        camera = self.camera if self.head is None else self.head.moved(self.camera, at)
+        camera = self.camera if self.path is None else self.path.moved(self.camera, at)
         camera = replace(camera, lens=camera.lens if scale == 1 else _scaled(camera.lens, scale))
         poses, leg = self.poses(at), self.hand_leg(at)
         still = {0: (self.top.mesh, np.eye(4))}
@@ -501,7 +455,7 @@ def film(
     seed: int = 0,
     arm: float | Sequence[float] = 0.0,
     camera: Camera | None = None,
-    head: HeadMotion | None = None,
+    path: CameraPath | None = None,
     ontology: Ontology | None = None,
 ) -> Film:
     """Return the film of a table on which a hand carries out actions, one after the other.
@@ -519,7 +473,7 @@ def film(
         or one for each.
     camera
         Mean pose of the camera; by default that of a person at the table who sees all that is ever on it.
-    head
+    path
         Movement of the camera, or None for a camera that stands still.
     ontology
         Kinds and their sizes; by default :func:`~deixis.ontology.tbox.default_ontology`.
@@ -551,7 +505,7 @@ def film(
     stage = Stage(things, seed, ontology)
     for action, angle in zip(actions, arms, strict=True):
         stage.carry_out(action, angle)
-    return stage.film(top, camera, head)
+    return stage.film(top, camera, path)
 
 
 def laying_film(
@@ -571,7 +525,7 @@ def laying_film(
         Numbers of the things in the order in which they are brought; a thing that lies on another one must come later.
         By default the order of the table.
     **options
-        ``arm``, ``camera`` and ``head`` of :func:`film`.
+        ``arm``, ``camera`` and ``path`` of :func:`film`.
 
     Returns
     -------
@@ -625,7 +579,7 @@ class Stage:
             pose = self._enter(thing)
             self._things[thing.name].begin(0.0, pose)
 
-    def film(self, top: TableTop | None = None, camera: Camera | None = None, head: HeadMotion | None = None) -> Film:
+    def film(self, top: TableTop | None = None, camera: Camera | None = None, path: CameraPath | None = None) -> Film:
         """Return the film of what was carried out.
 
         Parameters
@@ -634,7 +588,7 @@ class Stage:
             Top of the table; by default it extends a little beyond all places where things were.
         camera
             Mean pose of the camera; by default that of a person at the table who sees all of these places.
-        head
+        path
             Movement of the camera, or None for a camera that stands still.
 
         Returns
@@ -644,7 +598,7 @@ class Stage:
         """
         top = top or top_under(self._ever)
         camera = camera or chair_camera(LaidTable(top, tuple(self._ever)))
-        return Film(top, tuple(self._things.values()), tuple(self._legs), self.at, camera, head)
+        return Film(top, tuple(self._things.values()), tuple(self._legs), self.at, camera, path)
 
     def carry_out(self, action: Action, arm: float = 0.0) -> None:
         """Carry out one action, which begins now.

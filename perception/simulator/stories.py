@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.perception.simulator.camera_paths import CameraPath
 from deixis.perception.simulator.laying import (
     LaidThing,
     Placement,
@@ -17,7 +18,7 @@ from deixis.perception.simulator.laying import (
     plan_box,
     top_under,
 )
-from deixis.perception.simulator.motion import Action, Bring, Film, HeadMotion, Move, PassOver, Rest, Stage, TakeAway
+from deixis.perception.simulator.motion import Action, Bring, Film, Move, PassOver, Rest, Stage, TakeAway
 from deixis.perception.simulator.scatter import KINDS, scattered
 from deixis.perception.simulator.tableware import drawn_plan, kind_named
 from deixis.perception.tracking.frame import Frame
@@ -41,7 +42,7 @@ def random_film(
     most: int = 12,
     shares: dict[str, float] | None = None,
     kinds: Sequence[str] = KINDS,
-    head: HeadMotion | None = None,
+    path: CameraPath | None = None,
     sure_pass: bool = False,
     ontology: Ontology | None = None,
 ) -> Film:
@@ -63,7 +64,7 @@ def random_film(
         Probabilities of the actions, by their names in ``ACTIONS``, which is the default.
     kinds
         Words for the kinds of things.
-    head
+    path
         Movement of the camera, or None for a camera that stands still.
     sure_pass
         True for a forearm that hides a thing for two seconds first, in addition to the actions.
@@ -104,7 +105,7 @@ def random_film(
             action, arm = _pass_over(stage, top, rng), 0.0
         stage.carry_out(action, arm)
         stage.carry_out(Rest(pause))
-    return stage.film(top, head=head)
+    return stage.film(top, path=path)
 
 
 def _action(

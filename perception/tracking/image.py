@@ -146,6 +146,23 @@ class TableView:
     back: NDArray[np.float64]
     level: NDArray[np.float32]
 
+    def shows(self, place: NDArray[np.float64]) -> bool:
+        """Return True if a place is within the image.
+
+        Parameters
+        ----------
+        place
+            Place of shape (3,) in the table's frame, in metres.
+
+        Returns
+        -------
+        bool
+            True also if something hides it.
+        """
+        column, row, depth = self.matrix @ place + self.offset
+        rows, columns = self.level.shape
+        return bool(depth > 0 and 0 <= row < rows * depth and 0 <= column < columns * depth)
+
 
 def table_view(optics: Optics, back: NDArray[np.float64], shape: tuple[int, int]) -> TableView:
     """Return the view of a table by a camera.
@@ -167,9 +184,8 @@ def table_view(optics: Optics, back: NDArray[np.float64], shape: tuple[int, int]
     out = np.linalg.inv(back)
     matrix = optics.matrix @ out[:3, :3]
     offset = optics.matrix @ (out[:3, 3] - optics.eye)
-    rows, columns = np.mgrid[: shape[0], : shape[1]]
-    rays = np.stack([columns, rows, np.ones(shape)], axis=-1) @ np.linalg.inv(optics.matrix).T
-    drop = rays @ back[2, :3]
+    across, down, ahead = back[2, :3] @ np.linalg.inv(optics.matrix)
+    drop = across * np.arange(shape[1]) + down * np.arange(shape[0])[:, None] + ahead
     height = float(back[2, :3] @ optics.eye + back[2, 3])
     with np.errstate(divide="ignore", invalid="ignore"):
         level = np.where(drop * height < 0, -height / drop, np.inf)

@@ -11,6 +11,9 @@ measurement, and a pixel without a reference."""
 
 STATES = 6
 
+FOLLOWING = np.float32(0.3)
+"""Share of a new measurement in the last depth of a pixel, under a camera that moves."""
+
 
 @njit(cache=True, nogil=True)
 def depths(points, row, offset):  # type: ignore[no-untyped-def]
@@ -77,20 +80,83 @@ def _state(z, colour, reference, shade, near, square):  # type: ignore[no-untype
 
 
 @njit(cache=True, nogil=True)
-def remembered(state, depth, colour, reference, shade, last, since, at, tolerance, noise, rate):  # type: ignore[no-untyped-def]
-    """Move the reference of unchanged pixels towards what is measured, and note since when each depth is steady."""
+def remembered(  # type: ignore[no-untyped-def]
+    state, depth, colour, reference, shade, offset, last, aside, since, at, tolerance, noise, rate
+):
+    """Move the reference of unchanged pixels towards what is measured, and note since when each depth is steady.
+
+    ``offset`` (r, c, 2) and ``aside`` (r, c, 2) are how far the points of the reference and the last depths lie from
+    the middles of their pixels.
+    """
     rows, columns = depth.shape
     for i in range(rows):
         for j in range(columns):
             z = depth[i, j]
             if z <= 0:
                 continue
-            if state[i, j] == SAME:
+            near = max(tolerance, noise * z * z)
+            if state[i, j] == SAME and abs(z - reference[i, j]) < near:
                 reference[i, j] += rate * (z - reference[i, j])
                 for k in range(3):
                     shade[i, j, k] += rate * (colour[i, j, k] - shade[i, j, k])
-            if abs(z - last[i, j]) > max(tolerance, noise * z * z):
+                offset[i, j, 0] *= 1 - rate
+                offset[i, j, 1] *= 1 - rate
+            if abs(z - last[i, j]) > near:
                 since[i, j], last[i, j] = at, z
+                aside[i, j, 0] = aside[i, j, 1] = 0
+            elif aside[i, j, 0] != 0 or aside[i, j, 1] != 0:
+                last[i, j] += FOLLOWING * (z - last[i, j])
+                aside[i, j, 0] *= 1 - FOLLOWING
+                aside[i, j, 1] *= 1 - FOLLOWING
+
+
+@njit(cache=True, nogil=True)
+def carried(depth, offset, turn, shift, gap):  # type: ignore[no-untyped-def]
+    """Return the pixels (r, c) of one view that other pixels of an earlier view show, with their depths and offsets.
+
+    Each pixel of the earlier view is a point with a depth and an ``offset`` (r, c, 2), in columns and rows, from the
+    middle of the pixel. Of two points in one new pixel, the nearer one is taken. A gap between two pixels of one
+    surface is filled.
+
+    Parameters
+    ----------
+    depth, offset
+        Points of the earlier view; 0 where there is none.
+    turn, shift
+        Change (3, 3) and (3,) of homogeneous pixel coordinates from the earlier view to the new one.
+    gap
+        Difference of depths of two surfaces.
+    """
+    rows, columns = depth.shape
+    source = np.full((rows, columns), -1, np.int32)
+    found = np.zeros((rows, columns), np.float32)
+    aside = np.zeros((rows, columns, 2), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            z = depth[i, j]
+            if z <= 0:
+                continue
+            u, v = j + offset[i, j, 0], i + offset[i, j, 1]
+            d = z * (turn[2, 0] * u + turn[2, 1] * v + turn[2, 2]) + shift[2]
+            if d <= 0:
+                continue
+            x = (z * (turn[0, 0] * u + turn[0, 1] * v + turn[0, 2]) + shift[0]) / d
+            y = (z * (turn[1, 0] * u + turn[1, 1] * v + turn[1, 2]) + shift[1]) / d
+            n, m = int(np.floor(x + 0.5)), int(np.floor(y + 0.5))
+            if m < 0 or n < 0 or m >= rows or n >= columns or 0 < found[m, n] <= d:
+                continue
+            source[m, n], found[m, n] = i * columns + j, d
+            aside[m, n, 0], aside[m, n, 1] = x - n, y - m
+    for i in range(1, rows - 1):
+        for j in range(1, columns - 1):
+            if source[i, j] >= 0:
+                continue
+            for m, n in ((i, j - 1), (i - 1, j)):
+                a, b = found[m, n], found[2 * i - m, 2 * j - n]
+                if a > 0 and b > 0 and abs(a - b) < gap and source[m, n] >= 0 and source[2 * i - m, 2 * j - n] >= 0:
+                    source[i, j], found[i, j] = source[m, n], (a + b) / 2
+                    break
+    return source, found, aside
 
 
 @njit(cache=True, nogil=True)

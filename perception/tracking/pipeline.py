@@ -80,6 +80,8 @@ class Pipeline:
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
+    rest: int = field(default=0, init=False)
+    """Number of its present or last rest, which no other rest of any thing has."""
     particles: int = field(default=0, init=False)
     """Number of particles in the last frame, 0 if none were needed."""
 
@@ -196,12 +198,48 @@ class Pipeline:
         self._velocity = self._filter.velocity.copy()
         found = self._filter.step(weigh, guide if len(changed) else None, seconds)
         self.particles = found.particles
+        inliers, exposed = self._seen(found.place, found.turn, image, view, taken, noise)
+        return found, inliers / max(exposed, 1.0), inliers / len(self._points)
+
+    def seen_at_place(
+        self, image: FrameImage, view: TableView, taken: NDArray[np.bool_], noise: float
+    ) -> tuple[float, float]:
+        """Compare a frame with the thing in its present pose.
+
+        Parameters
+        ----------
+        image, view
+            The frame, and its view of the table.
+        taken
+            Mask (r, c) of the pixels that belong to something else.
+        noise
+            Standard deviation of depths at one metre.
+
+        Returns
+        -------
+        tuple
+            Share of the points that agree, of those that nothing hides; and the share of points that nothing hides.
+        """
+        inliers, exposed = self._seen(self.pose[:3, 3], _quaternion(self.pose), image, view, taken, noise)
+        return inliers / max(exposed, 1.0), exposed / len(self._points)
+
+    def _seen(
+        self,
+        place: NDArray[np.float64],
+        turn: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        noise: float,
+    ) -> tuple[float, float]:
+        """Return the number of points that agree with a frame, and of those that nothing hides."""
+        from deixis.perception.tracking.kernels import scores
+
         _, seen = scores(
-            found.place[None], found.turn[None], self._points, self._colours, view.matrix, view.offset, image.depth,
+            place[None], turn[None], self._points, self._colours, view.matrix, view.offset, image.depth,
             image.colour, taken, 0.003, 2 * noise, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
         )  # fmt: skip
-        inliers, exposed, _ = seen[0]
-        return found, inliers / max(exposed, 1.0), inliers / len(self._points)
+        return float(seen[0, 0]), float(seen[0, 1])
 
     def moved_to(self, pose: NDArray[np.float64], at: float, agreement: float) -> None:
         """Take a pose that was found in a frame.
@@ -331,6 +369,14 @@ class Pipeline:
             state=self.state,
             moving=self.active and self.found,
         )
+
+
+def _quaternion(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the rotation of a transform (4, 4) as a unit quaternion (4,), real part first."""
+    from scipy.spatial.transform import Rotation
+
+    turn: NDArray[np.float64] = Rotation.from_matrix(pose[:3, :3]).as_quat()[[3, 0, 1, 2]]
+    return turn
 
 
 def _rotated(turns: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:

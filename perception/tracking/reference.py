@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.tracking.image import FrameImage
+from deixis.perception.tracking.image import FrameImage, TableView
 from deixis.perception.tracking.pipeline import Beneath
 
 TABLE, UNKNOWN_OWNER = 0, -1
@@ -47,7 +47,36 @@ class Reference:
         self.owner = owner
         self.since = np.full(owner.shape, at)
         """Time in seconds since which each depth is steady."""
+        self._offset = np.zeros((*owner.shape, 2), np.float32)
         self._last = image.depth.copy()
+        self._aside = np.zeros((*owner.shape, 2), np.float32)
+
+    def carry(self, before: TableView, now: TableView, gap: float) -> None:
+        """Carry all points to the view of a camera that has moved.
+
+        A point keeps its place in the table's frame: it lies beside the middle of its new pixel. Points that are not in
+        the view any more, or behind others, are forgotten.
+
+        Parameters
+        ----------
+        before, now
+            Views before and after the movement.
+        gap
+            Difference of depths of two surfaces, in metres.
+        """
+        from deixis.perception.tracking.kernels import carried
+
+        turn = now.matrix @ np.linalg.inv(before.matrix)
+        shift = now.offset - turn @ before.offset
+        source, self.depth, self._offset = carried(self.depth, self._offset, turn, shift, gap)
+        known = source >= 0
+        self.colour = np.where(known[..., None], self.colour.reshape(-1, 3)[source], np.float32(0))
+        self.owner = np.where(known, self.owner.ravel()[source], np.int16(UNKNOWN_OWNER))
+        flat = (self.owner == TABLE) & (np.abs(self.depth - now.level) < 0.5 * gap)
+        self.depth[flat] = now.level[flat]
+        self._offset[flat] = 0
+        source, self._last, self._aside = carried(self._last, self._aside, turn, shift, gap)
+        self.since = np.where(source >= 0, self.since.ravel()[source], np.inf)
 
     def compared(
         self,
@@ -104,8 +133,8 @@ class Reference:
         from deixis.perception.tracking.kernels import remembered
 
         remembered(
-            changes.state, image.depth, image.colour, self.depth, self.colour, self._last, self.since, at, tolerance,
-            noise, np.float32(LEARNING_RATE),
+            changes.state, image.depth, image.colour, self.depth, self.colour, self._offset, self._last, self._aside,
+            self.since, at, tolerance, noise, np.float32(LEARNING_RATE),
         )  # fmt: skip
 
     def give(self, pixels: NDArray[np.intp], owner: int, image: FrameImage) -> Beneath:
@@ -134,6 +163,7 @@ class Reference:
         self.depth.ravel()[pixels] = image.depth.ravel()[pixels]
         self.colour.reshape(-1, 3)[pixels] = image.colour.reshape(-1, 3)[pixels]
         self.owner.ravel()[pixels] = owner
+        self._offset.reshape(-1, 2)[pixels] = 0
         return before
 
     def take(self, owner: int, beneath: Beneath | None, owners: set[int]) -> None:

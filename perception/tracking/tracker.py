@@ -8,6 +8,7 @@ things or the places of things that were lost.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -21,10 +22,12 @@ from deixis.perception.detection.plane import Plane
 from deixis.perception.detection.viewpoint import moved
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.particles import Estimate
 from deixis.perception.tracking.pipeline import Pipeline
 from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, Reference
+from deixis.perception.tracking.registration import levels_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.thing import Situation
 
@@ -58,6 +61,18 @@ MIN_MOVING_PIXELS = 80
 DETECTION_PAUSE = 0.25
 """Least time in seconds between two segmentations."""
 
+EDGE_REACH = 1
+"""Distance in pixels within which an equal depth of the reference is looked for, while the camera moves."""
+
+UNSTEADY_FOR = 1.0
+"""Time in seconds after a movement of the camera in which pixels are compared within ``EDGE_REACH``."""
+
+EXPOSED = 0.3
+"""Least share of the points of a thing that nothing hides, for its place to be called empty or not."""
+
+ABSENT = 0.2
+"""Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
+
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are segmented again."""
 
@@ -89,7 +104,11 @@ class Tracker:
         self._number = 0
         self._at: float | None = None
         self._frame: NDArray[np.float64] | None = None
+        self._outline = np.zeros((0, 2))
         self._hull = np.zeros((0, 3))
+        self._motion: CameraMotion | None = None
+        self._moved_at = -np.inf
+        self._rests = itertools.count(1)
         self._optics: Optics | None = None
         self._view: TableView | None = None
         self._reference: Reference | None = None
@@ -136,7 +155,7 @@ class Tracker:
             return self._begin(cloud, at, number)
         assert self._optics is not None and self._view is not None
         image = image_of(cloud, self._optics, self.settings.stride)
-        changes = self._compare(image)
+        changes = self._seen_from_here(image, at)
         if _camera_moved(changes):
             self._reference, self._things = None, []
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
@@ -144,7 +163,7 @@ class Tracker:
         hand = self._hand(image, changes)
         if hand.any() or self._is_busy(image, changes, at):
             self._hand_at = at
-        self._look_at_resting(changes, at)
+        self._look_at_resting(image, changes, at)
         self._follow(image, changes, at, at - (before if before is not None else at))
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
@@ -201,12 +220,13 @@ class Tracker:
             return self._situation(at, number, notes=(str(error),))
         if found.table is None:
             return self._situation(at, number, notes=("; ".join(found.notes) or "no table was found",))
-        self._optics, self._frame = optics, found.frame
+        self._optics, self._frame, self._motion = optics, found.frame, CameraMotion(found.frame, at)
         image = image_of(cloud, optics, self.settings.stride)
         self._view = table_view(image.optics, found.frame, image.depth.shape)
         heights = image.points.reshape(-1, 3) @ found.frame[2, :3] + found.frame[2, 3]
         on = np.abs(heights) < 0.01
-        self._hull = _hull(moved(image.points.reshape(-1, 3)[on].astype(np.float64), found.frame)[:, :2])
+        self._outline = np.zeros((0, 2))
+        self._extend_outline(image, on)
         self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
         first = self.settings.stride // 2
         assert cloud.organised is not None
@@ -225,6 +245,8 @@ class Tracker:
             if not self._comes_from_outside(own, image):
                 came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
                 self._reference.give(own, self._things[-1].slot, image)
+        rests = {thing.slot: thing.rest for thing in self._things}
+        self._motion.add_keyframe(image, levels_of(image), self._reference.owner, self._view, rests)
         return self._situation(at, number, tuple(came))
 
     def _enter(self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, at: float) -> str:
@@ -237,19 +259,45 @@ class Tracker:
         self._names += 1
         own, half, oriented, pose = thing
         self._things.append(Pipeline(f"t{self._names}", slot, own, half, oriented, pose, at, self.settings))
+        self._things[-1].rest = next(self._rests)
         return self._things[-1].id
 
     # What rests and what moves
 
-    def _compare(self, image: FrameImage) -> Changes:
+    def _seen_from_here(self, image: FrameImage, at: float) -> Changes:
+        """Find where the camera is now, carry the reference to its view, and compare the frame with it."""
+        from deixis.perception.tracking.kernels import SAME
+
+        assert self._motion is not None and self._reference is not None and self._view is not None
+        rests = {thing.slot: thing.rest for thing in self._things if not thing.active}
+        found, levels = self._motion.follow(image, at, rests, self._noise)
+        new = found is not None and self._motion.needs_keyframe()
+        if found is not None:
+            if new:
+                self._motion.level(moved(image.points.reshape(-1, 3), self._motion.pose))
+            view = table_view(image.optics, self._motion.pose, image.depth.shape)
+            if moved_by(self._view, view) > STANDING:
+                self._reference.carry(self._view, view, GAP)
+                self._view, self._frame, self._moved_at = view, self._motion.pose, at
+                for thing in self._things:
+                    thing.beneath = None
+        changes = self._compare(image, at)
+        if new:
+            still = np.where(changes.state == SAME, self._reference.owner, np.int16(UNKNOWN_OWNER))
+            self._motion.add_keyframe(image, levels, still, self._view, rests)
+            self._extend_outline(image, ((changes.state == SAME) & (self._reference.owner == TABLE)).ravel())
+        return changes
+
+    def _compare(self, image: FrameImage, at: float) -> Changes:
         assert self._reference is not None and self._view is not None
         labels = max((thing.slot for thing in self._things), default=0)
         settings = self.settings
         return self._reference.compared(
-            image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour, 0
-        )
+            image, self._view.level, labels, settings.tolerance, self._deviation, settings.colour,
+            EDGE_REACH if at - self._moved_at < UNSTEADY_FOR else 0,
+        )  # fmt: skip
 
-    def _look_at_resting(self, changes: Changes, at: float) -> None:
+    def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
         """Decide by their pixels which resting things are still at their places."""
         from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER, SAME
 
@@ -262,12 +310,24 @@ class Tracker:
             visible = measured - int(count[NEARER])
             left = int(count[FARTHER] + count[COLOUR])
             if measured < MIN_OWN_PIXELS:
-                thing.lost()
+                self._look_again(thing, image, at)
             elif visible >= max(MIN_OWN_PIXELS, 0.25 * measured) and left > self.settings.moved * visible:
                 self._start(thing)
             elif count[SAME] >= self.settings.doubtful * measured:
                 thing.seen_at_rest(at, float(count[SAME]) / max(visible, 1))
                 thing.particles = 0
+
+    def _look_again(self, thing: Pipeline, image: FrameImage, at: float) -> None:
+        """Compare a resting thing without pixels in the reference, such as one that comes into view, with the frame."""
+        assert self._reference is not None and self._view is not None
+        others = (self._reference.owner != TABLE) & (self._reference.owner != thing.slot)
+        agreement, exposed = thing.seen_at_place(image, self._view, others & (self._reference.depth > 0), self._noise)
+        if exposed < EXPOSED or ABSENT < agreement < self.settings.fit:
+            thing.lost()
+        elif agreement <= ABSENT:
+            self._start(thing)
+        else:
+            thing.seen_at_rest(at, agreement)
 
     def _start(self, thing: Pipeline) -> None:
         """Let a thing move: its pixels are free."""
@@ -282,7 +342,11 @@ class Tracker:
 
         assert self._reference is not None and self._view is not None
         moving = [thing for thing in self._things if thing.active]
-        doubtful = [thing for thing in self._things if not thing.active and thing.seen_at < at]
+        doubtful = [
+            thing
+            for thing in self._things
+            if not thing.active and thing.seen_at < at and self._view.shows(thing.pose[:3, 3])
+        ]
         if not moving and not doubtful:
             return
         view, reference, limits = self._view, self._reference, self.settings
@@ -304,7 +368,7 @@ class Tracker:
                 continue
             thing.moved_to(found.pose, at, fit)
             if thing.is_still(at) and (visible > 0.6 or at - self._hand_at > limits.still_for):
-                thing.settle()
+                self._settle(thing)
                 self._claim(thing, image, changes)
         for thing in moving:  # what is theirs is not another thing that left its place unseen
             if thing.found:
@@ -338,6 +402,10 @@ class Tracker:
         if self._workers is None:
             self._workers = ThreadPoolExecutor(self.settings.workers, thread_name_prefix="pipeline")
         return self._workers.map(job, things)
+
+    def _settle(self, thing: Pipeline) -> None:
+        thing.settle()
+        thing.rest = next(self._rests)
 
     def _claim(self, thing: Pipeline, image: FrameImage, changes: Changes) -> None:
         """Give the changed pixels within the box of a thing that has come to rest to it."""
@@ -410,6 +478,12 @@ class Tracker:
         assert self._view is not None
         return self._view.back
 
+    def _extend_outline(self, image: FrameImage, on: NDArray[np.bool_]) -> None:
+        """Extend the outline of the table by points that lie on it, given by a flat mask of the pixels."""
+        assert self._frame is not None
+        plan = moved(image.points.reshape(-1, 3)[on].astype(np.float64), self._frame)[:, :2]
+        self._outline, self._hull = _hull(np.concatenate([self._outline, plan[:: max(1, len(plan) // 5000)]]))
+
     def _beyond(self, plan: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return True for each place (n, 2) that is not above the table."""
         if not len(self._hull):
@@ -438,18 +512,31 @@ class Tracker:
         flat = (np.abs(points[:, 2]) < 0.002) | self._beyond(points[:, :2])
         reference.give(free[flat], TABLE, image)
         free, points = free[~flat], points[~flat]
-        owner = reference.owner.ravel()[free]
+        owner, edge = reference.owner.ravel()[free], self._edges(free, at)
         for thing in self._things:
             turned = at - thing.settled_at < limits.turned_for
             inside = thing.contains(points, limits.turned_margin if turned else limits.margin)
-            own = inside & (owner != thing.slot) if not thing.active else np.zeros(len(free), np.bool_)
+            own = inside & ((owner != thing.slot) | edge) if not thing.active else np.zeros(len(free), np.bool_)
             reference.give(free[own], thing.slot, image)
             drop = own | (inside if thing.active and thing.found else False)
-            free, points, owner = free[~drop], points[~drop], owner[~drop]
+            free, points, owner, edge = free[~drop], points[~drop], owner[~drop], edge[~drop]
+        free = free[~edge]
         if len(free) < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
             return ()
         self._detected_at = at
         return self._segment(cloud, image, changes, free, at)
+
+    def _edges(self, pixels: NDArray[np.intp], at: float) -> NDArray[np.bool_]:
+        """Return a mask of the pixels in strips of one or two pixels, which edges leave under a camera that moves."""
+        from scipy.ndimage import binary_opening
+
+        assert self._reference is not None
+        if at - self._moved_at >= UNSTEADY_FOR:
+            return np.zeros(len(pixels), np.bool_)
+        mask = np.zeros(self._reference.owner.shape, np.bool_)
+        mask.ravel()[pixels] = True
+        opened: NDArray[np.bool_] = binary_opening(mask, np.ones((3, 3)))
+        return ~opened.ravel()[pixels]
 
     def _segment(
         self, cloud: PointCloud, image: FrameImage, changes: Changes, free: NDArray[np.intp], at: float
@@ -525,7 +612,7 @@ class Tracker:
         _, thing, pose = best
         thing.put(pose)
         thing.moved_to(pose, at, best[0])
-        thing.settle()
+        self._settle(thing)
         thing.beneath = self._reference.give(pixels, thing.slot, image)
         return thing
 
@@ -546,12 +633,12 @@ def _noise(depth: NDArray[np.float32], level: NDArray[np.float32]) -> float:
     return max(float(1.4826 * np.median(np.abs(off - np.median(off)))) if len(off) else 0.0, 0.0003)
 
 
-def _hull(plan: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the convex hull of places (n, 2) as half planes (h, 3)."""
+def _hull(plan: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the corners (h, 2) of the convex hull of places (n, 2), and its half planes (h, 3)."""
     from deixis.perception.detection.outline import hull_of
 
-    hull = hull_of(plan[:: max(1, len(plan) // 5000)]) if len(plan) >= 3 else None
-    return np.zeros((0, 3)) if hull is None else np.asarray(hull.equations)
+    hull = hull_of(plan) if len(plan) >= 3 else None
+    return (plan, np.zeros((0, 3))) if hull is None else (plan[hull.vertices], np.asarray(hull.equations))
 
 
 def _axis(plan: NDArray[np.floating]) -> float:

@@ -33,6 +33,7 @@ def track(
     things: Annotated[int, typer.Option(min=1, max=12, help="Simulator: things at the start.")] = 4,
     actions: Annotated[int, typer.Option(min=0, max=100, help="Simulator: actions of the hand.")] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Simulator: seed of things, actions and noise.")] = 0,
+    camera: Annotated[str, typer.Option(metavar="PATH", help="Simulator: still, sway or walk.")] = "still",
     record: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write the frames as a recorded sequence, too.")
     ] = None,
@@ -50,7 +51,7 @@ def track(
             print_lines(map(event_line, events))
             sys.stdout.flush()
 
-    stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed))
+    stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed), camera)
     found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
     if as_json:
         print_json(tracking_to_dict(found))
@@ -65,14 +66,16 @@ def _source(
     patience: float,
     intrinsics: Path | None,
     simulated: tuple[int, int, int],
+    camera: str,
 ) -> CloudSource:
     from deixis.workflows.scenes.track import cloud_source
 
     if names == ["simulator"]:
+        from deixis.perception.simulator.camera_paths import camera_path
         from deixis.perception.simulator.stories import FilmSource, random_film
 
         things, actions, seed = simulated
-        return FilmSource(random_film(things, actions, seed), rate, seed)
+        return FilmSource(random_film(things, actions, seed, path=camera_path(camera, seed)), rate, seed)
     return cloud_source(names, rate, grows, patience, intrinsics)
 
 
