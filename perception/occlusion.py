@@ -136,7 +136,7 @@ def _one_thing(things: list[PerceivedObject], a: int, b: int) -> bool:
         thing for place, thing in enumerate(things) if place not in (a, b) and thing.maximum[2] >= MIN_HIDING_HEIGHT
     ]
     eye = np.asarray(_cloud(first).origin, dtype=np.float64)
-    return float(np.mean(_hidden(places, eye, others))) >= HIDDEN_SHARE
+    return float(np.mean(hidden_places(places, eye, others))) >= HIDDEN_SHARE
 
 
 def _floats(upper: PerceivedObject, lower: PerceivedObject) -> bool:
@@ -156,8 +156,23 @@ def _width(plan: Array) -> float:
     return float(np.ptp(np.percentile(centred @ across, [1, 99])))
 
 
-def _hidden(places: Array, eye: Array, others: list[PerceivedObject]) -> NDArray[np.bool_]:
-    """Return which places (k, 3) cannot be seen from the eye, because the ray to them meets the box of a thing."""
+def hidden_places(places: Array, eye: Array, others: list[PerceivedObject]) -> NDArray[np.bool_]:
+    """Return which places cannot be seen, because the ray to them from the eye meets the box of a thing.
+
+    Parameters
+    ----------
+    places
+        Places, shape (k, 3), in metres.
+    eye
+        Position of the camera, shape (3,).
+    others
+        Things that may hide them.
+
+    Returns
+    -------
+    ndarray
+        Mask of shape (k,).
+    """
     hidden = np.zeros(len(places), dtype=bool)
     for thing in others:
         low, high = np.array(thing.minimum) - GROWN, np.array(thing.maximum) + GROWN

@@ -69,6 +69,14 @@ WORDINGS = (
     "what happened since noon?",
     "how many forks are on the plate?",
     "how many forks were there at noon?",
+    "is there a ball?",
+    "was there a ball on the tray at noon?",
+    "what did I tell you that you have not seen?",
+    "what did Ada tell you that was not there?",
+    "what did I tell you that you have seen?",
+    "what did Ada tell you?",
+    "what have you not seen yet?",
+    "what do you expect?",
 )
 """Wordings of all kinds of questions; a question that is not understood is answered with the nearest ones."""
 
@@ -159,10 +167,14 @@ def read_question(text: str, ontology: Ontology | None = None) -> RecallQuestion
 def _plain(text: str) -> str:
     """Return a question in lower case, without punctuation, with contractions and numbers written out."""
     plain = text.lower().replace("\u2019", "'").replace("which ones", "which one")
-    plain = re.sub(r"\b(where|what|who|when|it|that)'s\b", r"\1 is", plain)
+    plain = re.sub(r"\b(where|what|who|when|it|that|there)'s\b", r"\1 is", plain)
+    plain = re.sub(r"\b(is|are|was|were|has|have|did|do|does)n't\b", r"\1 not", plain)
+    plain = re.sub(r"\b(have|has|did|were|was|are|is) you not\b|\b(have|has) not you\b", r"you \1\2 not", plain)
+    plain = re.sub(r"\b(have|has) (i|we) told\b", r"did \2 tell", plain)
     plain = re.sub(r"[?!,;\"]|\.(?=\s|$)", " ", plain)
     plain = re.sub(r"\b(a|p)\.m\.?(?=\s|$)", r"\1m", plain)
     plain = re.sub(r"^\s*((please|(can you )?tell me|do you (know|remember))\s+)+", "", plain)
+    plain = re.sub(r"\bstill\b|(?<=\w )here\b", "", plain)
     return " ".join(_COUNTED.sub(lambda found: f"{_NUMBERS[found[1]]} ", plain).split())
 
 

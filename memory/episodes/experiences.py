@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import EpisodeError
-from deixis.reasoning.temporal.fluent import Pattern
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 
 RECORDED = "recorded"
 """Predicate of the fluent that an experience with the subject's name is recorded."""
@@ -29,6 +30,29 @@ CONSOLIDATED = "consolidated"
 """Predicate of the fluent that an experience was consolidated; its object is the id of the lesson."""
 
 _MARKERS = {RECORDED, CONSOLIDATED}
+
+
+class Holding(Protocol):
+    """A blackboard, or a part of one, of which one can ask what held when."""
+
+    def holding(
+        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return what may have held in a window of time.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        start, end
+            Ends of the window in seconds; by default it has no end on that side.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +122,7 @@ def finish_recording(board: Blackboard, name: str, at: float, by: str) -> None:
     board.finish(_experience(board, name).id, at, by=by)
 
 
-def experiences(board: Blackboard) -> tuple[Experience, ...]:
+def experiences(board: Holding) -> tuple[Experience, ...]:
     """Return all experiences.
 
     Parameters
@@ -114,7 +138,7 @@ def experiences(board: Blackboard) -> tuple[Experience, ...]:
     return tuple(_read(each) for each in board.holding(Pattern(predicate=RECORDED)))
 
 
-def episode(board: Blackboard, name: str) -> tuple[EpisodicFluent, ...]:
+def episode(board: Holding, name: str) -> tuple[EpisodicFluent, ...]:
     """Return what held in an experience.
 
     Parameters
@@ -174,7 +198,7 @@ def put_episode(
     return board.write(Add(marker), *map(Add, fluents), by=by)
 
 
-def _experience(board: Blackboard, name: str) -> Experience:
+def _experience(board: Holding, name: str) -> Experience:
     found = board.holding(Pattern(name, RECORDED))
     if not found:
         known = ", ".join(each.name for each in experiences(board)[-5:]) or "none"

@@ -28,6 +28,7 @@ PAGES = (  # other pages have tests of their own beside the code that they descr
     "guides/habits",
     "guides/activities",
     "guides/recall",
+    "guides/expected",
     "guides/unlearn",
     "guides/pointing",
     "guides/blackboard",

@@ -6,31 +6,53 @@ once, and what is doubtful waits. Every table of a layout adds to the experience
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
+from deixis.grammar.format import format_script
 from deixis.grammar.script import Script
 from deixis.learning.experience import Experience
 from deixis.learning.teachings import GROUNDING
+from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+from deixis.memory.errors import MemoryWriteError
 from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
+from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.diary import FAULT, LAYOUT, Diary, RobotModule
+from deixis.robot.expected import FOUND, LOOK, ExpectedObject, Sighting, Standing, introduced
 from deixis.robot.layouts import LearnedLayout
 from deixis.robot.lessons import QUESTION_COST, SETTLED, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
-from deixis.robot.unnamed import MIN_THINGS, NOTICED_FROM, LayoutQuestion, UnnamedKind, is_same_table
+from deixis.robot.modules import Board, ModuleBoard
+from deixis.robot.places import places_of
+from deixis.robot.unnamed import MIN_THINGS, NOTICED_FROM, LayoutQuestion, UnnamedKind, is_same_table, place_among
 from deixis.session import Session
 from deixis.view_store import category_name
+from deixis.workflows.knowledge.episodes import Consolidation, consolidate, named_layout
+from deixis.workflows.knowledge.recall import EXPECTED, IS_A
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
     from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
+
+
+SURE = 0.8
+"""Probability from which a name is written to the blackboard as the category of a thing."""
+
+GROUNDING_SECONDS = 5.0
+"""Time limit in seconds for looking for one expected object."""
+
+_THERE = re.compile(r"^(?:\w+[,:]\s*)?there(?:'s|’s|\s+(?:is|are|should be|must be))\s+\S", re.IGNORECASE)
+"""Beginning of a sentence that says that something is there."""
 
 
 class RobotError(DeixisError, ValueError):
@@ -62,14 +84,25 @@ class Robot:
     ----------
     memory
         The session, or the folder of its memory.
+    board
+        Board on which it writes, for a robot whose things are tracked: the ids of things are then those of the board,
+        and others write where things are and what persons say and show. By default it writes all of this itself to the
+        blackboard of its memory.
 
     Notes
     -----
-    Things are named by their ids in the scene that is seen now. Methods are called by one thread at a time.
+    Things are named by their ids in the scene that is seen now. Times are in seconds since the origin of the
+    blackboard; without one, it is now. Methods are called by one thread at a time.
     """
 
-    def __init__(self, memory: Session | str | Path) -> None:
+    def __init__(self, memory: Session | str | Path, board: Board | None = None) -> None:
         self.session = memory if isinstance(memory, Session) else Session(memory)
+        self._own: Blackboard | None = None
+        self._diary = None if board is None else Diary(board, tracked=True)
+        self.expected: list[ExpectedObject] = []
+        self._sightings: dict[str, Sighting] = {}
+        self._seen_at = 0.0
+        self._resumed: Scene | None = None  # the last table that an earlier run kept
         self.layouts: dict[str, LearnedLayout] = {}
         self.lessons: list[TableLesson] = []
         self.unnamed: list[UnnamedKind] = []
@@ -77,11 +110,36 @@ class Robot:
         self._fullest: Scene | None = None  # of the present table, which may be laid or cleared
         self._look: Look | None = None
         self._knowledge: TableKnowledge | None = None
+        if board is None and has_episodes(self.session.path):
+            self._diary = self.diary
+        if board is not None:
+            self._remember_unnamed()
         self.remember()
 
     def close(self) -> None:
-        """Close the memory."""
+        """Close the memory, and keep the present table if its layout has no name."""
+        if self._fullest is not None:
+            self._keep_unnamed(self._fullest)
+            self._fullest = None
+        if self._own is not None:
+            self._own.close()
         self.session.close()
+
+    @property
+    def diary(self) -> Diary:
+        """Writer of the robot's fluents, whose blackboard is opened when it is first needed."""
+        if self._diary is None:
+            try:
+                self._own = Blackboard.open(self.session.path, create=True)
+            except MemoryWriteError:  # a memory that can only be read
+                self._own = Blackboard.transient()
+            self._diary = Diary(ModuleBoard(self._own, RobotModule()))
+            self._remember_expected()
+            self._remember_unnamed()
+        return self._diary
+
+    def _time(self, at: float | None) -> float:
+        return self.diary.board.seconds() if at is None else at
 
     def remember(self) -> None:
         """Read the layouts from the memory, with the counts of all their tables.
@@ -100,7 +158,32 @@ class Robot:
         for number, lesson in enumerate(self.lessons):
             if lesson.id not in tables:
                 self.lessons[number] = replace(lesson, settled={}, waiting={})
+        if self._diary is not None:
+            self._diary.refresh()
+            self._remember_expected()
         self._forget_look()
+
+    def _remember_expected(self) -> None:
+        """Read the expected objects from the blackboard; those that were taken back are expected no more."""
+        assert self._diary is not None
+        held = {each.statement.subject: each for each in self._diary.board.now(Pattern(predicate=EXPECTED))}
+        self.expected = [one for one in self.expected if one.standing is not Standing.EXPECTED or one.id in held]
+        known = {one.id for one in self.expected}
+        for id, fluent in held.items():
+            text, source = str(fluent.statement.object), fluent.source
+            kinds = self._diary.board.now(Pattern(id, IS_A))
+            script = self._presence(text)
+            if id in known or script is None or not kinds or source.event is None:
+                continue
+            taken = {one.role for one in self.expected if one.event == source.event}
+            roles = [role for role in introduced(script) if plain_name(role) == kinds[0].statement.object]
+            for role in [each for each in roles if each not in taken][:1]:
+                start = fluent.start.lower
+                self.expected.append(
+                    ExpectedObject(id, role, script, text, source.by, source.event, start, fluent.certainty)
+                )
+                others = [each for each in self._diary.board.now(Pattern(id)) if each.id != fluent.id]
+                self._diary.remembered((fluent, *others))
 
     def unlearn(self, selection: Selection) -> Unlearned:
         """Take back what was taught, with what it added to the counts of layouts.
@@ -131,13 +214,15 @@ class Robot:
             raise RobotError("the robot must see a table first; call sees() with a scene or a cloud")
         return self._scene
 
-    def sees(self, scene: Scene | PointCloud) -> Scene:
+    def sees(self, scene: Scene | PointCloud, at: float | None = None) -> Scene:
         """Take a scene as the present situation.
 
         Parameters
         ----------
         scene
             A scene, or a cloud in which the things are then detected.
+        at
+            Time in seconds.
 
         Returns
         -------
@@ -159,28 +244,51 @@ class Robot:
         self._scene, self._look = scene, None
         if self._fullest is None or len(scene.objects) >= len(self._fullest.objects):
             self._fullest = scene
+        self._seen_at = self._time(at)
+        self.diary.saw(scene, self._seen_at)
+        self._sightings = {}
+        self._look_for_expected(self._seen_at)
         return scene
+
+    def watches(self, at: float | None = None) -> None:
+        """Take note that the table was in view and did not change since it was last seen.
+
+        Parameters
+        ----------
+        at
+            Time in seconds.
+        """
+        now = self._time(at)
+        if self._scene is not None:
+            self._look_for_expected(now, watched=True)
 
     def _keep_unnamed(self, scene: Scene) -> None:
         """Keep a table with those that are alike, if no layout explains it and no person described it."""
         found = self._kind(scene)
         if found is not None:
             place, kind = found
-            self.unnamed[place : place + 1] = [kind]
+            id = self.diary.keeps(kind.tables[-1].scene, self._seen_at)
+            self.unnamed[place : place + 1] = [kind if id is None else kind.with_kept(id)]
+
+    def _remember_unnamed(self) -> None:
+        """Read the tables that an earlier run kept."""
+        assert self._diary is not None
+        for id, (scene, nameless) in self._diary.kept().items():
+            place, kind = place_among(self.unnamed, scene, self.session.ontology, self.session.meaning())
+            self.unnamed[place : place + 1] = [replace(kind.with_kept(id), asked=kind.asked or nameless)]
+            self._resumed = scene
 
     def _kind(self, scene: Scene) -> tuple[int, UnnamedKind] | None:
         """Return the kind of a table with it, and its place among the unnamed ones; None for a known one."""
         if len(scene.objects) < MIN_THINGS or any(lesson.scene is scene for lesson in self.lessons):
             return None
+        if len(scene.objects[0].minimum) < 3 or (self._resumed is not None and is_same_table(self._resumed, scene)):
+            return None  # without heights, or the table that an earlier run kept last
         knowledge = self.knowledge()
         look = self.look() if scene is self._scene else knowledge.look(scene)
         if look.layout is not None:
             return None
-        for place, kind in enumerate(self.unnamed):
-            more = kind.with_table(look.scene, knowledge.ontology, knowledge.meaning)
-            if more is not None:
-                return place, more
-        return len(self.unnamed), UnnamedKind.of(look.scene, knowledge.ontology)
+        return place_among(self.unnamed, look.scene, knowledge.ontology, knowledge.meaning)
 
     def knowledge(self) -> TableKnowledge:
         """Return what was learned so far, as far as looking at a table needs it.
@@ -207,7 +315,22 @@ class Robot:
         """
         if self._look is None:
             self._look = self.knowledge().look(self.scene)
+            self._conclude(self._look)
         return self._look
+
+    def _conclude(self, look: Look) -> None:
+        """Write what the things of the table are, and how it is laid."""
+        certain = {
+            (self.diary.id_of(thing), IS_A, best): min(shares[best], 1.0)
+            for thing, shares in look.names.items()
+            for best in list(shares)[:1]
+            if shares[best] >= SURE
+        }
+        found = {*certain, *(("table", FAULT, str(fault)) for fault in look.faults())}
+        if look.layout is not None:
+            found.add(("table", LAYOUT, look.layout))
+            certain["table", LAYOUT, look.layout] = min(look.layouts[look.layout], 1.0)
+        self.diary.concluded(found, (IS_A, LAYOUT, FAULT), self._seen_at, certain)
 
     def names(self) -> Mapping[str, Mapping[str, float]]:
         """Return the names that each thing may have, with their probabilities.
@@ -254,7 +377,7 @@ class Robot:
 
     # ---- being taught
 
-    def shown(self, label: str, thing: str, by: str = "user") -> Taught:
+    def shown(self, label: str, thing: str, by: str = "user", at: float | None = None) -> Taught:
         """Learn what a thing looks like that a person points at and names.
 
         Parameters
@@ -265,6 +388,8 @@ class Robot:
             Id of the thing in the present scene.
         by
             Name of the person.
+        at
+            Time in seconds.
 
         Returns
         -------
@@ -282,27 +407,163 @@ class Robot:
         taught = self.session.teach(self.scene, thing, label, by, settles)
         for lesson, role in pointed:
             self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
+        self.diary.shown(thing, taught.category, by, self._time(at))
         self._forget_look()
         return taught
 
-    def told(self, text: str | Script) -> Told:
-        """Learn the layout that a text describes from the table that is seen.
+    @overload
+    def told(self, text: Script, by: str = ..., at: float | None = ..., event: str | None = ...) -> Told: ...
+
+    @overload
+    def told(
+        self, text: str, by: str = ..., at: float | None = ..., event: str | None = ...
+    ) -> Told | tuple[ExpectedObject, ...]: ...
+
+    def told(
+        self, text: str | Script, by: str = "user", at: float | None = None, event: str | None = None
+    ) -> Told | tuple[ExpectedObject, ...]:
+        """Learn the layout that a text describes from the table that is seen, or expect the objects that it introduces.
+
+        *There is a red ball on the left* is about what is there: each object that it introduces is expected until a
+        thing is seen that fits, or until its place was in view and empty for long enough (:attr:`expected`).
 
         Parameters
         ----------
         text
-            A script in the layout language or in English, as text or parsed.
+            A script in the layout language or in English, as text or parsed. A parsed one is a layout.
+        by
+            Name of the person.
+        at
+            Time in seconds.
+        event
+            Id on the blackboard of what was said; a new one if None.
 
         Returns
         -------
-        Told
-            The layout, the grounding, and what was taught and what waits.
+        Told or tuple of ExpectedObject
+            The layout, the grounding, and what was taught and what waits; or the objects that are expected, of which
+            some may be seen already.
+
+        Raises
+        ------
+        ScriptError
+            If the text is not understood.
+        RobotError
+            If it describes a layout before a table was seen.
         """
-        script = text if isinstance(text, Script) else understood(text, self.session)
+        if isinstance(text, str) and (presence := self._presence(text)) is not None:
+            return self._told_presence(presence, text, by, self._time(at), event)
+        script = text if isinstance(text, Script) else self._layout(text)
         seen = self.knowledge().recognised(self.scene)
-        learned = self.session.learn(script, seen)
+        learned = self.session.learn(script, seen, teacher=by)
         lesson = self._learned(script, self.scene, learned)
+        words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
+        self.diary.heard(words, by, self._time(at), learned.lesson.id)
         return Told(lesson, learned)
+
+    def _layout(self, text: str) -> Script:
+        """Return the layout that a text describes, with the name that the text gives it."""
+        name, rest = named_layout(text)
+        script = understood(rest, self.session)
+        return script if name is None else replace(script, name=name)
+
+    def _presence(self, text: str) -> Script | None:
+        """Return a text as a script, if it is English about objects that are there."""
+        from deixis.grammar.parser import parse_script
+        from deixis.workflows.layouts.read import read_script
+
+        if named_layout(text)[0] is not None:
+            return None
+        try:
+            parse_script(text, ontology=self.session.ontology)
+            return None
+        except ScriptError:
+            pass
+        plain = text.strip().rstrip(".!")
+        # a sentence that says no place means anywhere on the table
+        for words in (text, f"{plain} on the table.") if _THERE.match(plain) else (text,):
+            try:
+                script = read_script(text=words, ontology=self.session.ontology, english=True)
+            except ScriptError:
+                continue
+            absent = () if script.reading is None else script.reading.absent
+            return script if introduced(script) or (absent and not script.objects) else None
+        return None
+
+    def _told_presence(
+        self, script: Script, text: str, by: str, at: float, event: str | None
+    ) -> tuple[ExpectedObject, ...]:
+        """Expect the objects that a sentence introduces, and do not expect those that it says are absent."""
+        event = self.diary.heard(text, by, at, event)
+        absent = script.reading.absent if script.reading is not None else ()
+        for place, one in enumerate(self.expected):
+            if one.standing is Standing.EXPECTED and one.name in map(plain_name, absent):
+                self.expected[place] = one.contradicted(f"{by} said that it is not there")
+                self.diary.looked_for(self.expected[place], at)
+        new = [
+            ExpectedObject(self.diary.board.new_id("e"), role, script, text, by, event, at)
+            for role in introduced(script)
+        ]
+        self.diary.expects(new, self._landmarks(script))
+        first = len(self.expected)
+        self.expected += new
+        if self._scene is not None:
+            self._look_for_expected(at, self.expected[first:])
+        return tuple(self.expected[first:])
+
+    def _landmarks(self, script: Script) -> dict[str, str]:
+        """Return the ids on the blackboard of the objects of a sentence that are surely seen."""
+        if self._scene is None or not script.objects:
+            return {}
+        found = self.session.ground(script, self.knowledge().recognised(self.scene), time_limit=GROUNDING_SECONDS)
+        new = introduced(script)
+        return {
+            role: self.diary.id_of(match.perceived)
+            for role, match in found.object_matches.items()
+            if role not in new and (match.probability or 0.0) >= FOUND
+        }
+
+    def _look_for_expected(self, at: float, among: Sequence[ExpectedObject] = (), watched: bool = False) -> None:
+        """Look at the present scene for expected objects; ``watched`` if it was in view since the last look."""
+        for one in among or tuple(self.expected):
+            if one.standing is not Standing.EXPECTED:
+                continue
+            since = math.inf if one.looked is None else at - one.looked
+            looks = 0 if since < LOOK else int(since / LOOK) if watched and one.looked is not None else 1
+            if one.id not in self._sightings:
+                self._sightings[one.id] = self._sighting(one)
+            new = one.after(self._sightings[one.id], at, looks)
+            if new is not one:
+                self.expected[self.expected.index(one)] = new
+                self.diary.looked_for(new, at)
+
+    def _sighting(self, one: ExpectedObject) -> Sighting:
+        """Return how an expected object looks in the present scene.
+
+        Things that may be any of several objects of one sentence (*two forks*) are those of each.
+        """
+        knowledge = self.knowledge()
+        scene = knowledge.recognised(self.scene)
+        found = self.session.ground(one.script, scene, time_limit=GROUNDING_SECONDS)
+        alike = [role for role in introduced(one.script) if plain_name(role) == one.name]
+        shares: dict[str, float] = {}
+        matched = [match for match in found.object_matches.values() if match.object in alike]
+        for match in matched:
+            shares[match.perceived] = shares.get(match.perceived, 0.0) + (match.probability or 0.0)
+        others = [each for match in matched for each in match.alternatives]
+        others += [each for left in found.unmatched_objects if left.name in alike for each in left.alternatives]
+        for other in others:
+            if other.perceived is not None:
+                shares[other.perceived] = shares.get(other.perceived, 0.0) + (other.probability or 0.0)
+        taken = {each.thing for each in self.expected if each.standing is Standing.SEEN}
+        free = [thing for thing in shares if self.diary.id_of(thing) not in taken]
+        best = max(free, key=lambda thing: shares[thing], default=None)
+        places = places_of(one.script, one.role, scene, knowledge.meaning)
+        in_view = places.share_in_view if places is not None else 0.0 if scene.objects else 1.0
+        if best is None or (found.fits is not None and found.fits < 0.5):
+            return Sighting(None, 0.0, False, in_view)
+        fits_place = places is None or places.may_be_at(scene[best])
+        return Sighting(self.diary.id_of(best), shares[best], fits_place, in_view)
 
     def _learned(self, script: Script, scene: Scene, learned: Learned) -> TableLesson:
         """Add a lesson of the memory to the robot's lessons, and its table to the layout."""
@@ -313,6 +574,19 @@ class Robot:
         self.layouts[name] = self.layouts.get(name, layout).with_table(script, self._experience(lesson))
         self._forget_look()
         return lesson
+
+    def consolidate(self) -> Consolidation:
+        """Learn from the finished experiences on the blackboard, each once.
+
+        A described experience is a lesson, which adds to the counts of its layout. The table of one in which nothing
+        was said is kept with those that are alike, if no layout explains it.
+
+        Returns
+        -------
+        Consolidation
+            The lessons, and the reasons why other experiences taught nothing.
+        """
+        return consolidate(self.diary.board, _Pupil(self), RobotModule.name, self._keep_unnamed)
 
     # ---- what waits
 
@@ -356,10 +630,12 @@ class Robot:
             If the name cannot be that of a layout.
         """
         kind = question.kind
+        kept = [table.kept for table in kind.tables if table.kept is not None]
         place = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
         if name is None:
             if place is not None:
                 self.unnamed[place] = replace(self.unnamed[place], asked=True)
+            self.diary.named(kept, None, by, self._time(None))
             return ()
         script = kind.script(category_name(name), self.session.ontology)
         examples = [(script, table.labelled) for table in kind.tables]
@@ -367,6 +643,7 @@ class Robot:
         lessons = [self._learned(script, table.scene, one) for table, one in zip(kind.tables, learned, strict=True)]
         if place is not None:
             del self.unnamed[place]
+        self.diary.named(kept, script.name, by, self._time(None))
         return tuple(lessons)
 
     def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
@@ -450,6 +727,22 @@ class Robot:
 
     def _forget_look(self) -> None:
         self._look = self._knowledge = None
+
+
+class _Pupil:
+    """A robot as the learner of a consolidation."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self.ontology = robot.session.ontology
+        self.remembers, self.layouts = robot.session.remembers, robot.session.layouts
+        self.has_views, self.categories = robot.session.has_views, robot.session.categories
+
+    def learn(self, script: Script, scene: Scene) -> Learned:
+        """Learn a layout from a table, with the counts of its layout."""
+        learned = self._robot.session.learn(script, scene)
+        self._robot._learned(script, scene, learned)
+        return learned
 
 
 def perceived(cloud: PointCloud) -> Scene:

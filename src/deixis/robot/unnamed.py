@@ -7,7 +7,7 @@ description explains it, as a known layout would (:mod:`deixis.reasoning.compari
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -68,10 +68,11 @@ class LayoutQuestion:
 
 @dataclass(frozen=True, eq=False)
 class UnnamedTable:
-    """A table of a kind, and the thing of each role on it."""
+    """A table of a kind, the thing of each role on it, and the id under which the blackboard keeps it, if it does."""
 
     scene: Scene
     things: Mapping[str, str]
+    kept: str | None = None
 
     @property
     def labelled(self) -> Scene:
@@ -152,6 +153,21 @@ class UnnamedKind:
         layout = self.layout.with_table(self.layout.script, seen)
         return replace(self, layout=layout, tables=(*self.tables, UnnamedTable(scene, things)))
 
+    def with_kept(self, id: str) -> UnnamedKind:
+        """Return the kind with the id under which the blackboard keeps its last table.
+
+        Parameters
+        ----------
+        id
+            The id.
+
+        Returns
+        -------
+        UnnamedKind
+            The kind.
+        """
+        return replace(self, tables=(*self.tables[:-1], replace(self.tables[-1], kept=id)))
+
     def script(self, name: str, ontology: Ontology) -> Script:
         """Return the description of the kind under a name: what held on every table.
 
@@ -174,6 +190,36 @@ class UnnamedKind:
             if tally.held == tally.of:
                 facts.append(fact)
         return _script(name, self.layout.roles, facts, ontology)
+
+
+def place_among(
+    kinds: Sequence[UnnamedKind], scene: Scene, ontology: Ontology, meaning: Meaning
+) -> tuple[int, UnnamedKind]:
+    """Return the kind of a table with the table, and its place among the known kinds; the end for a new one.
+
+    Parameters
+    ----------
+    kinds
+        The known kinds.
+    scene
+        The table, with recognised names.
+    ontology
+        Words of the language.
+    meaning
+        Words and sizes.
+
+    Returns
+    -------
+    place : int
+        Place of the kind.
+    kind : UnnamedKind
+        The kind, whose last table is this one.
+    """
+    for place, kind in enumerate(kinds):
+        more = kind.with_table(scene, ontology, meaning)
+        if more is not None:
+            return place, more
+    return len(kinds), UnnamedKind.of(scene, ontology)
 
 
 def is_same_table(first: Scene, second: Scene) -> bool:

@@ -5,38 +5,46 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from deixis.errors import DeixisError
-from deixis.memory.episodes.changes import Add, Change, Finish, Logged
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.changes import Add, Logged
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
+from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
-from deixis.robot.live.senses import AT, CALLED, ENDED, NOT_CALLED, SAID, TABLE
+from deixis.robot.live.senses import AT, CALLED, ENDED, NOT_CALLED, SAID, TABLE, WATCHED
 from deixis.robot.modules import Board, Module
-from deixis.robot.robot import Robot, understood
+from deixis.robot.robot import Robot, Told
+from deixis.robot.unnamed import LayoutQuestion
+from deixis.workflows.knowledge.recall import CONTRADICTED, EXPECTED, IS_A, SAME_AS
 from deixis.workflows.scenes.point import spoken_name
 
-IS_A, LAYOUT, FAULT, SAYS, DONE = "isA", "layout", "fault", "says", "done"
-"""Predicates: the category of a thing, the layout of the table, a mistake on it, what the robot says, and that it has
-dealt with the whole story."""
+SAYS, DONE = "says", "done"
+"""Predicates: what the robot says, and that it has dealt with the whole story."""
 
-_WRONG = re.compile(r"\b(wrong|missing|mistakes?|right|correct|laid)\b", re.IGNORECASE)
+_WRONG = re.compile(
+    r"\b(wrong|missing|mistakes?|correct|laid)\b|\b(?:this|it|everything|all|table)( laid)? right\b", re.IGNORECASE
+)
 """Words of questions about the mistakes on the present table."""
 
-_NAMED = re.compile(
-    r"\s*this is how (?:an? )?['\"‘“]?(?P<name>[^'\"’”.:]{1,60}?)['\"’”]? is laid[.:]\s*", re.IGNORECASE
-)
-"""Sentence before a description that names the layout."""
+_TOLD = re.compile(r"\b(tell|told|say|said)\b", re.IGNORECASE)
+"""Words of questions about what was said."""
 
-SURE = 0.8
-"""Probability from which a name is written as the category of a thing."""
+_NAME = re.compile(
+    r"(?:(?:none|no(?: name|thing| idea)?|never mind|i do not know|it has no name|i don['’]t know)"
+    r"|(?:(?:it|this|that)(?:['’]s| is)(?: called)? |call it )?(?:an? |the )?"
+    r"['\"‘“]?(?P<name>[\w-]+(?: [\w-]+){0,3})['\"’”]?)[.!]?",
+    re.IGNORECASE,
+)
+"""Answer to the question for the name of a layout: a name of up to four words, or that it has none."""
 
 if TYPE_CHECKING:
-    from deixis.grammar.script import Script
+    pass
 
 
 class Learner(Module):
@@ -50,15 +58,17 @@ class Learner(Module):
 
     name: ClassVar[str] = "learner"
     reads: ClassVar[tuple[Pattern, ...]] = tuple(
-        Pattern(predicate=each) for each in (TABLE, CALLED, NOT_CALLED, SAID, ENDED, AT)
+        Pattern(predicate=each) for each in (TABLE, WATCHED, CALLED, NOT_CALLED, SAID, ENDED, AT, RECORDED)
     )
-    writes: ClassVar[tuple[Pattern, ...]] = tuple(Pattern(predicate=each) for each in (IS_A, LAYOUT, FAULT, SAYS, DONE))
 
     def __init__(self, memory: str) -> None:
         self._memory = memory
         self._robot: Robot | None = None
-        self._found: dict[tuple[str, str, str], str] = {}  # fluents that hold, by statement
         self._asked: Question | None = None
+        self._announced: dict[str, Standing] = {}  # what was said about each expected object
+        self._named: LayoutQuestion | None = None  # the question for a name that was asked
+        own = (IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT, EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE)
+        self.writes = tuple(Pattern(predicate=each) for each in (*own, *sorted(described_predicates())))  # type: ignore[misc]
 
     def run(self, board: Board, stopped: threading.Event) -> None:
         """Wait, and close the memory at the end."""
@@ -69,9 +79,8 @@ class Learner(Module):
 
     @property
     def robot(self) -> Robot:
-        """The robot, whose memory is opened when it is first needed."""
-        if self._robot is None:
-            self._robot = Robot(self._memory)
+        """The robot, which is made with the first change."""
+        assert self._robot is not None, "the robot reads no blackboard yet"
         return self._robot
 
     def changed(self, change: Logged, board: Board) -> None:
@@ -84,52 +93,99 @@ class Learner(Module):
         board
             The board of the module.
         """
-        if change.kind != "add" or change.after is None:
+        if change.after is None:
             return
+        if self._robot is None:  # the memory is opened when it is first needed
+            self._robot = Robot(self._memory, board)
         said, at = change.after.statement, change.after.start.lower
+        if said.predicate == WATCHED:
+            self.robot.watches(change.after.finish.lower)
+            self._announce(change.after.finish.lower, board)
+        elif said.predicate == RECORDED and not change.after.is_open:
+            self._consolidate(change.after.finish.upper, board)
+        if change.kind != "add":
+            return
         if said.predicate == TABLE and said.object is not None:
             self._look(Path(said.object), at, board)
         elif said.predicate == CALLED and said.object is not None:
             self._shown(said.object, said.subject, change.after.source.by, at, board)
         elif said.predicate == SAID and said.object is not None:
-            self._heard(said.object, change.after.source.by, at, board)
+            self._heard(said.object, change.after, board)
         elif said.predicate == ENDED:
-            self._state(board, {(self.name, DONE, "story")}, (DONE,), at)
+            self._add((self.name, DONE, "story"), at, board)
 
     def _look(self, file: Path, at: float, board: Board) -> None:
         if not file.exists():
             return
-        self.robot.sees(read_scene(file))
+        self.robot.sees(read_scene(file), at)
         self._understand(board, at)
+        self._ask_name(at, board)
 
     def _understand(self, board: Board, at: float) -> None:
-        """Write what the things of the table are, and how it is laid."""
-        if not self.robot.scene.objects:
-            self._state(board, set(), (IS_A, LAYOUT, FAULT), at)
-            return
-        names = {
-            (thing, IS_A, best): min(shares[best], 1.0)
-            for thing, shares in self.robot.names().items()
-            for best in list(shares)[:1]
-            if shares[best] >= SURE
-        }
-        layout = self.robot.layout()
-        faults = self.robot.check() if layout is not None else ()
-        found = {*names, *(("table", FAULT, str(fault)) for fault in faults)}
-        if layout is not None:
-            found.add(("table", LAYOUT, layout))
-        self._state(board, found, (IS_A, LAYOUT, FAULT), at, names)
+        """Look at the table, which writes what its things are, and say what became of expected objects."""
+        if self.robot.scene.objects:
+            self.robot.look()
+        else:
+            self.robot.diary.concluded((), (IS_A, LAYOUT, FAULT), at, {})
+        self._announce(at, board)
+
+    def _consolidate(self, at: float, board: Board) -> None:
+        """Learn from the experiences whose recording has finished."""
+        done = self.robot.consolidate()
+        for name, lesson in done.lessons.items():
+            self._say(f"The experience '{name}' is lesson {lesson}.", at, board)
+
+    def _ask_name(self, at: float, board: Board) -> None:
+        """Ask for the name of a layout that came again."""
+        if self._asked is None and self._named is None:
+            self._named = self.robot.layout_question
+            if self._named is not None:
+                self._say(f"{self._named.text} {self._named.why}", at, board)
+
+    def _learned_name(self, text: str, by: str, at: float, board: Board) -> bool:
+        """Take a text as the name that was asked for; return False if it is not an answer."""
+        assert self._named is not None
+        given = _NAME.fullmatch(text.strip())
+        if given is None:
+            return False
+        question, self._named = self._named, None
+        name = given["name"]
+        try:
+            lessons = self.robot.name_layout(question, name, by)
+        except DeixisError as error:
+            self._say(f"I could not learn '{name}': {str(error).splitlines()[0]}", at, board)
+            return True
+        told = f"Thank you: I know '{name}' from {len(lessons)} tables." if name else "I will not ask for it again."
+        self._say(told, at, board)
+        self._understand(board, at)
+        return True
+
+    def _announce(self, at: float, board: Board) -> None:
+        """Say which expected objects were seen, or are not expected any more."""
+        for one in self.robot.expected:
+            if one.standing is self._announced.get(one.id, Standing.EXPECTED):
+                continue
+            self._announced[one.id] = one.standing
+            spoken = f"the {one.name} that {one.by} spoke of"
+            if one.standing is Standing.SEEN:
+                self._say(f"I see {spoken}: it is {one.thing}, probability {one.probability:.2f}.", at, board)
+            else:
+                self._say(f"I do not see {spoken}: {one.reason}.", at, board)
 
     def _shown(self, label: str, thing: str, by: str, at: float, board: Board) -> None:
         try:
-            self.robot.shown(label, thing, by)
+            self.robot.shown(label, thing, by, at)
         except DeixisError as error:
             self._say(f"I could not learn '{label}': {error}", at, board)
             return
         self._say(f"I see: {thing} is a {label}.", at, board)
         self._understand(board, at)
 
-    def _heard(self, text: str, by: str, at: float, board: Board) -> None:
+    def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
+        by, at = fluent.source.by, fluent.start.lower
+        answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or spoken_name(text) is None
+        if self._named is not None and answers and self._learned_name(text, by, at, board):
+            return
         if spoken_name(text) is not None:
             return  # the senses say which thing it names
         if text.strip().endswith("?"):
@@ -138,21 +194,20 @@ class Learner(Module):
         if self._asked is not None and self._settled(text, by, at, board):
             return
         try:
-            told = self.robot.told(self._script(text))
+            told = self.robot.told(text, by, at, fluent.source.event)
         except DeixisError as error:
             self._say(f"I did not understand: {str(error).splitlines()[0]}", at, board)
             return
-        taught = _listed(told.taught) or "nothing new"
-        waiting = f" I am not sure yet about: {_listed(told.waiting)}." if told.waiting else ""
-        self._say(f"I learned how '{told.lesson.layout}' is laid. I know now: {taught}.{waiting}", at, board)
-        self._understand(board, at)
-        self._ask(at, board)
-
-    def _script(self, text: str) -> Script:
-        """Return the layout that a text describes, with the name that the text gives it."""
-        named = _NAMED.match(text)
-        script = understood(text if named is None else text[named.end() :], self.robot.session)
-        return script if named is None else replace(script, name=named["name"].strip().replace(" ", "_"))
+        if isinstance(told, Told):
+            taught = _listed(told.taught) or "nothing new"
+            waiting = f" I am not sure yet about: {_listed(told.waiting)}." if told.waiting else ""
+            self._say(f"I learned how '{told.lesson.layout}' is laid. I know now: {taught}.{waiting}", at, board)
+            self._understand(board, at)
+            self._ask(at, board)
+            return
+        if left := [one.name for one in told if one.standing is Standing.EXPECTED]:
+            self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)
+        self._announce(at, board)
 
     def _ask(self, at: float, board: Board) -> None:
         """Ask the question that tells most, if one is worth asking."""
@@ -177,7 +232,7 @@ class Learner(Module):
 
     def _answer(self, question: str) -> str:
         """Return the answer to a question: what is wrong with the table, or what was when."""
-        if not _WRONG.search(question):
+        if not _WRONG.search(question) or _TOLD.search(question):
             try:
                 found = self.robot.session.recall(question)
                 return found.answer if found.known else f"I do not know: {found.reason}."
@@ -192,30 +247,11 @@ class Learner(Module):
         return f"This is '{look.layout}'; " + "; ".join(map(str, faults)) + "."
 
     def _say(self, text: str, at: float, board: Board) -> None:
-        source = Source(Origin.INFERRED, self.name)
-        added = episodic(board.new_id("f"), (self.name, SAYS, text), start=at, finish=at + 1e-3, source=source)
-        board.write(Add(added))
+        self._add((self.name, SAYS, text), at, board, finish=at + 1e-3)
 
-    def _state(
-        self,
-        board: Board,
-        found: set[tuple[str, str, str]],
-        predicates: tuple[str, ...],
-        at: float,
-        certainties: dict[tuple[str, str, str], float] | None = None,
-    ) -> None:
-        """Make these the statements with these predicates that hold."""
-        over = [each for each in self._found if each[1] in predicates and each not in found]
-        changes: list[Change] = [Finish(self._found.pop(statement), at) for statement in over]
-        for statement in sorted(found - self._found.keys()):
-            certainty = (certainties or {}).get(statement, 1.0)
-            added = episodic(
-                board.new_id("f"), statement, start=at, certainty=certainty, source=Source(Origin.INFERRED, self.name)
-            )
-            self._found[statement] = added.id
-            changes.append(Add(added))
-        if changes:
-            board.write(*changes)
+    def _add(self, statement: tuple[str, str, str], at: float, board: Board, finish: float | None = None) -> None:
+        source = Source(Origin.INFERRED, self.name)
+        board.write(Add(episodic(board.new_id("f"), statement, start=at, finish=finish, source=source)))
 
 
 def _listed(names: Iterable[str]) -> str:

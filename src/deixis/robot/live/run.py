@@ -12,11 +12,13 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.live.learner import DONE, FAULT, IS_A, LAYOUT, SAYS
+from deixis.robot.diary import FAULT, LAYOUT
+from deixis.robot.live.learner import DONE, SAYS
 from deixis.robot.live.senses import AT, NOTICED, SAID
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
 from deixis.scratch import scratch_folder
+from deixis.workflows.knowledge.recall import IS_A
 
 Report = Callable[[str], None]
 
@@ -85,7 +87,8 @@ class LiveRobot:
         str or None
             Its name; None if it is not known.
         """
-        return next((each.statement.object for each in self._now(LAYOUT)), None)
+        found = (each.statement for each in self._now(LAYOUT))
+        return next((said.object for said in found if said.subject == "table"), None)
 
     def faults(self) -> tuple[str, ...]:
         """Return what is wrong with the table.

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.grammar.utterances import Utterance
-from deixis.memory.episodes.changes import Add, Change, Finish
+from deixis.memory.episodes.changes import Add, Change, Finish, Update
 from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import Pointing, pointed_at
@@ -37,14 +37,17 @@ from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
 from deixis.workflows.scenes.point import SAME_MOMENT, pointed_label, taught_labels
 
-AT, TABLE, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED = (
-    "at", "lookedLike", "called", "notCalled", "pointedAt", "said", "noticed", "ended",
+AT, TABLE, WATCHED, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED = (
+    "at", "lookedLike", "watched", "called", "notCalled", "pointedAt", "said", "noticed", "ended",
 )  # fmt: skip
-"""Predicates: the box of a thing, the file of the scene, what a thing is called and is not called, what a person
-pointed at and said, what the robot noticed, and the end of the story."""
+"""Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a thing is
+called and is not called, what a person pointed at and said, what the robot noticed, and the end of the story."""
 
 STILL = 0.6
 """Seconds without movement after which the table is written as a scene."""
+
+WATCH = 1.0
+"""Seconds between two notes that the table is still in view."""
 
 PAUSE = 0.5
 """Seconds without a skeleton after which a gesture has ended."""
@@ -79,7 +82,7 @@ class Senses(Module):
 
     name: ClassVar[str] = "senses"
     writes: ClassVar[tuple[Pattern, ...]] = tuple(
-        Pattern(predicate=each) for each in (AT, TABLE, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED)
+        Pattern(predicate=each) for each in (AT, TABLE, WATCHED, CALLED, NOT_CALLED, POINTED_AT, SAID, NOTICED, ENDED)
     )
 
     def __init__(
@@ -144,6 +147,7 @@ class _Writer:
         self._places: dict[str, tuple[str, float]] = {}  # fluent of the place by thing, and since when it is there
         self._table: str | None = None
         self._written: tuple[tuple[str, float], ...] | None = None
+        self._watched: tuple[str, float] | None = None  # fluent that the written table is in view, and its finish
         self._moved_at = -math.inf
         self._situation: Situation | None = None
         self._cloud: PointCloud | None = None
@@ -224,14 +228,25 @@ class _Writer:
 
         key = tuple((thing.id, thing.since) for thing in situation.things)
         if key == self._written:
+            self._write_watched(situation.at)
             return
-        self._written = key
+        self._written, self._watched = key, None
         file = self._folder / f"{self._board.new_id('table')}.scene.json"
         write_scene(self._detected(situation), file)
         added = self._add(("table", TABLE, str(file)), situation.at, Source(Origin.SEEN, "tracker"))
         changes: list[Change] = [] if self._table is None else [Finish(self._table, self._time(situation.at))]
         self._table = added.fluent.id
         self._write([*changes, added])
+
+    def _write_watched(self, at: float) -> None:
+        """Write that the table is still in view and looks as before, at most once in ``WATCH`` seconds."""
+        if self._watched is None:
+            added = self._add(("table", WATCHED), at, Source(Origin.SEEN, "tracker"), finish=at + 1e-3)
+            self._watched = added.fluent.id, at
+            self._write([added])
+        elif at - self._watched[1] >= WATCH:
+            self._watched = self._watched[0], at
+            self._write([Update(self._watched[0], finish=self._time(at))])
 
     def _detected(self, situation: Situation) -> Scene:
         """Detect all things of the table that lies still, with the names of those that are tracked.

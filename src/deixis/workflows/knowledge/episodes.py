@@ -15,9 +15,9 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Logged
+from deixis.memory.episodes.changes import Add, Change, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
-from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, episode, experiences
+from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, Experience, Holding, episode, experiences
 from deixis.memory.episodes.subscription import Subscription
 from deixis.ontology.facts import Fact
 from deixis.ontology.graph import RelationGraph
@@ -46,6 +46,27 @@ class Memory(StrEnum):
     SEMANTIC = "semantic"
     PERCEPTUAL = "perceptual"
     PROCEDURAL = "procedural"
+
+
+_NAMED = re.compile(
+    r"\s*this is how (?:an? )?['\"‘“]?(?P<name>[^'\"’”.:]{1,60}?)['\"’”]? is laid[.:]\s*", re.IGNORECASE
+)
+"""Sentence before a description that names the layout."""
+
+
+class _Board(Holding, Protocol):
+    """The methods of a robot's board that consolidation calls."""
+
+    def new_id(self, prefix: str) -> str:
+        """Return an id that this memory has never given before."""
+        ...
+
+    def write(self, *changes: Change) -> int:
+        """Write changes as one."""
+        ...
+
+
+_Episodes = Blackboard | _Board
 
 
 class _Learner(Protocol):
@@ -429,17 +450,51 @@ class Consolidation:
     left_out: dict[str, str]
 
 
-def consolidate(board: Blackboard, session: _Learner, by: str = "consolidation") -> Consolidation:
+def named_layout(text: str) -> tuple[str | None, str]:
+    """Return the name that a description gives its layout at the beginning, and the rest of the description.
+
+    Parameters
+    ----------
+    text
+        The description in English.
+
+    Returns
+    -------
+    name : str or None
+        Name of the layout, valid as the name of a script; None without one.
+    rest : str
+        The description without the sentence that names it.
+
+    Examples
+    --------
+    >>> named_layout("This is how a 'work place' is laid. The fork is left of the plate.")
+    ('work_place', 'The fork is left of the plate.')
+    """
+    named = _NAMED.match(text)
+    return (None, text) if named is None else (named["name"].strip().replace(" ", "_"), text[named.end() :])
+
+
+def consolidate(
+    board: _Episodes,
+    session: _Learner,
+    by: str = "consolidation",
+    undescribed: Callable[[Scene], object] | None = None,
+) -> Consolidation:
     """Learn a layout from each finished experience that a person described, once.
+
+    Experiences of layouts with one name are tables of one layout. What taught a lesson when it was said is not learned
+    again. A layout that the words do not name has the name of the experience.
 
     Parameters
     ----------
     board
-        The blackboard.
+        The blackboard, or a robot's board.
     session
-        The session that learns: it grounds the words in what lay on the table at the end of the experience.
+        The session or robot that learns: it grounds the words in what lay on the table at the end of the experience.
     by
-        Name under which the lessons are written to the blackboard.
+        Name under which the lessons are written to a blackboard.
+    undescribed
+        Called, once, with the table of each experience in which nothing was said.
 
     Returns
     -------
@@ -454,26 +509,46 @@ def consolidate(board: Blackboard, session: _Learner, by: str = "consolidation")
             continue
         fluents = episode(board, each.name)
         last = math.nextafter(each.finish, -math.inf)
-        said = [
-            str(f.statement.object)
-            for f in fluents
-            if f.statement.predicate == "said" and f.start.lower >= each.start  # in this experience, not before
+        known = {layout.lesson for layout in session.layouts()} if session.remembers() else set()
+        words = [  # in this experience, not before
+            f for f in fluents if f.statement.predicate == "said" and f.start.lower >= each.start
         ]
         scene = scene_of(fluents, last)
-        if not said or scene is None:
-            left_out[each.name] = "nothing was said in it" if not said else "no thing has a place in it"
-            continue
-        try:
-            script = replace(_understood(said, session), name=re.sub(r"\W+", "_", each.name), title=each.name)
-            lesson = session.learn(script, scene).lesson.id
-        except DeixisError as error:
-            left_out[each.name] = str(error).splitlines()[0]
-            continue
-        lessons[each.name] = lesson
-        source = Source(Origin.INFERRED, by, each.id)
-        marker = episodic(board.new_id("c"), (each.name, CONSOLIDATED, lesson), start=each.finish, source=source)
-        board.write(Add(marker), by=by)
+        taught = next((f.source.event for f in words if f.source.event in known), None)
+        if taught is None:
+            if not words or scene is None:
+                left_out[each.name] = "nothing was said in it" if not words else "no thing has a place in it"
+                if scene is not None and undescribed is not None:
+                    undescribed(scene)
+                    _mark(board, each, "", by)
+                continue
+            try:
+                taught = _learned(each, [str(f.statement.object) for f in words], scene, session)
+            except DeixisError as error:
+                left_out[each.name] = str(error).splitlines()[0]
+                continue
+        lessons[each.name] = taught
+        _mark(board, each, taught, by)
     return Consolidation(lessons, left_out)
+
+
+def _learned(experience: Experience, said: Sequence[str], scene: Scene, session: _Learner) -> str:
+    """Learn the layout that words describe from a table, and return the id of the lesson."""
+    name, rest = named_layout("\n".join(said))
+    script = _understood([rest], session)
+    if own := script.name or name:
+        script = replace(script, name=own)
+    else:
+        script = replace(script, name=re.sub(r"\W+", "_", experience.name), title=experience.name)
+    return session.learn(script, scene).lesson.id
+
+
+def _mark(board: _Episodes, experience: Experience, lesson: str, by: str) -> None:
+    """Write that an experience was consolidated, and which lesson it taught."""
+    source = Source(Origin.INFERRED, by, experience.id)
+    statement = (experience.name, CONSOLIDATED, lesson or None)
+    marker = Add(episodic(board.new_id("c"), statement, start=experience.finish, source=source))
+    board.write(marker, by=by) if isinstance(board, Blackboard) else board.write(marker)
 
 
 def consolidate_in_background(

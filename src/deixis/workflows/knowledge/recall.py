@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
 """Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
 
+EXPECTED, SAME_AS, CONTRADICTED = "expected", "sameAs", "contradicted"
+"""Predicates of objects that a person said are there: the words, the thing that it turned out to be, and the reason why
+it is not expected any more."""
+
 MOMENT = 1e-3
 """Seconds between *before* or *after* a moment and the moment itself."""
 
@@ -40,6 +44,12 @@ ANY = frozenset({"one", "ones", "thing", "things", "object", "objects", "somethi
 
 SURFACES = frozenset({"table", "desk", "counter", "surface"})
 """Nouns of what everything stands on, where no thing has the name: *what is on the table?*"""
+
+SIDES = frozenset({"left", "right", "middle", "centre", "center", "front", "back", "far side", "near side"})
+"""Nouns of parts of the table: *is there a ball on the left?*"""
+
+OF_EXPECTED = {"unseen": EXPECTED, "contradicted": CONTRADICTED, "confirmed": SAME_AS}
+"""Predicate that answers each kind of question about what persons said is there."""
 
 EVENTS = {"gone": Event.GOES, "come": Event.COMES, "moved": Event.MOVES}
 
@@ -200,18 +210,29 @@ class _Remembering:
         self.names: dict[str, list[tuple[float, str]]] = defaultdict(list)
         self.things: set[str] = set()
         self.predicates: set[str] = set()
+        self.said_of: dict[str, set[str]] = defaultdict(set)  # words that were said of each thing
+        self.expected: dict[str, str] = {}  # persons by the objects that they said are there
         relations = {relation.name for relation in ontology.relations.values()}
+        related: set[str] = set()
         for each in board.holding():
             said = each.statement
+            if said.predicate == EXPECTED:
+                self.expected[said.subject] = each.source.by
+            if said.predicate == SAME_AS and said.object is not None:
+                self.said_of[said.object] |= self.said_of[said.subject]
+            elif said.object is not None and said.predicate not in (AT, SAID, EXPECTED):
+                self.said_of[said.subject].add(said.object)
             if said.predicate == IS_A and said.object is not None:
                 self.names[said.subject].append((each.start.lower, said.object))
             if said.predicate in (AT, IS_A) or said.predicate in relations:
                 self.things.add(said.subject)
-                self.predicates.add(said.predicate)
+                related.add(said.predicate)
+                if said.subject not in self.expected:
+                    self.predicates.add(said.predicate)
             if said.predicate in relations and said.object is not None:
                 self.things.add(said.object)
-        self.relations = frozenset(self.predicates & relations)
-        self.places = frozenset({AT}) if AT in self.predicates else self.relations
+        self.relations = frozenset(related & relations)
+        self.places = frozenset({AT} if AT in self.predicates else self.predicates & relations)
 
     # ---- names
 
@@ -228,6 +249,14 @@ class _Remembering:
             return None
         found = {thing for thing in self.things if thing.lower() in (noun, noun.replace(" ", "_"))}
         found |= {thing for thing, kinds in self.names.items() if any(self._fits(kind, words) for _, kind in kinds)}
+        adjective, _, rest = words.partition(" ")
+        if not found and rest:  # the red ball
+            try:
+                whole = self.resolve(rest)
+            except _NotKnownError:
+                whole = frozenset()
+            found = {thing for thing in self.things if adjective in self.said_of[thing]}
+            found &= self.things if whole is None else whole
         if not found:
             known = sorted({self.name(thing) for thing in self.things})
             has = f"; it has: {', '.join(known[:8])}{' …' if len(known) > 8 else ''}" if known else ", which is empty"
@@ -303,6 +332,8 @@ class _Remembering:
             return self._search_of_event(asked, things)
         if kind in ("shown", "said", "who", "happened"):
             return self._search_of_statements(asked, things)
+        if kind in OF_EXPECTED:
+            return self._search_of_expected(asked)
         start, end, pick = self.window(asked.when, event=False)
         edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
         if kind == "when_held":
@@ -315,6 +346,12 @@ class _Remembering:
             if kind in ("where", "where_put", "seen_last") and self.relations:
                 by_relation = replace(found, predicates=self.relations)
                 found = by_relation if by_relation.run(self.board) else found
+            if things is not None and things & self.expected.keys():
+                words = frozenset({EXPECTED})
+                if kind == "whether_there":
+                    return replace(found, predicates=found.predicates and found.predicates | words)
+                if kind == "where" and not found.run(self.board):
+                    return replace(found, predicates=words)
             return found
         related = replace(found, predicates=frozenset({asked.relation}))
         if asked.other in SURFACES and asked.relation == "on" and not self._is_known(asked.other):
@@ -326,6 +363,15 @@ class _Remembering:
             return bool(self.resolve(noun))
         except _NotKnownError:
             return False
+
+    def _search_of_expected(self, asked: RecallQuestion) -> FluentSearch:
+        """Return the search of objects that persons said are there: those not seen yet, not there, or seen."""
+        by = self._persons(asked)
+        things = frozenset(thing for thing, person in self.expected.items() if by is None or person in by)
+        predicate = frozenset({OF_EXPECTED[asked.kind]})
+        if asked.kind == "unseen":
+            return FluentSearch(things, predicate, edge=Edge.HOLDS, start=self.asked, end=self.asked)
+        return FluentSearch(things, predicate, edge=Edge.STARTS, end=self.asked)
 
     def _search_of_event(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
         start, end, pick = self.window(asked.when, event=True)
@@ -342,13 +388,15 @@ class _Remembering:
         if asked.kind == "happened":
             return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
         if asked.kind == "said":
-            return FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
+            said = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
+            sentences = replace(said, predicates=frozenset({SAID}))
+            return sentences if sentences.run(self.board) else said
         origins = frozenset({Origin.SHOWN, Origin.SAID} if asked.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, None, None, origins, by, Edge.STARTS, start, end, pick)
 
     def _persons(self, asked: RecallQuestion) -> frozenset[str] | None:
         wanted = asked.speaker or self.speaker
-        if wanted is None or asked.kind not in ("shown", "said"):
+        if wanted is None or asked.kind not in ("shown", "said", *OF_EXPECTED):
             return None
         origins = (Origin.SAID, Origin.SHOWN)
         known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
@@ -363,9 +411,18 @@ class _Remembering:
     def answer(self, asked: RecallQuestion) -> Recall:
         """Return the answer to a question."""
         search = None
+        if asked.kind == "whether" and asked.other in SIDES and not self._is_known(asked.other):
+            asked = replace(
+                asked, kind="whether_there", thing=f"{asked.other} {asked.thing}", relation=None, other=None
+            )
         try:
             search = self.search(asked)
             found = search.run(self.board)
+            unseen = frozenset(each.statement.subject for each in found) & self.expected.keys()
+            if asked.kind == "whether" and unseen and len(unseen) == len({each.statement.subject for each in found}):
+                asked, words = replace(asked, kind="whether_there"), frozenset({EXPECTED})
+                search = replace(search, subjects=unseen, predicates=words, objects=None)
+                found = search.run(self.board)
             otherwise = self._otherwise(asked, search) if not found else ()
             if not found and not otherwise:
                 raise _NotKnownError(self._reason(asked))
@@ -394,9 +451,13 @@ class _Remembering:
         if asked.kind == "whether_did" and asked.event != "shown":
             held = replace(search, edge=Edge.HOLDS, event=None, pick=Pick.ALL, predicates=self.relations or self.places)
             return held.run(self.board)
-        if asked.kind != "whether":
+        if asked.kind not in ("whether", "whether_there"):
             return ()
-        return replace(search, predicates=self.relations, objects=None).run(self.board)
+        wrong = replace(search, predicates=frozenset({CONTRADICTED}), edge=Edge.STARTS, objects=None)
+        missing = replace(wrong, start=-math.inf, pick=Pick.LAST).run(self.board)
+        if asked.kind == "whether_there":
+            return missing
+        return replace(search, predicates=self.relations, objects=None).run(self.board) or missing
 
     def _reason(self, asked: RecallQuestion) -> str:
         """Return why nothing answers a question."""
@@ -426,6 +487,9 @@ _UNRECORDED = {
     "said": "nothing is recorded as said",
     "who": "no person is recorded as having shown or named it",
     "present": "nothing is recorded as there",
+    "unseen": "nothing that was said to be there is still to be seen",
+    "contradicted": "nothing that was said to be there was found missing",
+    "confirmed": "nothing that was said to be there was seen",
 }
 
 
@@ -465,6 +529,10 @@ def _sentence(found: Recall) -> str:
     """Return the answer to a question in words."""
     asked, facts = found.question, found.facts
     kind = asked.kind
+    if kind == "whether_there" and all(fact.fluent.statement.predicate == EXPECTED for fact in facts):
+        sure = max(fact.fluent.certainty for fact in facts)
+        said = "; ".join(_distinct(_fact(found, fact) for fact in facts))
+        return f"Probably{'' if sure >= 0.5 else ' not'}: {said}."
     if kind in ("whether", "whether_there"):
         return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
     if kind == "how_many":
@@ -497,9 +565,20 @@ def _capital(text: str) -> str:
 def _fact(found: Recall, fact: Recalled) -> str:
     """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
     said, fluent = fact.fluent.statement, fact.fluent
+    words = (said.object or "").rstrip(".!")
     verb = "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
     if said.predicate == SAID:
-        return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {said.object}"
+        return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
+    elif said.predicate == EXPECTED:
+        told = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
+        if not fluent.is_open:
+            return f"{told}; expected to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
+        return f"{told}; the {fact.name} was not seen yet, probability {fluent.certainty:.2g}"
+    elif said.predicate in (CONTRADICTED, SAME_AS):
+        then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
+        if said.predicate == CONTRADICTED:
+            return f"the {fact.name} was not there {then}: {said.object}{_source(fact)}"
+        return f"the {fact.name} was seen {then}: {said.object}{_source(fact)}"
     elif said.predicate == AT:
         text = f"the {fact.name} {verb} there"
     elif said.predicate == IS_A:

@@ -100,7 +100,10 @@ class Pupil:
 
     def layouts(self) -> Any:
         """Return the layouts that were taught."""
-        return tuple(script for script, _ in self.taught)
+        return tuple(
+            SimpleNamespace(name=script.name, lesson=f"lesson-{number}")
+            for number, (script, _) in enumerate(self.taught, 1)
+        )
 
     def has_views(self) -> bool:
         """Return False."""
