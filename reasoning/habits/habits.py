@@ -171,12 +171,13 @@ class Habits:
     ) -> None:
         stated = stated or {}
         self.examples = dict(examples)
-        self.places = tuple(dict.fromkeys((*places, *examples.values(), *stated.values())))
+        ordered = dict(sorted(examples.items()))  # so that ties in the search do not follow the order of the examples
+        self.places = tuple(dict.fromkeys((*places, *ordered.values(), *stated.values())))
         if not self.places:
             raise SettingError("habits: state at least one example or rule, such as 'sneakers: rack'")
         self._concepts = Concepts(ontology or default_ontology())
-        self._known = {thing: self._concepts.of(thing) for thing in examples}
-        self._labels = np.array([self.places.index(place) for place in examples.values()], dtype=np.int64)
+        self._known = {thing: self._concepts.of(thing) for thing in ordered}
+        self._labels = np.array([self.places.index(place) for place in ordered.values()], dtype=np.int64)
         self._stated = [(self._named(words), self.places.index(place)) for words, place in stated.items()]
         self._classes = self._group_by_examples()
         self._descriptions = self._search(deadline)
@@ -208,7 +209,8 @@ class Habits:
             scores[place] += self._covered_scores(number)
         chosen = scores.argmax(axis=0) if scores.size else self._labels
         wrong = (chosen != self._labels) | ~scores.any(axis=0)
-        return tuple(thing for thing, off in zip(self.examples, wrong, strict=True) if off)
+        off = {thing for thing, is_off in zip(self._known, wrong, strict=True) if is_off}
+        return tuple(thing for thing in self.examples if thing in off)
 
     def place_of(self, thing: str) -> Placement:
         """Return where a thing goes.

@@ -35,7 +35,7 @@ CORE = [
     f"fmt {SCRIPT}",
     f"infer {SCRIPT}",
     f"imagine {SCRIPT} -o out/imagined.scene.json",
-    f"ground {SCRIPT} {SCENE}",
+    f"ground {SCRIPT} {SCENE} --time-limit 60",
     f"learn {SCRIPT} {LABELLED}",
     "show formal_dinner",
     f"check formal_dinner {SECOND} --report out/report.ttl",

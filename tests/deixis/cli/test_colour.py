@@ -49,7 +49,7 @@ def test_a_contradiction_is_red_and_its_advice_is_plain() -> None:
 
 
 def test_undecided_matches_are_yellow_and_decided_ones_plain() -> None:
-    out = on_terminal("ground", SCRIPT1, SCENE, "--no-sizes")
+    out = on_terminal("ground", SCRIPT1, SCENE, "--no-sizes", "--time-limit", "60")
     rows = [line for line in out.splitlines() if re.search(r" o\d+ +(0|1)", line)]
     assert len(rows) == 12
     assert all(line.startswith(YELLOW) == ("   or " in line) for line in rows)

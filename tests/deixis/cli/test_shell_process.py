@@ -132,7 +132,9 @@ def test_without_a_home_and_from_another_folder(tmp_path: Path) -> None:
     env = environment()
     env.pop("HOME", None)
     command = [sys.executable, "-m", "deixis.cli.app", "ground", str(SCRIPT1), str(SCENE), "--plot", "found.png"]
-    ran = subprocess.run(command, env=env, cwd=tmp_path, capture_output=True, text=True, check=False)
+    ran = subprocess.run(
+        [*command, "--time-limit", "60"], env=env, cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert (ran.returncode, ran.stderr) == (0, "")
     assert (tmp_path / "found.png").stat().st_size > 5_000
     assert [entry.name for entry in tmp_path.iterdir()] == ["found.png"]

@@ -84,11 +84,11 @@ def test_all_justifications_of_a_statement_are_printed(tmp_path: Path) -> None:
     chains = tmp_path / "chains.ttl"
     said = ":r a owl:ObjectProperty, owl:TransitiveProperty . :f :r :p, :m . :p :r :k . :m :r :k ."
     chains.write_text(PREFIXES + said, encoding="utf-8")
-    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all")
+    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all", "--time-limit", "120")
     assert code == 0
     assert out.count("r(f, k), because") == 2
     assert "  r(f, p)" in out.splitlines() and "  r(f, m)" in out.splitlines()
-    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all", "--json")
+    code, out, _ = deixis("reason", chains, "--explain", ":f :r :k", "--all", "--json", "--time-limit", "120")
     found = json.loads(out)
     assert code == 0 and found["complete"]
     assert [len(one["axioms"]) for one in found["justifications"]] == [3, 3]

@@ -36,6 +36,8 @@ from deixis.workflows.grounding.viewpoint import ViewpointScene
 from deixis.workflows.layouts.read import read_script
 
 SCENE = example("place_setting.scene.json")
+PATIENT = ("--time-limit", "60")
+"""Options for answers that a busy machine must not leave undecided."""
 TRUTH = {thing.label: thing.id for thing in read_scene(example("place_setting.labelled.scene.json")).objects}
 
 
@@ -98,8 +100,8 @@ def scene_of(ids: Sequence[str], boxes: np.ndarray) -> dict[str, Any]:
 def test_a_turned_table_is_grounded_as_if_it_were_not(quarters: int, option: str, tmp_path: Path) -> None:
     file = tmp_path / "turned.scene.json"
     file.write_text(json.dumps(turned_scene(quarters)), encoding="utf-8")
-    straight = deixis("ground", example("formal_dinner.layout"), SCENE, "--json")[1]
-    code, out, _ = deixis("ground", example("formal_dinner.layout"), file, "--viewpoint", option, "--json")
+    straight = deixis("ground", example("formal_dinner.layout"), SCENE, "--json", *PATIENT)[1]
+    code, out, _ = deixis("ground", example("formal_dinner.layout"), file, "--viewpoint", option, "--json", *PATIENT)
     assert code == 0
     assert matches(out) == matches(straight) == TRUTH
     said = json.loads(out)
@@ -175,7 +177,7 @@ def test_both_searches_share_the_time_limit_without_answers(tmp_path: Path, monk
 
 
 def test_who_does_not_know_leaves_every_probability_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    arguments = ("ground", example("script2.layout"), SCENE, "--json")
+    arguments = ("ground", example("script2.layout"), SCENE, "--json", *PATIENT)
     monkeypatch.setattr("sys.stdin", io.StringIO("?\n" * 50))
     _, asked, err = deixis(*arguments, "--ask")
     assert err.startswith("1. ")
@@ -341,7 +343,9 @@ def test_python_holds_a_dialogue_as_the_command_does() -> None:
 
 @pytest.mark.parametrize("viewpoint", ["quarter", "unknown"])
 def test_viewpoints_are_as_probable_as_the_sides_of_matches(viewpoint: str) -> None:
-    found = deixis_package.ground(example("formal_dinner.layout"), turned_scene(1), viewpoint=viewpoint)
+    found = deixis_package.ground(
+        example("formal_dinner.layout"), turned_scene(1), viewpoint=viewpoint, time_limit=60.0
+    )
     assert found.viewpoints and found.fits is not None
     sides = {(side.angle, side.mirrored): probability / found.fits for side, probability in found.sides}
     assert sum(view.probability for view in found.viewpoints) == pytest.approx(1.0)
