@@ -11,6 +11,9 @@ fact of the truth agrees in the same way; the surface, adjectives and counts tha
 
 Prints recall, precision, traps, and with ``--ground`` the share of mentioned objects that are grounded right.
 
+``--made N`` makes sentences from the templates in ``english_traps.txt``, which state a place or only mention one, and
+prints which of them are misread.
+
 ``--texts FOLDER`` measures texts with their facts in short notation instead (``tests/grammar/english/texts``): after
 ``=== name`` the lines of the text, then lines ``> relation(subject, object); …`` with what it states, and
 ``> ? relation(…)`` with what may come out too. ``not`` denies a fact, ``~`` marks one that may come out but not as
@@ -28,10 +31,13 @@ from pathlib import Path
 from typing import Any
 
 from common import data_folder
+from english_traps import STATEMENTS, Made, made
 from records import command_line, count, recorded, share
 
 from deixis.errors import DeixisError
+from deixis.grammar.english import confidence
 from deixis.grammar.english.reader import read_english
+from deixis.ontology.facts import Fact as ScriptFact
 from deixis.report.layouts.read import reading_to_dict
 
 SAME = {
@@ -43,6 +49,11 @@ OPPOSITE = {"smaller": "bigger", "shorter": "taller"}
 DETERMINERS = frozenset(
     ["the", "a", "an", "my", "your", "his", "her", "our", "their", "its", "this", "that", "these", "those"]
 )
+ADJECTIVES = frozenset(
+    ["count", "colour", "size", "material", "contents", "kind", "state", "shape", "height", "length", "width",
+     "thickness", "empty", "open", "closed", "none_on", "none_inside", "none_under", "none_next_to"]
+)  # fmt: skip
+"""Relations of facts that tell no place."""
 NOT_COUNTED = frozenset({"count", "size", "colour", "material", "shape", "state", "with"})
 Fact = dict[str, Any]
 
@@ -184,6 +195,61 @@ def measure_texts(folder: Path, verbose: bool) -> tuple[Score, list[tuple[str, s
     return score, wrong
 
 
+def places_asserted(text: str) -> list[tuple[str, str]]:
+    """Return the places that a text asserts, as relations and facts; not what is only adjectives and counts."""
+    try:
+        reading = read_english(text).reading
+    except DeixisError:
+        return []
+    assert reading is not None
+    stated = [fact.content for fact in reading.stated if fact.asserted and fact.content.positive]
+    named = [(c.relations[0].name if isinstance(c, ScriptFact) else c.relation, str(c)) for c in stated]
+    return [(relation, shown) for relation, shown in named if relation not in ADJECTIVES]
+
+
+def wrong_about(sentence: Made) -> list[str]:
+    """Return the false facts of a made sentence, or its place if it states one that was not read."""
+    facts = places_asserted(sentence.text)
+    if sentence.group == STATEMENTS:
+        return [] if any(relation == sentence.relation for relation, _ in facts) else [sentence.relation]
+    elsewhere = "in the sink" in sentence.text
+    return [shown for _, shown in facts if not (elsewhere and "sink" in shown)]
+
+
+def print_made(samples: int) -> None:
+    """Print how many made traps become facts, and how many made statements do not."""
+    wrong = {True: 0, False: 0}
+    total = {True: 0, False: 0}
+    for sentence in made(samples):
+        states = sentence.group == STATEMENTS
+        faults = wrong_about(sentence)
+        wrong[states], total[states] = wrong[states] + bool(faults), total[states] + 1
+        if faults:
+            print(f"    {sentence.text} {'no ' * states}{', '.join(faults)}")
+    print(f"{wrong[False]} of {total[False]} made traps become facts; {wrong[True]} of {total[True]} statements do not")
+
+
+def print_guesses(folder: Path) -> None:
+    """Print the share of right facts by the guesses at which they were read; doubtful facts count as asserted."""
+    confidence.MIN_CONFIDENCE = -1.0
+    shares: dict[str, Score] = {}
+    for file in sorted(path for path in folder.glob("*.txt") if path.name != "traps.txt"):
+        for text in written_texts(file):
+            script = read_english(text.text, text.name)
+            read = reading_to_dict(script)
+            assert script.reading is not None
+            names = Names(read)
+            possible = [{**fact, "part": None} for fact in (*text.stated, *text.allowed) if fact["asserted"]]
+            for stated, fact in zip(script.reading.stated, read["facts"], strict=True):
+                if counted(fact) and fact["relation"] not in ("contents", "kind"):
+                    right = any(agree(fact, other, names) for other in possible)
+                    for name in stated.guesses or ("NONE",):
+                        score = shares.setdefault(name, Score())
+                        score.right, score.told = score.right + right, score.told + 1
+    for name, score in shares.items():
+        print(f"{name:12s} {score.right / score.told:.3f} of {score.told}")
+
+
 def written_traps(file: Path) -> Iterator[tuple[str, str]]:
     """Yield each sentence of a file of traps that gives a fact which it must not give."""
     for line in file.read_text(encoding="utf-8").splitlines():
@@ -261,8 +327,16 @@ def main() -> None:
     parser.add_argument("--ground", action="store_true", help="ground the texts in their scenes as well")
     parser.add_argument("--verbose", action="store_true", help="print the facts that are missing or wrong")
     parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--made", type=int, metavar="N", help="make N sentences of each template of english_traps.txt")
+    parser.add_argument("--guesses", action="store_true", help="print the share of right facts by guess (with --texts)")
     parser.add_argument("--texts", type=Path, metavar="FOLDER", help="measure texts in short notation instead")
     with recorded(parser) as options:
+        if options.made is not None:
+            print_made(options.made)
+            return
+        if options.texts is not None and options.guesses:
+            print_guesses(options.texts)
+            return
         if options.texts is not None:
             score, wrong = measure_texts(options.texts, options.verbose)
             share("stated facts of texts found", score.found, score.stated)

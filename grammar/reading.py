@@ -22,6 +22,8 @@ class StatedFact:
     need not hold any more, ``uncertain`` for what only may hold (*might be*). Facts with the same number as
     ``alternative`` are a choice: one of them holds. ``quantifier`` is ``each`` where the facts of a sentence pair the
     members of two groups. ``need_not_hold`` is True for an alternative of a choice of which none need hold.
+    ``confidence`` is the probability that the text states the fact, in [0, 1]; ``guesses`` names the steps that
+    make it doubtful (``deixis.grammar.english.confidence``).
     """
 
     content: Fact | Claim
@@ -33,6 +35,8 @@ class StatedFact:
     alternative: int | None = None
     quantifier: str | None = None
     need_not_hold: bool = False
+    confidence: float = 1.0
+    guesses: tuple[str, ...] = ()
 
     @property
     def asserted(self) -> bool:

@@ -6,12 +6,13 @@ from dataclasses import dataclass, field, replace
 
 from deixis.grammar.english.build import Built, Noun, Said, Verb, misunderstood, notes, viewpoint_of
 from deixis.grammar.english.chunks import Chunk, VerbGroup
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.joints import Segment
 from deixis.grammar.english.nouns import PEOPLE, last_word
 from deixis.grammar.english.places import HOURS
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
-from deixis.grammar.english.words import APPROXIMATE, ENTER_VERBS, FACE_VERBS, HEDGES
+from deixis.grammar.english.words import APPROXIMATE, ENTER_VERBS, FACE_VERBS, HEDGES, IS_FORMS
 
 _PEOPLE = frozenset({"you", "me", "we", "someone"})
 _FRAMES = frozenset({"facing", "from"})
@@ -27,6 +28,27 @@ _TURNING = frozenset({"turn", "flip"})
 _PLACES = frozenset({"left", "right", "middle", "top", "bottom", "part", "corner", "edge", "end", "side"})
 _UNDONE = frozenset({"almost", "nearly"})
 _FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
+_FACTIVE = frozenset(
+    {
+        "see",
+        "notice",
+        "find",
+        "know",
+        "remember",
+        "ensure",
+        "mean",
+        "discover",
+        "observe",
+        "realise",
+        "realize",
+        "require",
+    }
+)
+"""Verbs after which a clause with *that* is a fact."""
+_POINTS = frozenset(
+    {"rule", "point", "fact", "result", "thing", "trick", "secret", "requirement", "difference", "advantage", "problem"}
+)
+"""Nouns of which *is that …* tells a fact: *the rule is that …*, not *the rumour is that …*."""
 _LETTING = frozenset({"let", "make", "help", "watch"})
 """Verbs whose object does something itself: *don't let the cat sleep in it*."""
 _OWNING = frozenset(
@@ -41,6 +63,7 @@ class Found:
     clauses: tuple[Clause, ...]
     fragment: NounPhrase | None
     viewpoint: Viewpoint | None
+    guesses: frozenset[Guess] = frozenset()  # of the fragment
 
 
 @dataclass(slots=True)
@@ -63,6 +86,8 @@ class Assembly:
     opens_list: bool = False  # True if a colon follows the clause
     is_lost: bool = False  # True if the clause before has an object and was not understood
     borne: NounPhrase | None = None  # thing that the subject of the clause before holds
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause that is being taken in was parsed
+    guesses_of_fragments: dict[Span, frozenset[Guess]] = field(default_factory=dict)
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -82,8 +107,7 @@ class Assembly:
             if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
                 return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
             if chunk.type == "COMPLEMENT":
-                verbs = [c.value for c in segment.chunks[:i] if isinstance(c.value, VerbGroup)]
-                return (verbs[-1] if verbs else None), replace(segment, chunks=segment.chunks[i + 1 :])
+                return _frame_of_report(segment.chunks[:i]), replace(segment, chunks=segment.chunks[i + 1 :])
         return None, segment
 
     def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:
@@ -209,6 +233,8 @@ class Assembly:
                 placed = person and verb.group.lemma in _PLACING - {"leave", "keep"} and verb.group.past
                 if placed and " had " not in f" {self.text[slice(*verb.span)]} " and not self._was_undone(span):
                     verb = replace(verb, group=replace(verb.group, past=False))  # 'I stood the candle on the plate'
+                if verb.group.lemma in _PLACING and _is_plan(verb.group, subject.phrase):
+                    verb = replace(verb, group=replace(verb.group, modal="might"))
                 moved, thing = self._of_the_thing(verb, subject)
                 if subject.phrase.pronoun == "nothing":
                     misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
@@ -241,7 +267,9 @@ class Assembly:
             fragment, *rest = rest
         for other in rest:
             if other.predicates:
-                self.clauses.append(Clause(replace(other, predicates=()), other.predicates, other.span))
+                guesses = self.guesses_of_fragments.get(other.span, frozenset())
+                bare = replace(other, predicates=())
+                self.clauses.append(Clause(bare, other.predicates, other.span, guesses=guesses))
             else:
                 misunderstood(other.span, "nothing is said of this", "say where it is")
         if self.front:
@@ -255,7 +283,8 @@ class Assembly:
             misunderstood((start, self.raw.end), "a condition without what it is a condition of")
         if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
             misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
-        return Found((*self.supposed, *self.clauses), fragment, self.viewpoint)
+        guesses = frozenset() if fragment is None else self.guesses_of_fragments.get(fragment.span, frozenset())
+        return Found((*self.supposed, *self.clauses), fragment, self.viewpoint, guesses)
 
     # viewpoints and conditions
 
@@ -370,6 +399,7 @@ class Assembly:
             self.sought = phrase
             return
         self.fragments.append(phrase)
+        self.guesses_of_fragments[phrase.span] = self.guesses
 
     def _each_with_its_place(self, phrase: NounPhrase, link: str, mood: Mood) -> bool:
         """Take in a list without verbs: *…, the knife on its right and the spoon beside the knife*.
@@ -534,7 +564,8 @@ class Assembly:
         modal = group.modal
         past = group.past
         if hedge is not None:
-            modal, past = modal or hedge.modal, past or hedge.past
+            modal = hedge.modal if hedge.modal == "might" else modal or hedge.modal
+            past = past or hedge.past
             hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
             if not hedge.positive:
                 made = [replace(p, positive=not p.positive) for p in made]
@@ -562,7 +593,27 @@ class Assembly:
         handled = clause.mood is Mood.COMMAND and clause.subject is not None and bool(clause.subject.head)
         placed = clause.subject is not None and bool(clause.subject.predicates)
         if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
-            self.clauses.append(replace(clause, predicates=tuple(kept)))
+            self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
+
+
+def _is_plan(group: VerbGroup, agent: NounPhrase) -> bool:
+    """Return True for *I'll put the cup on the tray*, which is not done yet, and *some people put it on the tray*."""
+    others = agent.determiner in ("some", "other", "many", "most", "few") and bool(agent.head)
+    return (group.modal == "will" and agent.pronoun != "you" and group.positive) or others
+
+
+def _frame_of_report(before: tuple[Chunk, ...]) -> VerbGroup | None:
+    """Return the verb of the main clause before *that*; only a few verbs and nouns make the clause after it a fact."""
+    verbs = [c.value for c in before if isinstance(c.value, VerbGroup)]
+    if not verbs:
+        return None
+    subjects = [c.value for c in before if c.type == "NP"]
+    judged = any(c.type in ("PART", "ADJP") for c in before)
+    if verbs[-1].lemma in IS_FORMS | {"be"} and not judged:
+        known = not subjects or last_word(subjects[-1].head) in _POINTS or bool(subjects[-1].pronoun)
+    else:
+        known = verbs[-1].lemma in _FACTIVE and not judged
+    return verbs[-1] if known else replace(verbs[-1], modal="might")
 
 
 def _turns_over(verb: Verb) -> bool:

@@ -466,8 +466,9 @@ class Builder(Transformer[Any, Built]):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         manner = relation == "by" and noun.phrase.head in _MANNERS
-        plain = noun.phrase.determiner in (None, "a") and not noun.phrase.adjectives
-        if plain and (noun.phrase.head in NOT_PLACES or manner):
+        plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
+        idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":

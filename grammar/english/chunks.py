@@ -45,7 +45,10 @@ from deixis.grammar.english.words import (
 )
 
 FINITE = frozenset({"BE", "VERB", "TVERB"})
-PAST_ONLY = word_set("stood lay sat went came began ran wore saw was were did had took gave knew fell rose")
+PAST_ONLY = word_set(
+    "stood lay sat went came began ran wore saw was were did had took gave knew fell rose"
+    " wrote ate drank spoke broke drew threw flew grew sang swore"
+)
 SUBORDINATORS = word_set(
     "wherever if when while because since unless although though once so where whereas until whether whenever"
 )
@@ -141,6 +144,7 @@ class Chunker:
         self.nouns = NounChunker(words, self.norms, nouns)
         self.chunks: list[Chunk] = []
         self._denied: str | None = None  # modal of a denial that stands before its subject
+        self._denied_be: VerbGroup | None = None  # 'by no means is the cup …': *is* goes after the subject
         self._made: int | None = None  # index of the verb of 'let the ribbon hang …'
         self._relations, self._alone, self._verbs = _preposition_phrases(), _alone_phrases(), verb_forms()
 
@@ -163,6 +167,9 @@ class Chunker:
                 chunk.type = "VERB"
             self.chunks.append(chunk)
             at = chunk.end
+            if self._denied_be is not None and chunk.type == "NP" and self.norms[at] not in ("of", "and", "or"):
+                self.chunks.append(Chunk("BE", at, at, self._denied_be, (chunk.span[1], chunk.span[1])))
+                self._denied_be = None
         return self.chunks
 
     def _previous(self) -> str:
@@ -212,9 +219,13 @@ class Chunker:
         """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
         if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB", "COLON"):
             return None
-        for phrase in _DENIALS:
+        for phrase in (*_DENIALS, *self._denied_circumstances(at)):
             end = at + len(phrase)
             if tuple(self.norms[at:end]) == phrase:
+                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1):
+                    past = self.norms[end] in ("was", "were")
+                    self._denied_be = VerbGroup("be", "be", "finite", positive=False, past=past)
+                    return end + 1
                 if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
                     self._denied = MODALS.get(self.norms[end], "must")
                     return end + 1
@@ -222,6 +233,12 @@ class Chunker:
                     self._denied = "must"
                     return end
         return None
+
+    def _denied_circumstances(self, at: int) -> tuple[tuple[str, ...], ...]:
+        """Return *under no pretext*: a preposition and a bare noun that *no* denies."""
+        if self.norms[at + 1] != "no" or self.norms[at] not in ("under", "on", "at", "in", "by", "for", "to", "with"):
+            return ()
+        return tuple(tuple(self.norms[at : at + 2 + words]) for words in (1, 2))
 
     # joints and function words
 
@@ -311,6 +328,9 @@ class Chunker:
             opinion = self._opinion(at) if norm != "it" else self._impersonal(at)
             if opinion is not None:
                 return Chunk("COMPLEMENT", at, opinion[0], opinion[1])
+        orders = norm == "be" and self._previous() in JOINT_TYPES | {""} and self.norms[at + 2] in _CLAUSE_ENDS
+        if orders and self.norms[at + 1] not in self._verbs and not is_adjective(self.norms[at + 1]):
+            return Chunk("DO", at, at + 1, VerbGroup("be", "other", "base"))  # 'be polite'
         if norm in ("both", "all", "each") and self._previous() == "BE" and not self.nouns.starts(at + 1):
             return Chunk("ADVERB", at, at + 1, norm)
         if (
@@ -321,7 +341,10 @@ class Chunker:
             and (self.nouns.is_determiner(at + 2) or self.norms[at + 2] in ("it", "them"))
         ):
             denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
-            return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=not denied))
+            modal = None if denied or self._is_told_to(at) else "might"
+            return Chunk(
+                "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)
+            )
         if norm == "to" and self._previous() == "NP" and self.norms[at + 1] in FIND_VERBS:
             return Chunk("ADVERB", at, at + 2 + (self.norms[at + 2] in ("up", "out")), "to pick")
         if norm in ("you", "we", "i", "that"):
@@ -344,6 +367,19 @@ class Chunker:
             return Chunk("ADVERB", at, end, norm)
         return None
 
+    def _is_told_to(self, at: int) -> bool:
+        """Return True if the words before an infinitive make it a command: *remember to put*, not *afraid to put*."""
+        i = at - 1
+        while i > 0 and (self.norms[i] in ADVERBS or self.norms[i] in HEDGES):
+            i -= 1
+        if self.norms[i] in _GOVERNORS:
+            return True
+        first = next((k for k in range(len(self.chunks) - 1, -1, -1) if self.chunks[k].type in JOINT_TYPES), -1)
+        if self._previous() == "NP" and any(c.type in ("PUT", "DO", "FIND") for c in self.chunks[first + 1 :]):
+            return True  # 'take the cup to put it on the tray'
+        joined = self.norms[i] in ("and", "then", ",", "or")
+        return joined and not _GOVERNORS.isdisjoint(self.norms[:i])
+
     def _opinion(self, at: int) -> tuple[int, VerbGroup] | None:
         """Return the end and the verb of *I think that*, *we don't believe that*, which make a clause probable."""
         i, positive = at + 1, True
@@ -365,7 +401,19 @@ class Chunker:
                 positive = not positive
             elif norm in MODALS:
                 modal = MODALS[norm]
-            elif norm in ("likely", "possible", "probable", "seems", "appears", "looks", "thought", "said"):
+            elif norm in (
+                "possible",
+                "thought",
+                "said",
+                "believed",
+                "rumoured",
+                "rumored",
+                "claimed",
+                "hoped",
+                "feared",
+            ):
+                modal = "might"
+            elif norm in ("likely", "probable", "seems", "appears", "looks"):
                 adverbs.append("probably")
             elif norm not in IS_FORMS and norm not in ADVERBS and norm not in HEDGES and norm not in _JUDGEMENTS:
                 return None
@@ -398,7 +446,7 @@ class Chunker:
         if self.norms[i] in ("tell", "ask") and "to" in self.norms[i + 2 : i + 4]:
             i = self.norms.index("to", i)
         wants = self.norms[i] in ("want", "need", "have", "like") and not (
-            self.norms[i] == "have" and self.norms[i + 1] != "to"
+            (self.norms[i] == "have" and self.norms[i + 1] != "to") or self.norms[i + 1] in NEGATIONS
         )
         if wants:
             i += 1
@@ -438,10 +486,13 @@ class Chunker:
     def _joint(self, at: int) -> Chunk | None:
         norm, after = self.norms[at], self.norms[at + 1]
         previous = self._previous()
+        before = self.chunks[-2].type if len(self.chunks) > 1 else ""
+        told = previous in FINITE or previous == "DO" or (previous in ("PART", "ADJP") and before == "BE")
+        told = told or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
+        if norm == "that" and told and (after in PRONOUNS or self.nouns.starts(at + 1)):
+            return Chunk("COMPLEMENT", at, at + 1)
         if norm == "that" and previous in ("NP", "COMMA", "ADV", "AND") and not self._demonstrative(at):
             return Chunk("REL", at, at + 1)
-        if norm == "that" and previous in FINITE and (after in PRONOUNS or self.nouns.is_determiner(at + 1)):
-            return Chunk("COMPLEMENT", at, at + 1)
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
         if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
             return Chunk("REL", at, at + 1)
@@ -905,6 +956,9 @@ class Chunker:
         if command and form is not None and self.norms[at] in _GOING and self._goes(at + 1):
             self._denied = None
             return Chunk("GO", at, at + 1, VerbGroup(form.lemma, form.kind, form.form, None, False))
+        if self.norms[at] == "be" and (form is None or self.norms[i] in prepositions()):
+            modal, self._denied = self._denied, None
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, False))
         if form is None or (i == at and form.form not in ("base", "ing") and self._previous() != "NP"):
             return None
         if not command and form.form == "base" and self.nouns.is_noun(i) and not self._predicate_after(i):
@@ -1355,6 +1409,12 @@ _SUBJECTS = word_set("i you we he she they")
 _WHOEVER = word_set("otherwise whoever whatever whichever whomever")
 """Words for any person or thing of which the clause holds: it is a condition."""
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
+_GOVERNORS = word_set(
+    "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
+    " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
+    " is are step"
+)
+"""Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
 _HALF_STATES = word_set("dead empty full open closed finished done eaten asleep")
 _ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
 _SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
@@ -1370,6 +1430,10 @@ _UNREAL = frozenset({"must", "may", "ought", "should", "could", "would", "might"
 _TENDING = {
     "supposed": "should", "meant": "should", "intended": "should", "allowed": "can", "permitted": "can",
     "about": "would", "going": "will", "likely": "might", "required": "must",
+    **dict.fromkeys(
+        ("said", "believed", "thought", "rumoured", "rumored", "reported", "alleged", "reputed", "presumed", "assumed",
+         "claimed", "understood", "expected", "unlikely", "hoped", "feared", "suspected"), "might",
+    ),
 }  # fmt: skip
 """Modal verb that a word between *is* and *to* amounts to: *is allowed to stand*."""
 _CAUSATIVES = {"let": False, "have": False, "make": False, "ask": True, "allow": True, "get": True, "tell": True}

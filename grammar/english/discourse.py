@@ -6,12 +6,33 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from deixis.grammar.english.commitment import (
+    CONSEQUENCE,
+    ELSEWHERE,
+    FRAMED,
+    FUTURE,
+    HABIT,
+    LEFT,
+    LIMITED,
+    NOW,
+    OBLIGED,
+    PAST_RELATIVE,
+    PAST_TIME,
+    PRESENT,
+    REPORTED,
+    REVOKED,
+    SAID_AFTER,
+    UNREAL,
+    UNSURE,
+    UNSURE_RELATIVE,
+    condition_of,
+)
+from deixis.grammar.english.confidence import Guess, is_doubtful
 from deixis.grammar.english.entities import Entity, Role, plain_noun
 from deixis.grammar.english.nouns import (
     GENERAL,
     HOLDERS,
     PARTS,
-    PEOPLE,
     REMOVABLE,
     SUBSTANCES,
     SURFACES,
@@ -23,7 +44,6 @@ from deixis.grammar.english.nouns import (
 )
 from deixis.grammar.english.references import OPPOSITES, POLES, REGIONS, Focus, References, Region
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
-from deixis.grammar.english.words import SAYING
 from deixis.ontology.claims import COLLECTIVE, PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
@@ -31,89 +51,11 @@ NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "nee
 MIN_PAST_OF_STORY = 3
 """Number of clauses in the past tense from which a text is a story, whose past is its present."""
 
-PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
-"""Beginning of a relative clause in the past."""
-
-LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|placed)\b", re.IGNORECASE)
-"""Beginning of a clause by which what should be is not so."""
-NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
-"""Words by which a story says what is so in the end."""
-HABIT = re.compile(
-    r"\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left(?!\s+of\b)|stood|lay|hung|sat)\b"
-    r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b",
-    re.I,
-)
-"""Words of what was done again and again."""
-WHILE_DOING = re.compile(
-    r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
-    re.IGNORECASE,
-)
-"""Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
-CONDITION = re.compile(
-    r"\s*(?:if|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
-    r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
-    r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
-    r"(?:luck|room|space|time)\b[^,.;?]*,"
-    r"|\s*(?:should|were)\s+(?!be\b)[^,.;?]*,",
-    re.IGNORECASE,
-)
-"""Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
-UNSURE_RELATIVE = re.compile(
-    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
-)
-"""Beginning of a relative clause that tells what should be or might be."""
-
-OBLIGED = frozenset({"should", "ought", "shall"})
-REVOKED = re.compile(
-    r"^,?\s*(?:but|though|yet)\s+not\s+(?:today|now|here|yet|always|any\s*more|this\s+time|tonight|any\s+longer)\b|"
-    r"^[,;]?\s*(?:(?:but|though|although|yet)\s+)?(?:we|i|you|they|he|she|it)\s+"
-    r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$"
-    r"|^,?\s*or\s+(?:else\s+)?(?:not|(?:it|they|he|she)\s+(?:is|are|was|were|do|does|did)(?:n['\u2019]t|\s+not))\s*[.!]?$",
-    re.IGNORECASE,
-)
-"""End of a sentence that takes back what it said: *…, but we don't*."""
-UNREAL = re.compile(
-    r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
-    r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather)\b"
-    r"|\b(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
-    r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
-    r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
-    r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
-    r"|\b(?:i|we|you|he|she|they)\s+(?:was|were|are|am|is)\s+(?:asked|told|supposed|reminded|instructed|ordered)\s+to\b"
-    r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
-    r"|\b(?:i|we|he|she|they)\s+(?:hopes?|wish(?:es)?|fears?)\s+(?:the|an?|my|his|her|our|their|it)\b"
-    r"|\b(?:i|we|he|she|they)(?:['\u2019]d|\s+had|['\u2019]ve|\s+have)\s+(?:planned|hoped|wanted|intended|meant)\s+to\b"
-    r"|\b(?:you|one|we|i)(?:['\u2019]d|\s+would)\s+expect\b"
-    r"|\blet(?:['\u2019]s|\s+us)\s+(?:hope|say|suppose|assume|pretend|imagine)\b"
-    r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b"
-    r"|(?<=[a-z]\s)(?:asks?|asked|tells?|told|orders|ordered|begs|begged|urge[sd]?|advise[sd]?|persuade[sd]?|expect(?:s|ed)|commanded)\s+"
-    r"(?:[\w'\u2019]+\s+){1,3}?(?:not\s+)?to\s+(?!the\b)[a-z]+"
-    r"|\b(?:refus(?:es?|ed)|declin(?:es?|ed)|forgot|forgets|neglect(?:s|ed)?|omit(?:s|ted)|"
-    r"hesitat(?:es|ed))\s+to\b|\b(?:look|search|hunt|ask|wish)(?:s|es|ed|ing)?\s+for\s+(?:an?|some|any)\b"
-    r"|^\s*in\s+(?:the|an?|this|that|his|her|my|our|your|their|one|[\w-]+['\u2019]s?)\s+(?:[\w'\u2019-]+\s+){0,2}?(?:story|novel|tale|fable|"
-    r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
-    r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
-    re.IGNORECASE,
-)
-"""Words of a sentence that tells what a person says, wants, asks for or tries, or that retells a story."""
-REPORTED = re.compile(
-    rf"\b(?:he|she|they|{'|'.join(sorted(PEOPLE))})s?\s+(?:{'|'.join(sorted(SAYING))})\s+"
-    r"(?:the|an?|my|his|her|our|their|your|it|they|there)\b",
-    re.IGNORECASE,
-)
-"""Words of a sentence that tells what other people say: *my son insists the ball is …*."""
-LIMITED = re.compile(
-    r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
-    r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
-    r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
-    re.IGNORECASE,
-)
-"""Time outside which a statement need not hold."""
-ELSEWHERE = re.compile(
-    r"\s*at\s+(?:my|our|your|his|her|their|the)\s+(?!own\b)[\w-]+(?:['\u2019]s|s['\u2019])\b[^,.;]*,", re.IGNORECASE
-)
-"""Place of other people at the beginning of a sentence: *at my neighbour's table*."""
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
+BARE_AFTER_BE = re.compile(
+    r"\b(?:is|are|was|were|be|been|remains?|perfectly|quite)\s+(?:all\s+)?$|['\u2019]s\s+$", re.IGNORECASE
+)
+"""Words before *left* or *right* that is not a place, because no *on the* or *of* goes with it."""
 CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
 """Words between what should be and what is."""
 MAX_WORDS_AFTER = 3
@@ -218,6 +160,7 @@ class Qualification:
     alternative: int | None = None
     quantifier: str | None = None
     need_not_hold: bool = False  # of a choice: none of its alternatives need hold
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fact was read (confidence.py)
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,7 +240,8 @@ class Discourse:
         """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
         wished = UNREAL.search(self.text[self.references.start : self.end]) is not None
         self.how = Qualification(
-            phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished
+            phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished,
+            guesses=self.sentences[sentence].guesses,
         )  # fmt: skip
         for predicate in phrase.predicates:
             if predicate.relation == "row":
@@ -394,7 +338,7 @@ class Discourse:
             clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
             optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
             condition=clause.condition or self.condition,
-            past=self._is_past(clause), uncertain=uncertain,
+            past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
         )  # fmt: skip
         subject = clause.subject
         if subject is not None and any(member.negated for member in subject.members):
@@ -449,7 +393,10 @@ class Discourse:
             subject = replace(subject, predicates=())
         whole = self.text[self.references.start : self.end]
         unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
-        unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1])
+        unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
+        unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
+        if clause.mood is Mood.COMMAND:
+            unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
         if unreal and positive:
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
@@ -514,7 +461,11 @@ class Discourse:
     def _is_past(self, clause: Clause) -> bool:
         """Return True for what was so, and need not be so now: *my mother always kept it here*."""
         said = self.text[slice(*clause.span)]
-        return not self.story and not NOW.search(said) and (clause.past or HABIT.search(said) is not None)
+        if self.story or NOW.search(said):
+            return False
+        whole = self.text[self.references.start : self.end]
+        ended = PAST_TIME.search(whole) is not None and PRESENT.search(said) is None
+        return clause.past or ended or HABIT.search(said) is not None
 
     def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
         for negated in (False, True):
@@ -541,8 +492,13 @@ class Discourse:
         self.obliged = None
 
     def _remains(self, predicate: Predicate, existential: bool) -> bool:
-        """Return True for *left* that is the participle of *leave*: *there are two forks left*, *it is left over*."""
-        if predicate.relation != "left" or self.text[slice(*predicate.span)].casefold() != "left":
+        """Return True for *left* of *leave* and *right* that means correct: *two forks are left*, *that is right*."""
+        word = self.text[slice(*predicate.span)].casefold()
+        if word not in ("left", "right") or predicate.arguments:
+            return False
+        if BARE_AFTER_BE.search(self.text[: predicate.span[0]]):
+            return True
+        if word != "left":
             return False
         after = (*self.text[predicate.span[1] :].casefold().split(None, 1)[:1], "")[0].strip(",.;")
         return existential or after in ("over", "the", "a", "an", "it", "them")
@@ -1112,6 +1068,7 @@ class Discourse:
             before = next(f for f in self.references.recent if f.subject is not subject)
             if before.others and OPPOSITES.get(before.relation or "") == predicate.relation:
                 last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
+            self.how = self._guessed(Guess.OF_THE_LAST)
             self._pair(subject, predicate.relation, last, False)
             if predicate.measure is not None and last.role is Role.THING:
                 self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
@@ -1298,7 +1255,7 @@ class Discourse:
         elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
             self._pair(held, "inside", subject, False)
         elif not {"with", "without"}.isdisjoint(words):  # what a thing has may be a part of it
-            self._add("near", (held,), (subject,))
+            self._add("near", (held,), (subject,), how=self._guessed(Guess.ACCOMPANIED))
 
     def _say_leftmost(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         self._add("leftmost", (subject,), ())
@@ -1351,6 +1308,10 @@ class Discourse:
     def _words(self, phrase: NounPhrase) -> str:
         return " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
 
+    def _guessed(self, guess: Guess) -> Qualification:
+        """Return the present qualification with one more guess."""
+        return replace(self.how, guesses=self.how.guesses | {guess})
+
     def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
         how = Qualification(phrase.span, self.references.sentence)
         self._add(relation, (subject,), (other,), how=how)
@@ -1370,7 +1331,13 @@ class Discourse:
             relation = "near"
         if relation == "row" and value is None:
             value = None
-        draft = Draft(relation, subjects, arguments, how or self.how, value, metres)
+        how = how or self.how
+        start, end = self.how.span
+        if any(start <= use.span[0] and use.span[1] <= end for use in self.references.doubtful[-3:]):
+            how = replace(how, guesses=how.guesses | {Guess.PRONOUN})
+        if is_doubtful(how.guesses):
+            how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
+        draft = Draft(relation, subjects, arguments, how, value, metres)
         if draft not in self.drafted:
             self.drafted.add(draft)
             self.drafts.append(draft)
@@ -1412,24 +1379,6 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     )
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
     return (around and (bare or (wide and beside))) or flat or amid
-
-
-def condition_of(sentence: Sentence) -> str | None:
-    """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*.
-
-    Parameters
-    ----------
-    sentence
-        Parsed sentence.
-
-    Returns
-    -------
-    str or None
-        Text of the condition with single spaces, or None for a sentence that does not begin with one.
-    """
-    if not WHILE_DOING.match(sentence.text) and not CONDITION.match(sentence.text):
-        return None
-    return " ".join(sentence.text.split(",", 1)[0].split())
 
 
 def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:

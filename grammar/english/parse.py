@@ -10,6 +10,7 @@ from deixis.deadline import Deadline
 from deixis.grammar.english.assemble import Assembly, Found
 from deixis.grammar.english.build import Builder, Built, notes
 from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
 from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
 from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
@@ -149,6 +150,7 @@ def _sentence(
         misunderstood=tuple(spans),
         heading=raw.heading,
         viewpoint=found.viewpoint,
+        guesses=found.guesses,
     )
 
 
@@ -205,8 +207,9 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         and (assembly.asks or (not segment.link and assembly.viewpoint is None))
     ):
         chunks[0] = Chunk("ASK", first.start, first.end, first.value, first.span)
-    at, link = 0, segment.link
+    pieces: list[tuple[int, int, Built]] = []
     skipped: list[Chunk] = []
+    at = 0
     while at < len(chunks):
         built, end = _longest(chunks, at)
         if built is None:
@@ -214,11 +217,28 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
                 skipped.append(chunks[at])
             at += 1
             continue
-        assembly.add(built, link, chunks[at].span[0], chunks[end - 1].span[1], hedge)
-        link = ","
+        pieces.append((at, end, built))
         at = end
+    for i, (at, end, built) in enumerate(pieces):
+        beside = [other for first, last, other in pieces if last == at or first == end]
+        led = any(_is_verb(chunk) and chunk.span[1] <= chunks[at].span[0] for chunk in skipped)
+        run_on = led or (bool(beside) and not any(b.shape in _ORDERS for b in (built, *beside)))
+        guesses = {Guess.RUN_ON} if run_on else set()
+        if built.shape == "said" and (segment.link == "and" or built.verbs):
+            guesses.add(Guess.NO_SUBJECT)
+        assembly.guesses = frozenset(guesses)
+        assembly.add(built, segment.link if i == 0 else ",", chunks[at].span[0], chunks[end - 1].span[1], hedge)
     for chunk in skipped:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
+
+
+_ORDERS = frozenset({"command", "search", "other"})
+"""Shapes of commands, which show by their verb where they begin."""
+
+
+def _is_verb(chunk: Chunk) -> bool:
+    """Return True for a word that was left out, and that looks like a verb: *tired of putting …*."""
+    return chunk.type == "UNKNOWN" and isinstance(chunk.value, str) and chunk.value.endswith("ing")
 
 
 def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:

@@ -375,6 +375,8 @@ class NounChunker:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
+            if at + 1 < len(self.words) and self.words[at + 1].text[:1].isupper() and self.norms[at + 2] == "'s":
+                return False  # 'putting Anna's radio on it'
             if form.kind in ("transitive", "face", "point") and not after_determiner:
                 return False
             if before == "'s" and form.kind in ("posture", "lean") and not self._nounish(at + 1):
@@ -452,6 +454,11 @@ class NounChunker:
         after_noun = bool(before) and before not in self._closed and before[0].isalpha() and not is_adjective(before)
         if after_noun:
             plural = self._nouns.singular(before)[1]
+            places = after in prepositions() or after in places_alone()
+            if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
+                return (
+                    self.norms[at + 2] != "of" and self.norms[at + 2] not in prepositions()
+                )  # 'the missal rests open on its stand'
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
                 beyond = self.norms[at + 2]
                 return beyond in prepositions() or beyond in places_alone()  # 'the glue sticks go into the box'
@@ -596,7 +603,8 @@ class NounChunker:
                 "only" if norms[i] == "only" else "no" if norms[i] in ("hardly", "scarcely", "barely") else None
             )
             i += 1
-        if norms[i] in ("neither", "either", "both") and (norms[i + 1] in DETERMINERS or norms[i + 1] in POSSESSIVES):
+        owned = norms[i + 2] == "'s"  # 'neither Anna's radio nor …'
+        if norms[i] in ("neither", "either", "both") and (norms[i + 1] in DETERMINERS | POSSESSIVES.keys() or owned):
             determiner = norms[i] if norms[i] != "either" else None
             i += 1
         letter = self._letter(i)
@@ -1240,6 +1248,10 @@ class NounChunker:
         norm = self.norms[at]
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
+        named = self.words[at].text[:1].isupper() and self.norms[at + 1] == "'s"
+        alone = at == 1 and not self._nouns.knows(self.norms[0])
+        if nouns and named and (alone or self.words[at - 1].text[:1].islower()):
+            return False  # 'I hope Anna's radio is …'
         if nouns and (norm in ORDINALS or (norm == "cause" and self.norms[at + 1] in PRONOUNS)):
             return False
         if norm[0].isdigit():

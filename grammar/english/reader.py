@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
+from dataclasses import replace
 
 from deixis.deadline import Deadline
+from deixis.grammar.english.confidence import Guess, confidence, is_doubtful
 from deixis.grammar.english.discourse import Discourse
 from deixis.grammar.english.discourse import Draft as FactDraft
 from deixis.grammar.english.entities import Entity, Role, is_one_thing, names_of
 from deixis.grammar.english.paraphrase import paraphrase
 from deixis.grammar.english.parse import parse_english
-from deixis.grammar.english.tree import Mood, Sentence
+from deixis.grammar.english.tree import Misunderstood, Mood, Sentence
 from deixis.grammar.errors import Diagnostic, ScriptError
 from deixis.grammar.reading import DoubtfulPronoun, Reading, ReadSentence, StatedFact, joined_choices
 from deixis.grammar.script import (
@@ -165,6 +167,8 @@ class _Writer:
                 how.alternative,
                 how.quantifier,
                 how.need_not_hold,
+                confidence(how.guesses),
+                tuple(sorted(guess.name for guess in how.guesses)),
             )
 
     def _binary(self, draft: FactDraft, subject: str, thing: str) -> Fact | Claim:
@@ -186,6 +190,12 @@ class _Writer:
         """Return a sentence with its paraphrase and the diagnostics of what was not understood."""
         surface = self.discourse.references.surface
         question = any(clause.mood is Mood.QUESTION for clause in sentence.clauses)
+        doubted = [
+            Misunderstood(fact.span, ", ".join(Guess[name].value for name in fact.guesses), self._plainly(fact))
+            for fact in facts
+            if is_doubtful(Guess[name] for name in fact.guesses)
+        ]
+        notes = sorted({*sentence.misunderstood, *doubted}, key=lambda note: note.span)
         return ReadSentence(
             text=" ".join(sentence.text.split()),
             span=sentence.span,
@@ -194,9 +204,16 @@ class _Writer:
             words=sentence.words,
             question=question,
             heading=sentence.heading,
-            problems=tuple(self._problem(m.span, m.reason, m.suggestion) for m in sentence.misunderstood),
-            problem_spans=tuple(m.span for m in sentence.misunderstood),
+            problems=tuple(self._problem(m.span, m.reason, m.suggestion) for m in notes),
+            problem_spans=tuple(m.span for m in notes),
         )
+
+    def _plainly(self, doubted: StatedFact) -> str:
+        """Return a sentence that states a doubtful fact."""
+        surface = self.discourse.references.surface
+        content = replace(doubted.content, weight=1.0, optional=False)
+        plain = replace(doubted, content=content, uncertain=False, past=False, condition=None, alternative=None)
+        return paraphrase([plain], surface.noun if surface is not None else "table")
 
     def _problem(self, span: tuple[int, int], reason: str, suggestion: str | None) -> Diagnostic:
         source = self.source(span)

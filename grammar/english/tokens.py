@@ -62,6 +62,8 @@ _DEPICTED = re.compile(
     r"|(?<=\w)\s+((?:on|in|under|behind|beside|above|near|over|at|with)\s+an?\s+[\w-]+)"
     r"(?=\s+(?:printed|painted|drawn|engraved|embroidered|carved|etched|stamped|woven)\b)"
 )
+_QUOTED = re.compile(r"[\"\u201c](?:[^\s\"\u201c\u201d]+\s+){2,}[^\s\"\u201c\u201d]+[\"\u201d]")
+"""Three words or more that are quoted: a title, a sign, what a person says."""
 _DEPICTIONS = re.compile(
     r"\b(?:picture|photo|photograph|painting|drawing|print|image|portrait|sketch|engraving|poster|postcard)s?$", re.I
 )
@@ -83,9 +85,10 @@ _DENIALS = {
     ("not", "anywhere", "near"): "not near", ("not", "anywhere", "close", "to"): "not near",
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
-    ("minus",): "without",
+    ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
+    ("nowhere", "near", "being"): "not", ("'d", "better"): "should", ("had", "better"): "should",
 }  # fmt: skip
-"""Phrases that deny what follows them, with the words that say the same."""
+"""Phrases that deny what follows them, or advise it, with the words that say the same."""
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
@@ -268,6 +271,9 @@ def _deny_contrasts(words: list[Word]) -> None:
                 words[i + len(others)].end = words[i + length - 1].end
                 del words[i + 1 + len(others) : i + length]
                 break
+    for i in range(len(words) - 3, -1, -1):
+        if [word.norm for word in words[i : i + 3]] == ["whether", "or", "not"]:
+            del words[i + 1 : i + 3]
     for i in range(len(words) - 2, 0, -1):
         if words[i].norm == "once" and words[i + 1].norm in PAST_FORMS and words[i - 1].norm not in ("that", "which"):
             del words[i]  # 'the cup once stood here'
@@ -298,8 +304,12 @@ def _deny_contrasts(words: list[Word]) -> None:
 
 
 def _depicted(text: str, span: Span) -> Iterator[Span]:
-    """Yield the words of a sentence that tell what a picture shows, and titles of works."""
+    """Yield the words of a sentence that tell what a picture shows, titles of works, and what is quoted."""
     yield from (match.span(1) for match in _SHOWN.finditer(text, *span))
+    for match in _QUOTED.finditer(text, *span):
+        around = text[span[0] : match.start()] + text[match.end() : span[1]]
+        if any(character.isalpha() for character in around):
+            yield match.span()
     yield from (match.span() for match in _TITLES.finditer(text, *span))
     for match in _DEPICTED.finditer(text, *span):
         if match[1] is None or _DEPICTIONS.search(text[span[0] : match.start()]):

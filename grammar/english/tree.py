@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from deixis.grammar.english.confidence import Guess
+
 Span = tuple[int, int]
 """First and last character of a phrase in the text, counted from 0, the end exclusive."""
 
@@ -163,6 +165,7 @@ class Clause:
     choices: tuple[tuple[Predicate, ...], ...] = ()
     existential: bool = False  # 'there is a cup on the tray'
     step: str | None = None  # 'first', 'then', 'before'
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause was parsed (confidence.py)
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +190,7 @@ class Sentence:
     misunderstood: tuple[Misunderstood, ...] = ()
     heading: bool = False
     viewpoint: Viewpoint | None = None  # 'facing the bed, …', 'from the door, …': holds of the whole sentence
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fragment was parsed
 
     @property
     def understood(self) -> float:

@@ -93,6 +93,11 @@ IDIOMS = tuple(
         "sort of",
         "as usual",
         "on the house",
+        "in the way",
+        "out of the way",
+        "all right",
+        "keep an eye on",
+        "have an eye on",
         "more or less",
         "at the moment",
         "for now",
@@ -447,6 +452,11 @@ NOT_PLACES = word_set(
     " holiday"
     " miniature bulk profile bloom reserve use stock storage transit preparation readiness advance turn total"
     " time question mind doubt trouble fashion general particular charge demand"
+    " construction warranty guarantee repair risk order display account hold loan offer request discussion review"
+    " consideration supervision observation control attack threat arrest pressure stress strike average condition"
+    " shape danger need debt love peace pain tears luck vain theory principle practice belief reach scope"
+    " sight suspicion investigation way secret private writing effect force action motion progress later demand ease"
+    " error pretext heaven hour minute month week year season harmony"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 NEGATIONS = frozenset({"not", "n't", "never", "nor", "isnt", "arent"})

@@ -48,7 +48,18 @@ CLAIMS = st.one_of(
 def facts(answer: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the stated facts of an answer, with the keys that parse prints, without places in the text."""
     kept = [fact for fact in answer["facts"] if fact.get("asserted", True)]
-    left_out = {"file", "line", "column", "sentence", "span", "asserted", "condition", "past", "uncertain"}
+    left_out = {
+        "file",
+        "line",
+        "column",
+        "sentence",
+        "span",
+        "asserted",
+        "confidence",
+        "condition",
+        "past",
+        "uncertain",
+    }
     left_out |= {"alternative", "quantifier", "subjects", "arguments", "value", "metres"}
     return [
         {key: value for key, value in fact.items() if key not in left_out}

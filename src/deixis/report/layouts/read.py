@@ -112,6 +112,7 @@ def stated_to_dict(stated: StatedFact, reading: Reading) -> dict[str, Any]:
     return content_to_dict(stated.content, reading.surface) | {
         "status": "stated",
         "asserted": stated.asserted,
+        "confidence": round(stated.confidence, 4),
         "sentence": stated.sentence,
         "span": list(stated.span),
         "condition": stated.condition or ("no longer" if stated.past else None),

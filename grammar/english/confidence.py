@@ -1,0 +1,81 @@
+"""Confidence of a fact from the doubtful steps by which it was read.
+
+Most facts come from clauses that the grammar takes whole, whose phrases name their things. A *guess* is a step at which
+the reader had to choose without support in the words: a clause that begins without a joint after another one, a
+predicate without a subject, the thing that a direction is from. The confidence of a fact is the share of right facts
+without guesses, multiplied by a factor for each guess. Facts below :data:`MIN_CONFIDENCE` are not asserted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import StrEnum
+
+RIGHT_WITHOUT_GUESSES = 0.96
+"""Share of right facts among those without a guess."""
+MIN_CONFIDENCE = 0.75
+"""Smallest confidence of a fact that is asserted."""
+
+
+class Guess(StrEnum):
+    """A doubtful step of reading; the value names it in messages."""
+
+    RUN_ON = "words before or after this, without a comma or a conjunction, do not fit it"
+    NO_SUBJECT = "the clause has no subject"
+    ACCOMPANIED = "'with' does not say where the other thing is"
+    OF_THE_LAST = "the clause does not say of what this is a direction"
+    PRONOUN = "the pronoun can stand for several things"
+
+
+SHARE_RIGHT = {
+    Guess.RUN_ON: 0.72,
+    Guess.NO_SUBJECT: 0.4,
+    Guess.ACCOMPANIED: 0.53,
+    Guess.OF_THE_LAST: 0.86,
+    Guess.PRONOUN: 0.94,
+}
+"""Share of right facts among those with one guess."""
+
+
+def confidence(guesses: Iterable[Guess]) -> float:
+    """Return the confidence of a fact.
+
+    Parameters
+    ----------
+    guesses
+        Doubtful steps by which the fact was read, each at most once.
+
+    Returns
+    -------
+    float
+        Probability that the fact is what the text states, in [0, 1]; guesses are taken as independent.
+
+    Notes
+    -----
+    ``bench_english.py --texts tests/grammar/english/texts --guesses`` prints the shares of right facts, by guess.
+
+    Examples
+    --------
+    >>> confidence([]), round(confidence([Guess.OF_THE_LAST, Guess.PRONOUN]), 2)
+    (0.96, 0.84)
+    """
+    share = RIGHT_WITHOUT_GUESSES
+    for guess in guesses:
+        share *= SHARE_RIGHT[guess] / RIGHT_WITHOUT_GUESSES
+    return share
+
+
+def is_doubtful(guesses: Iterable[Guess]) -> bool:
+    """Return True for a fact that is not asserted, because too much of it was guessed.
+
+    Parameters
+    ----------
+    guesses
+        Doubtful steps by which the fact was read.
+
+    Returns
+    -------
+    bool
+        True if the confidence is below :data:`MIN_CONFIDENCE`.
+    """
+    return confidence(guesses) < MIN_CONFIDENCE
