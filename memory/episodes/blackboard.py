@@ -15,10 +15,11 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from datetime import UTC, datetime, timedelta
 from itertools import islice
 from pathlib import Path
@@ -43,6 +44,8 @@ FLUENT, LOG, SUBJECT, PREDICATE, COUNTER, HEAD = b"f", b"l", b"s", b"p", b"n", b
 
 MAX_LOOKED_UP = 500
 """Number of fluents of one subject or predicate from which on a window is looked up by its times instead."""
+
+_NUMBERED = re.compile(r"(.*\D)([1-9]\d{0,15})")
 
 _PAGE = 256  # log entries read at once
 
@@ -223,6 +226,24 @@ class Blackboard(Closing):
             number = int(self._keys.get(key) or b"0") + 1
             self._keys.write({key: b"%d" % number})
         return f"{prefix}{number}"
+
+    def reserve(self, ids: Iterable[str]) -> None:
+        """Take care that ids which came from elsewhere are never given by :meth:`new_id`.
+
+        Parameters
+        ----------
+        ids
+            Ids, of which those with a number at the end matter.
+        """
+        highest: dict[str, int] = {}
+        for prefix, number in (found.groups() for found in map(_NUMBERED.fullmatch, ids) if found is not None):
+            highest[prefix] = max(highest.get(prefix, 0), int(number))
+        with self._lock:
+            self._begin_write()
+            keys = {COUNTER + prefix.encode(): number for prefix, number in highest.items()}
+            more = {key: n for key, n in keys.items() if n > int(self._keys.get(key) or b"0")}
+            if more:
+                self._keys.write({key: b"%d" % number for key, number in more.items()})
 
     def guard(self, shapes: str | Path) -> None:
         """Check all later writes by more SHACL shapes, as long as the blackboard is open.

@@ -508,11 +508,13 @@ class Session(Closing):
         from deixis.memory.episodes.blackboard import Blackboard, has_episodes
         from deixis.memory.errors import MemoryFormatError
         from deixis.workflows.knowledge.recall import recall
+        from deixis.workflows.knowledge.unlearn import complete_unlearning
 
         if not has_episodes(self.path):
             raise MemoryFormatError(f"the memory at {self.path} has no episodes; name another folder")
 
         with Blackboard.open(self.path) as board:
+            complete_unlearning(board, self.knowledge_store)
             return recall(question, board, None if at is None else board.seconds(at), speaker=speaker)
 
     @_one_at_a_time

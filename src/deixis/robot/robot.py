@@ -38,6 +38,7 @@ from deixis.session import Session
 from deixis.view_store import category_name
 from deixis.workflows.knowledge.episodes import Consolidation, consolidate, named_layout
 from deixis.workflows.knowledge.recall import EXPECTED, IS_A
+from deixis.workflows.knowledge.unlearn import complete_unlearning
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
@@ -133,6 +134,7 @@ class Robot:
                 self._own = Blackboard.open(self.session.path, create=True)
             except MemoryWriteError:  # a memory that can only be read
                 self._own = Blackboard.transient()
+            complete_unlearning(self._own, self.session.knowledge_store)
             self._diary = Diary(ModuleBoard(self._own, RobotModule()))
             self._remember_expected()
             self._remember_unnamed()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from deixis.grammar.parser import parse_script
 from deixis.learning.experience import Experience, Moments, Tally
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
@@ -60,7 +61,7 @@ def test_layouts_are_read_again_in_any_order_of_lessons(tmp_path: Path) -> None:
         robot = Robot(tmp_path / str(number))
         for each in order:
             robot.sees(table(each))
-            robot.told(PLACE)
+            robot.told(parse_script(PLACE))
         live = counts(robot.layouts["place"].experience)
         robot.close()
         found += [live, known(tmp_path / str(number))["place"]]
@@ -72,10 +73,10 @@ def test_taking_back_a_lesson_subtracts_its_table(tmp_path: Path) -> None:
     robot = Robot(tmp_path / "one")
     for number in range(2):
         robot.sees(table(number))
-        last = robot.told(PLACE)
+        last = robot.told(parse_script(PLACE))
     first_only = Robot(tmp_path / "two")
     first_only.sees(table(0))
-    first_only.told(PLACE)
+    first_only.told(parse_script(PLACE))
     robot.unlearn(Selection(lesson=last.lesson.id))
     left = counts(robot.layouts["place"].experience)
     assert left == counts(first_only.layouts["place"].experience)
@@ -94,7 +95,7 @@ def twins(folder: Path) -> tuple[Robot, str]:
     robot = Robot(folder)
     scene = table(0, ("fork", "plate", "fork"))
     robot.sees(replace(scene, file="<twins>"))
-    told = robot.told(TWINS)
+    told = robot.told(parse_script(TWINS))
     assert {"fork_1", "fork_2"} <= set(told.waiting)
     question = next(each for each in robot.questions if each.role == "fork_1")
     robot.answers(question, "o0", by="Ada")
@@ -118,7 +119,7 @@ def test_answer_about_a_lesson_does_not_pass_to_another(tmp_path: Path) -> None:
     robot, lesson = twins(tmp_path)
     robot.session.forget(lesson)
     robot.sees(table(5, ("fork", "plate", "fork")))
-    again = robot.told(TWINS)
+    again = robot.told(parse_script(TWINS))
     assert again.lesson.id == lesson
     robot.remember()
     assert ("left", "fork_1", "plate") not in robot.layouts["twins"].experience.held
@@ -131,7 +132,7 @@ def test_fuller_description_stays_in_any_order(tmp_path: Path) -> None:
         robot = Robot(tmp_path / folder)
         for number, text in enumerate(order):
             robot.sees(table(number))
-            robot.told(text)
+            robot.told(parse_script(text))
         assert robot.layouts["place"].roles == ("fork", "plate", "knife")
         assert robot.layouts["place"].experience.filled["knife"] == Tally(1.0, 1.0)
         robot.close()

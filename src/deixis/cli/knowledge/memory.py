@@ -41,6 +41,7 @@ class DumpFormat(StrEnum):
     TRIG = "trig"
     TURTLE = "turtle"
     VIEWS = "views"
+    EPISODES = "episodes"
 
 
 @memory_app.command("export")
@@ -50,7 +51,10 @@ def export(
     ] = None,
     format: Annotated[
         DumpFormat,
-        typer.Option("--format", help="trig: all concepts; turtle: one graph, for Protégé; views: the taught views."),
+        typer.Option(
+            "--format",
+            help="trig: all concepts; turtle: one graph, for Protégé; views: taught views; episodes: the blackboard.",
+        ),
     ] = DumpFormat.TRIG,
     memory: MemoryDir = None,
 ) -> None:
@@ -71,18 +75,26 @@ def export(
         return
     if out is not None:
         require_ending(out, _ENDINGS[format], f"an export as {format}")
+    if format is DumpFormat.EPISODES:
+        from deixis.memory.episodes.blackboard import Blackboard
+        from deixis.memory.episodes.exchange import export_episodes
+
+        with Blackboard.open(where) as board:
+            _put(export_episodes(board), out)
+        return
     _export_concepts(where, out, format)
 
 
-_ENDINGS = {DumpFormat.TRIG: (".trig",), DumpFormat.TURTLE: (".ttl",)}
+_ENDINGS = {DumpFormat.TRIG: (".trig",), DumpFormat.TURTLE: (".ttl",), DumpFormat.EPISODES: (".episodes.json",)}
 """Endings of the exported files, by which ``import`` knows the format."""
 
 _VIEWS_TOO = "'--format views -o FILE' writes them"
 
 
 def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None:
-    """Write or print the concepts; print a note on standard error that the views are not included."""
+    """Write or print the concepts; print a note on standard error that views and episodes are not included."""
     from deixis.errors import DeixisError
+    from deixis.memory.episodes.blackboard import has_episodes
     from deixis.memory.semantic.exchange import export_memory
     from deixis.session import Session
 
@@ -91,13 +103,20 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
         if views and not session.remembers():
             raise DeixisError(f"the memory at {memory} has views, but no lessons yet; {_VIEWS_TOO}")
         text = export_memory(session.memory(), format.value)
+    _put(text, out)
+    if views:
+        print_note(f"the memory also has views, which are not in this export; {_VIEWS_TOO}")
+    if has_episodes(memory):
+        print_note("the memory also has episodes, which are not in this export; '--format episodes' writes them")
+
+
+def _put(text: str, out: Path | None) -> None:
+    """Print a text, or write it to a file."""
     if out is None:
         sys.stdout.write(text)
     else:
         out.write_text(text, encoding="utf-8")
         print_written(out)
-    if views:
-        print_note(f"the memory also has views, which are not in this export; {_VIEWS_TOO}")
 
 
 @memory_app.command("import")
@@ -107,6 +126,7 @@ def import_(
 ) -> None:
     """Add exported content to the memory, and keep what is already there."""
     from deixis.errors import DeixisError
+    from deixis.memory.episodes.exchange import has_ending, import_file
     from deixis.memory.on_demand import default_memory
     from deixis.memory.perceptual.in_folder import import_all, is_archive
     from deixis.session import Session
@@ -122,6 +142,12 @@ def import_(
         if done.relearn:
             print_line(f"These categories must be learned again from their views: {', '.join(done.relearn)}.")
         return
+    if has_ending(dump):
+        where = memory or default_memory()
+        number = import_file(where, dump)
+        note_change(where)
+        print_line(f"Imported {number} fluents of {dump} into the memory {where}.")
+        return
     with Session(memory) as session:
         session.import_(dump)
         note_change(session.path)
@@ -133,17 +159,21 @@ def stats(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Print how much the memory holds, and the ids of its lessons."""
     from dataclasses import asdict
 
+    from deixis.memory.episodes.exchange import stats_of as episode_stats_of
     from deixis.memory.perceptual.in_folder import stats_of
     from deixis.report.layouts.script import stats_lines
     from deixis.session import Session
 
     with Session(memory) as session:
         views = stats_of(session.path)
-        concepts = session.remembers() or views is None
+        episodes = episode_stats_of(session.path)
+        concepts = session.remembers() or (views is None and episodes is None)
         counted = asdict(session.memory().stats()) if concepts else {}
         lessons = session.memory().lessons() if concepts else ()
     if views is not None:
         counted["perceptual"] = asdict(views)
+    if episodes is not None:
+        counted["episodes"] = asdict(episodes)
     if as_json:
         print_json({**counted, "lesson_ids": list(lessons)})
     else:
@@ -167,7 +197,8 @@ def verify(memory: MemoryDir = None, as_json: AsJson = False) -> None:
         found = run(where, progress, lambda store: stale(store, default_ontology()))
     if as_json:
         findings = [{"where": entry.where, "what": entry.what} for entry in found.findings]
-        print_json({"verified": {"concepts": found.semantic, "views": found.perceptual}, "findings": findings})
+        verified = {"concepts": found.semantic, "views": found.perceptual, "episodes": episodes}
+        print_json({"verified": verified, "findings": findings})
     else:
         print_lines(_verified_lines(found, episodes))
     if found.findings:

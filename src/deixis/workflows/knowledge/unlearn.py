@@ -24,10 +24,12 @@ from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
 from deixis.memory.episodes.changes import Add, Delete
-from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
+from deixis.reasoning.temporal.fluent import Pattern, Statement
 from deixis.view_store import SETTLES, ViewStore, category_name
+from deixis.workflows.descriptions.remembered_attributes import CALLED, NOT_CALLED
 from deixis.workflows.layouts.read import as_scene
 
 if TYPE_CHECKING:
@@ -38,6 +40,15 @@ if TYPE_CHECKING:
 
 
 _SENTENCE_ENDS = re.compile(r"(?<=[.!?])\s+|[;\n]+")
+
+NAMED = frozenset({"isA", "called"})
+"""Predicates of the category that a person names."""
+
+PENDING = "unlearning"
+"""Predicate of what is being taken back: lessons, id of the journal, and fluents."""
+
+IDS_IN_A_FLUENT = 2000
+"""Maximum number of ids in one fluent of an unlearning."""
 
 UNLEARN = "unlearn"
 """Name under which the log of the blackboard records what was taken back."""
@@ -165,13 +176,15 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
     chosen = _Chosen(selection)
     lessons = _lessons(chosen, knowledge) if knowledge.exists() else ()
     with _episodes(knowledge.path) as board:
+        if board is not None:
+            complete_unlearning(board, knowledge)
         fluents = () if board is None else _fluents(board, lessons, chosen)
         ids = tuple(each.id for each in fluents)
         if not views.exists():
             if lessons and not dry_run:
-                _with_episodes(knowledge.unlearning(lessons, {}), board, fluents)(None)
-            elif not dry_run:
-                _with_episodes(None, board, fluents)(None)
+                _with_episodes(knowledge.unlearning(lessons, {}), board, fluents, lessons)(None)
+            elif board is not None and fluents and not dry_run:
+                board.write(*(Delete(each.id) for each in fluents), by=UNLEARN)
             return Unlearned(lessons, (), ids, _containing(chosen, knowledge, lessons))
         memory = views.memory()
         with memory.exclusive():
@@ -206,21 +219,72 @@ def _fluents(board: Blackboard, lessons: Sequence[str], chosen: _Chosen) -> tupl
     return tuple(each for each in known if each.id in own or each.source.event in events)
 
 
-def _with_episodes(commit: Commit | None, board: Blackboard | None, fluents: Sequence[EpisodicFluent]) -> Commit:
-    """Return a commit that deletes fluents first, and adds them again if the commit fails."""
+def _with_episodes(
+    commit: Commit, board: Blackboard | None, fluents: Sequence[EpisodicFluent], lessons: Sequence[str]
+) -> Commit:
+    """Return a commit after which fluents are deleted, also if the process is killed in between.
+
+    The blackboard first says what the commit decides; see :func:`complete_unlearning`.
+    """
 
     def committing(journal: str | None) -> None:
-        if board is not None and fluents:
-            board.write(*(Delete(each.id) for each in fluents), by=UNLEARN)
+        if board is None or not fluents:
+            commit(journal)
+            return
+        pending = []
+        for first in range(0, len(fluents), IDS_IN_A_FLUENT):
+            ids = [each.id for each in fluents[first : first + IDS_IN_A_FLUENT]]
+            said = json.dumps({"lessons": list(lessons), "journal": journal, "fluents": ids})
+            id, source = board.new_id(UNLEARN), Source(Origin.INFERRED, UNLEARN)
+            pending.append(episodic(id, (id, PENDING, said), start=board.seconds(), source=source))
+        board.write(*map(Add, pending), by=UNLEARN)
         try:
-            if commit is not None:
-                commit(journal)
+            commit(journal)
         except BaseException:
-            if board is not None and fluents:
-                board.write(*map(Add, fluents), by=UNLEARN)
+            board.write(*(Delete(each.id) for each in pending), by=UNLEARN)
             raise
+        board.write(*(Delete(each.id) for each in (*pending, *fluents)), by=UNLEARN)
 
     return committing
+
+
+def complete_unlearning(board: Blackboard, knowledge: KnowledgeStore) -> int:
+    """Complete or drop what a process that was killed began to take back, so that all memories are in step.
+
+    The commit of the stores decides: if it was made, the fluents go too, and if not, they stay.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    knowledge
+        The semantic store.
+
+    Returns
+    -------
+    int
+        Number of fluents that were deleted.
+    """
+    deleted = 0
+    for pending in board.now(Pattern(predicate=PENDING)):
+        said = json.loads(pending.statement.object or "{}")
+        ids = [id for id in said["fluents"] if board.fluent(id) is not None] if _was_made(said, knowledge) else []
+        board.write(Delete(pending.id), *map(Delete, ids), by=UNLEARN)
+        deleted += len(ids)
+    return deleted
+
+
+def _was_made(said: Mapping[str, Any], knowledge: KnowledgeStore) -> bool:
+    """Return whether the stores made the commit of an unlearning."""
+    from deixis.memory.journal import COMMITTED, MARKS
+
+    if not knowledge.exists():
+        return False
+    memory = knowledge.memory()
+    if said["lessons"]:
+        return not set(said["lessons"]) & set(memory.lessons())
+    marks = memory.store.quads_for_pattern(MARKS, COMMITTED, None, MARKS)
+    return any(getattr(quad.object, "value", None) == said["journal"] for quad in marks)
 
 
 class _Chosen:
@@ -268,8 +332,8 @@ class _Chosen:
             return False
         start = fluent.start.lower
         return (
-            (self.sentence is None or (said.predicate == "said" and plain(said.object or "") == self.sentence))
-            and (self.label is None or (said.predicate == "isA" and category_name(said.object or "?") == self.label))
+            (self.sentence is None or plain(_words(said)) == self.sentence)
+            and (self.label is None or (said.predicate in NAMED and category_name(said.object or "?") == self.label))
             and (wanted.teacher is None or wanted.teacher == fluent.source.by)
             and ((wanted.since is None and wanted.until is None) or (isfinite(start) and self._is_then(moment(start))))
         )
@@ -282,6 +346,13 @@ class _Chosen:
         if self.boxes is not None:
             return boxes() == self.boxes
         return self.file is not None and (file == self.file or file == str(Path(self.file).absolute()))
+
+
+def _words(said: Statement) -> str:
+    """Return the sentence that a fluent holds: what a person said, or what taught an adjective; else nothing."""
+    if said.predicate in (CALLED, NOT_CALLED):
+        return str(json.loads(said.object or "{}").get("text", ""))
+    return said.object or "" if said.predicate == "said" else ""
 
 
 def plain(text: str) -> str:
@@ -412,6 +483,6 @@ def _write(
     change = memory.writing(replace(batch, lessons=owners, teachings=turns))
     if knowledge.exists():
         commit = knowledge.unlearning(lessons, links)
-        memory.handle.write_with(change, _with_episodes(commit, board, fluents))
+        memory.handle.write_with(change, _with_episodes(commit, board, fluents, lessons))
     else:
-        _with_episodes(lambda _: memory.handle.write(change, sync=True), board, fluents)(None)
+        _with_episodes(lambda _: memory.handle.write(change, sync=True), board, fluents, lessons)(None)

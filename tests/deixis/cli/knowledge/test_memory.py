@@ -60,7 +60,7 @@ def test_verify_finds_a_flipped_byte_of_what_was_learned(concepts: Path) -> None
     assert "undamaged" not in out
     code, out, _ = deixis("memory", "verify", "--json", "--memory", concepts)
     found = json.loads(out)
-    assert (code, found["verified"]) == (1, {"concepts": True, "views": False})
+    assert (code, found["verified"]) == (1, {"concepts": True, "views": False, "episodes": False})
     assert found["findings"][0]["where"] == "semantic"
     assert "checksum" in found["findings"][0]["what"]
 
@@ -148,3 +148,21 @@ def test_a_store_that_is_gone_is_told_and_nothing_is_begun_anew(views: Path) -> 
         code, out, err = deixis(*arguments, "--memory", views)
         assert (code, out) == (2, ""), arguments
         assert "are lost" in err
+
+
+def test_episodes_are_exported_imported_counted_and_verified(tmp_path: Path) -> None:
+    one, other, file = tmp_path / "one", tmp_path / "other", tmp_path / "a.episodes.json"
+    deixis("episodes", "add", "t1", "on", "table", "--start", 1, "--origin", "seen", "--by", "tracker", "--memory", one)
+    assert deixis("memory", "export", "--format", "episodes", "-o", file, "--memory", one)[0] == 0
+    code, out, _ = deixis("memory", "import", file, "--memory", other)
+    assert (code, out) == (0, f"Imported 1 fluents of {file} into the memory {other}.\n")
+    assert deixis("memory", "export", "--format", "episodes", "--memory", other)[1] == file.read_text(encoding="utf-8")
+    counted = json.loads(deixis("memory", "stats", "--json", "--memory", other)[1])
+    assert {name: counted["episodes"][name] for name in ("fluents", "open", "changes")} == {
+        "fluents": 1, "open": 1, "changes": 1,
+    }  # fmt: skip
+    verified = json.loads(deixis("memory", "verify", "--json", "--memory", other)[1])["verified"]
+    assert verified == {"concepts": False, "views": False, "episodes": True}
+    file.write_text("{}", encoding="utf-8")
+    assert deixis("memory", "import", file, "--memory", tmp_path / "third")[0] == 2
+    assert not (tmp_path / "third").exists()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from itertools import count
@@ -20,12 +20,14 @@ from hypothesis import strategies as st
 import deixis
 from deixis.learning.update import stale
 from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Change, Delete
 from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError, UnknownLessonError
 from deixis.memory.journal import MARKS
 from deixis.memory.perceptual.handle import Handle
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import ORDER, GraphName, graph_iri
+from deixis.memory.semantic.store import SemanticMemory
 from deixis.memory.verify import verify
 from deixis.ontology.lessons.types import Lesson
 from deixis.ontology.tbox import default_ontology
@@ -35,6 +37,7 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.session import Session
 from deixis.view_store import views_of_matches
+from deixis.workflows.descriptions.remembered_attributes import remember_sentence, remembered_attributes
 from deixis.workflows.knowledge.unlearn import Selection, span_of_day
 from deixis.workflows.scenes.views_of_lessons import keep_lessons
 
@@ -289,3 +292,66 @@ def test_episodes_stay_where_the_lessons_cannot_be_removed(
             with pytest.raises(MemoryWriteError):
                 session.unlearn(Selection(teacher="Ada"))
         assert len(board.holding()) == 5
+
+
+def test_sentence_that_taught_an_adjective_is_taken_back(tmp_path: Path) -> None:
+    boxes = [[0.0, 0.0, 0.0], [0.4, 0.0, 0.0]]
+    scene = Scene.from_boxes(centre=boxes, size=[[0.1] * 3, [0.2] * 3], labels=["cup", "cup"])
+    with Session(tmp_path) as session:
+        with Blackboard.open(tmp_path, create=True) as board:
+            remember_sentence(board, "the blick one", scene, "o1", by="ada")
+            before = remembered_attributes(board)
+            remember_sentence(board, "the tove cup", scene, "o2", by="bob")
+            assert set(remembered_attributes(board)) == {"blick", "tove"}
+        assert len(session.unlearn(Selection(sentence="The tove cup.")).fluents) == 2
+        with Blackboard.open(tmp_path) as board:
+            left = remembered_attributes(board)
+    assert left.keys() == before.keys() == {"blick"}
+    assert [one.positive for one in left["blick"].examples] == [one.positive for one in before["blick"].examples]
+
+
+def killing(*_: object, **__: object) -> None:
+    raise KeyboardInterrupt
+
+
+def killing_deletions(write: Callable[..., int]) -> Callable[..., int]:
+    """Return a method that is interrupted when it deletes fluents."""
+
+    def writing(board: Blackboard, *changes: Change, by: str) -> int:
+        if any(isinstance(change, Delete) for change in changes):
+            raise KeyboardInterrupt
+        return write(board, *changes, by=by)
+
+    return writing
+
+
+@pytest.mark.parametrize("killed", ["before", "after"])
+@pytest.mark.parametrize("seen", [False, True], ids=["lesson", "lesson and views"])
+def test_kill_at_the_commit_leaves_all_memories_in_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, killed: str, seen: bool
+) -> None:
+    cloud = PointCloud(np.random.default_rng(0).uniform(0, 0.1, (200, 3)).astype(np.float32))
+    boxes = [[0.05, 0.05, 0.05], [0.4, 0.05, 0.05]]
+    scene = Scene.from_boxes(centre=boxes, size=[[0.1] * 3] * 2, labels=["cup", "plate"])
+    if seen:
+        scene = replace(scene, objects=(replace(scene.objects[0], cloud=cloud), scene.objects[1]))
+    with Session(tmp_path) as session:
+        script = deixis.read_script(text="layout pair; cup left of plate")
+        lesson = session.learn(script, scene, teacher="Ada").lesson.id
+        with Blackboard.open(tmp_path, create=True) as board:
+            source = Source(Origin.SAID, "Ada", lesson)
+            board.add(episodic("f1", ("Ada", "said", "cup left of plate"), start=0.0, source=source), by="test")
+        if killed == "before":
+            monkeypatch.setattr(SemanticMemory, "commit", killing)
+        monkeypatch.setattr(Blackboard, "write", killing_deletions(Blackboard.write))
+        with pytest.raises(KeyboardInterrupt):
+            session.unlearn(Selection(teacher="Ada"))
+        monkeypatch.undo()
+    with Session(tmp_path) as session, Blackboard.open(tmp_path) as board:
+        session.recall("what did Ada say?")
+        left = {each.id for each in board.now()}
+        assert (lesson in session.memory().lessons()) == (killed == "before")
+        assert (left, bool(session.view_store.exists() and session.categories())) == (
+            ({"f1"}, seen) if killed == "before" else (set(), False)
+        )
+    assert verify(tmp_path).findings == ()

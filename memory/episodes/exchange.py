@@ -1,0 +1,255 @@
+"""Export the fluents of a blackboard as text, and import such a text.
+
+>>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> with Blackboard.transient() as first, Blackboard.transient(first.origin) as second:
+...     _ = first.add(episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SAID, "anna")), by="anna")
+...     text = export_episodes(first)
+...     import_episodes(second, text, "a.episodes.json"), export_episodes(second) == text, second.new_id("f")
+(1, True, 'f2')
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+from deixis.memory.episodes.changes import Add
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.errors import EpisodeError, ImportFormatError, RejectedWriteError
+from deixis.memory.folder import EPISODES, size
+from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.errors import FluentError
+from deixis.reasoning.temporal.fluent import Statement
+
+ENDING = ".episodes.json"
+"""Ending of the exported files."""
+
+FORMAT, VERSION = "deixis-episodes", 1
+
+IMPORT = "import"
+"""Name under which the log of the blackboard records what was imported."""
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeStats:
+    """Numbers of fluents, of those that have not finished, and of the changes in the log; and bytes on disk."""
+
+    fluents: int
+    open: int
+    changes: int
+    bytes: int
+
+
+def export_episodes(board: Blackboard) -> str:
+    """Return the fluents of a blackboard as JSON, the same text for the same content.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+
+    Returns
+    -------
+    str
+        The origin of times, and a line for each fluent in the order of ids; the log is not part of it.
+    """
+    fluents = sorted(board.holding(), key=lambda each: each.id)
+    lines = [json.dumps(_to_list(each), ensure_ascii=False) for each in fluents]
+    head = json.dumps({"format": FORMAT, "version": VERSION, "origin": board.origin.isoformat()})
+    return head[:-1] + ', "fluents": [' + "".join(f"\n{line}," for line in lines).rstrip(",") + "\n]}\n"
+
+
+def import_episodes(board: Blackboard, text: str, file: str) -> int:
+    """Add exported fluents to a blackboard: all of them or, if one is refused, none.
+
+    Times are moved to the origin of the blackboard. Ids of the file are never given again.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    text
+        An export.
+    file
+        Its name in messages.
+
+    Returns
+    -------
+    int
+        Number of the fluents that were added; equal ones that are there already are not counted.
+
+    Raises
+    ------
+    ImportFormatError
+        If the text is not an export.
+    RejectedWriteError
+        If the blackboard has another fluent with an id of the file, or a shape is violated.
+    """
+    origin, fluents = read_episodes(text, file)
+    shift = (origin - board.origin).total_seconds()
+    new = []
+    for each in (_moved(one, shift) for one in fluents):
+        known = board.fluent(each.id)
+        if known is None:
+            new.append(each)
+        elif not _same(known, each):
+            raise RejectedWriteError(
+                f"{file}: its fluent '{each.id}' differs from the one of this memory; import into another memory"
+            )
+    if new:
+        board.write(*map(Add, new), by=IMPORT)
+    said = [each.statement for each in fluents]
+    names = [each.id for each in fluents] + [one.subject for one in said] + [one.object or "" for one in said]
+    board.reserve([*names, *(each.source.event or "" for each in fluents)])
+    return len(new)
+
+
+def import_file(memory: Path, file: Path) -> int:
+    """Add the fluents of a file to the blackboard of a memory, which is made with the origin of the file if need be.
+
+    Parameters
+    ----------
+    memory
+        Folder of the memory.
+    file
+        The file.
+
+    Returns
+    -------
+    int
+        Number of the fluents that were added.
+
+    Raises
+    ------
+    ImportFormatError
+        If the file cannot be read, or is not an export.
+    RejectedWriteError
+        If the blackboard refuses a fluent; nothing is changed then.
+    """
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ImportFormatError(f"{file}: not readable as UTF-8: {error}") from error
+    origin, _ = read_episodes(text, str(file))
+    with Blackboard.open(memory, create=True, origin=origin) as board:
+        return import_episodes(board, text, str(file))
+
+
+def stats_of(memory: Path) -> EpisodeStats | None:
+    """Return how much the blackboard of a memory holds.
+
+    Parameters
+    ----------
+    memory
+        Folder of the memory.
+
+    Returns
+    -------
+    EpisodeStats or None
+        The numbers; None if it has no blackboard.
+    """
+    if not has_episodes(memory):
+        return None
+    with Blackboard.open(memory) as board:
+        return EpisodeStats(len(board.holding()), len(board.now()), board.sequence, size(memory / EPISODES))
+
+
+def read_episodes(text: str, file: str) -> tuple[datetime, tuple[EpisodicFluent, ...]]:
+    """Read an export.
+
+    Parameters
+    ----------
+    text
+        The text.
+    file
+        Its name in messages.
+
+    Returns
+    -------
+    origin : datetime
+        Time from which the fluents count seconds.
+    fluents : tuple of EpisodicFluent
+        The fluents.
+
+    Raises
+    ------
+    ImportFormatError
+        If the text is not an export.
+    """
+    try:
+        data = json.loads(text)
+        if not isinstance(data, dict) or data.get("format") != FORMAT:
+            raise ImportFormatError(f"{file}: an export of episodes must state the format {FORMAT!r}")
+        if data.get("version") != VERSION:
+            raise ImportFormatError(f"{file}: the version of the format must be {VERSION}, got {data.get('version')!r}")
+        origin = datetime.fromisoformat(data["origin"])
+        if origin.tzinfo is None:
+            raise ImportFormatError(f"{file}: the origin of times must have a time zone")
+        return origin, tuple(map(_of_list, data["fluents"]))
+    except (ValueError, KeyError, TypeError, RecursionError, EpisodeError, FluentError) as error:
+        if isinstance(error, ImportFormatError):
+            raise
+        raise ImportFormatError(f"{file}: not an export of episodes: {str(error).splitlines()[0]}") from error
+
+
+def has_ending(file: Path) -> bool:
+    """Return whether a file has the ending of an export of episodes.
+
+    Parameters
+    ----------
+    file
+        The file.
+
+    Returns
+    -------
+    bool
+        True if it has.
+    """
+    return file.name.endswith(ENDING)
+
+
+def _to_list(fluent: EpisodicFluent) -> list[Any]:
+    said, source = fluent.statement, fluent.source
+    ends = [*_finite(fluent.start), *_finite(fluent.finish)]
+    statement = [said.subject, said.predicate, said.object]
+    return [fluent.id, statement, ends, fluent.certainty, [source.origin.value, source.by, source.event]]
+
+
+def _finite(bounds: Bounds) -> list[float | None]:
+    return [time if math.isfinite(time) else None for time in (bounds.lower, bounds.upper)]
+
+
+def _of_list(data: list[Any]) -> EpisodicFluent:
+    id, (subject, predicate, thing), ends, certainty, (origin, by, event) = data
+    unknown = (-math.inf, math.inf, -math.inf, math.inf)
+    first, last, earliest, latest = (u if end is None else float(end) for end, u in zip(ends, unknown, strict=True))
+    return episodic(
+        id,
+        Statement(subject, predicate, thing),
+        start=Bounds(first, last),
+        finish=Bounds(earliest, latest),
+        certainty=certainty,
+        source=Source(Origin(origin), by, event),
+    )
+
+
+def _moved(fluent: EpisodicFluent, shift: float) -> EpisodicFluent:
+    if shift == 0:
+        return fluent
+    start, finish = (Bounds(each.lower + shift, each.upper + shift) for each in (fluent.start, fluent.finish))
+    return episodic(
+        fluent.id, fluent.statement, start=start, finish=finish, certainty=fluent.certainty, source=fluent.source
+    )
+
+
+def _same(first: EpisodicFluent, second: EpisodicFluent) -> bool:
+    """Return whether two fluents are equal up to the rounding of moved times."""
+    times = [(each.start.lower, each.start.upper, each.finish.lower, each.finish.upper) for each in (first, second)]
+    near = all(one == other or abs(one - other) < 1e-4 for one, other in zip(*times, strict=True))
+    rest = [(each.statement, each.certainty, each.source) for each in (first, second)]
+    return near and rest[0] == rest[1]
