@@ -129,6 +129,8 @@ RUNS = (
     Run("refer", "English", "objects that descriptions of rooms refer to", data=True),
     Run("blocks", "English", "coloured blocks that instructions across a table pick", data=True),
     Run("habits", "Learning", "places of unseen things, from examples of where a person puts things", data=True),
+    Run("laying", "Learning", "what is laid next, and where"),
+    Run("laying-told", "Learning", "what is laid next, also from what was said", "laying", "--told"),
     Run("activities", "Learning", "ways of laying a table that are recognised, and steps in the wrong order"),
     Run("attributes", "Learning", "adjectives with hidden meanings, learned from sentences"),
     Run("pointing", "Perception", "things that simulated teachers point at"),

@@ -19,7 +19,7 @@ from deixis.grammar.files import read_text
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.inflection import is_plural, singular
 from deixis.ontology.strict_json import parse_json
-from deixis.reasoning.activities.activity import RELATIONS, Activity, Step, StepSequence, kind_of
+from deixis.reasoning.activities.activity import RELATIONS, Activity, LaidThing, Step, StepSequence, kind_of
 
 _NUMBERS = {word: number for number, word in enumerate(("one", "two", "three", "four", "five", "six"), 1)}
 _NEXT = r"(?:and )?(?:then|next|after that|afterwards|after this|finally|at last|lastly|last|at the end|in the end)"
@@ -168,7 +168,15 @@ def _activity(entry: dict[str, Any]) -> Activity:
     if present.shape != (n,) or (counts < 0).any() or not int(entry["examples"]) > 0:
         raise ValueError("its numbers do not fit its steps")
     told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
-    return Activity(str(entry["name"]), steps, told, present, counts, int(entry["examples"]))
+    layings = tuple(tuple(_laid(*thing) for thing in laying) for laying in entry.get("layings", ()))
+    return Activity(str(entry["name"]), steps, told, present, counts, int(entry["examples"]), layings)
+
+
+def _laid(kind: str, place: list[float] | None) -> LaidThing:
+    if place is None:
+        return LaidThing(str(kind), None)
+    x, y = map(float, place)
+    return LaidThing(str(kind), (x, y))
 
 
 def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None:
@@ -187,6 +195,7 @@ def write_activities(path: str | Path, activities: tuple[Activity, ...]) -> None
             "examples": each.examples,
             "steps": [[step.thing, step.predicate, step.object, step.number] for step in each.steps],
             "present": each.present.tolist(),
+            "layings": [[[thing.kind, thing.place] for thing in laying] for laying in each.layings],
             "counts": [[*map(int, at), float(each.counts[tuple(at)])] for at in np.argwhere(each.counts > 0)],
         }
         for each in activities

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.scene import OrientedBox, turned_axes
 from deixis.perception.tracking.image import FrameImage, TableView
 from deixis.perception.tracking.particles import Estimate, ParticleFilter
@@ -20,6 +21,9 @@ HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
 
 COLOUR_SPREAD = 38.0
 """Standard deviation of the colours of one place of a thing, as a distance in RGB from 0 to 255."""
+
+MIN_POINTS_BEYOND = 5
+"""Number of points outside its box from which the box of a thing is extended."""
 
 MEMORY_OF_THE_HIDDEN = 30.0
 """Time in seconds in which the certainty of a thing that is not seen drops to a half."""
@@ -80,6 +84,8 @@ class Pipeline:
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
+    completed: bool = field(default=False, init=False)
+    """True if it was completed during its present rest."""
     rest: int = field(default=0, init=False)
     """Number of its present or last rest, which no other rest of any thing has."""
     particles: int = field(default=0, init=False)
@@ -87,6 +93,14 @@ class Pipeline:
 
     def __post_init__(self) -> None:
         self.since = self.seen_at = self.at
+        self._choose_points()
+        self._filter = ParticleFilter(self.pose, self.settings.particles, self.settings.seed + self.slot)
+        self._places: deque[tuple[float, NDArray[np.float64]]] = deque()
+        self._rest = self.pose
+        self._velocity = np.zeros(3)
+
+    def _choose_points(self) -> None:
+        """Choose the points of the thing that are compared with frames."""
         limits = self.settings.particles
         few = np.linspace(0, len(self.cloud) - 1, min(limits.points, len(self.cloud))).astype(np.int64)
         order = np.random.default_rng(0).permutation(len(self.cloud))
@@ -94,10 +108,6 @@ class Pipeline:
         self._points = self.cloud.points[chosen].astype(np.float64)
         colours = self.cloud.colours
         self._colours = np.zeros_like(self._points) if colours is None else colours[chosen].astype(np.float64)
-        self._filter = ParticleFilter(self.pose, limits, self.settings.seed + self.slot)
-        self._places: deque[tuple[float, NDArray[np.float64]]] = deque()
-        self._rest = self.pose
-        self._velocity = np.zeros(3)
 
     @property
     def displaced(self) -> float:
@@ -241,6 +251,43 @@ class Pipeline:
         )  # fmt: skip
         return float(seen[0, 0]), float(seen[0, 1])
 
+    def extend(self, points: NDArray[np.float64], colours: NDArray[np.float32], settings: OutlineSettings) -> None:
+        """Add points that belong to the thing, and extend its box and move its origin where they lie outside.
+
+        Parameters
+        ----------
+        points
+            Points of shape (n, 3) in the table's frame, in metres.
+        colours
+            Their colours, shape (n, 3).
+        settings
+            Share of outermost points that are noise.
+        """
+        from deixis.perception.detection.outline import oriented_box, upright_box
+
+        if (~self.contains(points, 0.0)).sum() < MIN_POINTS_BEYOND:
+            return
+        turn = self.pose[:3, :3]
+        own = self.cloud.points.astype(np.float64) @ turn.T + self.pose[:3, 3]
+        everything = np.concatenate([own, points])
+        box = upright_box(everything, settings)
+        around = oriented_box(everything, settings)
+        middle = box.mean(axis=0)
+        yaw = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+        shades = np.zeros((len(own), 3), np.uint8) if self.cloud.colours is None else self.cloud.colours
+        both = np.concatenate([shades, np.clip(colours, 0, 255).astype(np.uint8)])
+        local = (everything - middle) @ turn
+        self.cloud = PointCloud(local.astype(np.float32), None if self.cloud.colours is None else both)
+        self.half = (box[1] - box[0]) / 2 if yaw == 0 else np.ptp(local, axis=0) / 2
+        self.oriented = OrientedBox(
+            tuple(((np.array(around.centre) - middle) @ turn).tolist()), around.yaw - yaw, around.extents
+        )
+        self.pose = self.pose.copy()
+        self.pose[:3, 3] = middle
+        self._rest = self.pose
+        self._choose_points()
+        self._filter.reset(self.pose)
+
     def moved_to(self, pose: NDArray[np.float64], at: float, agreement: float) -> None:
         """Take a pose that was found in a frame.
 
@@ -309,6 +356,7 @@ class Pipeline:
         if np.linalg.norm(pose[:3, 3] - self._rest[:3, 3]) > 2.5 * self.settings.still:
             self.since = self._places[0][0]
         self.pose, self.active, self._rest = pose, False, pose
+        self.completed = False
         self.settled_at = self._places[-1][0]
         self._places.clear()
         self._filter.reset(pose)

@@ -89,6 +89,8 @@ class TrackingSettings:
         Distance in metres from the predicted place beyond which a moving thing must be seen well to be found.
     still, still_for
         A moving thing has come to rest if it moves by less than the first in the second.
+    complete_after
+        Time of rest after which thin parts of a thing that one frame did not show are added to it.
     gone_after
         Time without a hand in view after which a thing that is not found is gone.
     lost_after
@@ -117,6 +119,7 @@ class TrackingSettings:
     jump: float = 0.12
     still: float = 0.004
     still_for: float = 0.3
+    complete_after: float = 1.0
     gone_after: float = 0.8
     lost_after: float = 6.0
     workers: int = 2

@@ -73,6 +73,24 @@ EXPOSED = 0.3
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
 
+COMPLETED_MARGIN = 40
+"""Distance in pixels from a thing within which its missing parts are looked for."""
+
+MIN_TABLE_PIXELS = 50
+"""Least number of pixels of the table around a thing, for its missing parts to be looked for."""
+
+REMAINING_NOISE = 0.45
+"""Standard deviation of the reference after ten frames, as a share of that of one frame."""
+
+MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
+"""Least heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
+
+FLAT = 0.03
+"""Height in metres below which a thing may have parts that are lost in the noise of the table."""
+
+MIN_PART = 12
+"""Least number of pixels of a missing part."""
+
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are segmented again."""
 
@@ -167,6 +185,7 @@ class Tracker:
         self._follow(image, changes, at, at - (before if before is not None else at))
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
+        self._complete(image, at)
         return self._situation(at, number, came, went)
 
     @property
@@ -430,6 +449,68 @@ class Tracker:
                     gone.append(thing)
         self._things = [thing for thing in self._things if thing not in gone]
         return tuple(gone)
+
+    def _complete(self, image: FrameImage, at: float) -> None:
+        """Add to a flat thing that has rested for a while the thin parts that one frame hides in its noise.
+
+        The reference is a mean over many frames. Pixels of the table beside the thing that are higher than the rest of
+        its noise, or of another colour than the table, are the thing's if they are connected with it and higher than
+        the table on average.
+        """
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        assert self._reference is not None and self._view is not None
+        limits, reference, view = self.settings, self._reference, self._view
+        ready = (
+            thing
+            for thing in self._things
+            if not thing.active and not thing.completed and thing.seen_at == at and self._hand_at < at
+            and at - max(thing.at, thing.settled_at) >= limits.complete_after
+            and thing.oriented.extents[2] < FLAT
+        )  # fmt: skip
+        thing = next(ready, None)
+        if thing is None:
+            return
+        thing.completed = True
+        own = reference.owner == thing.slot
+        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        if not len(rows):
+            return
+        margin = COMPLETED_MARGIN
+        window = np.s_[
+            max(rows[0] - margin, 0) : rows[-1] + margin + 1, max(columns[0] - margin, 0) : columns[-1] + margin + 1
+        ]
+        owner, depth, level = reference.owner[window], reference.depth[window], view.level[window]
+        shade = reference.colour[window]
+        table = (owner == TABLE) & (depth > 0) & np.isfinite(level)
+        seed = own[window]
+        bare = table & ~binary_dilation(seed, iterations=3)
+        if bare.sum() < MIN_TABLE_PIXELS:
+            return
+        eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            height = np.where(table, eye * (1 - depth / level), 0.0)
+            noise = REMAINING_NOISE * self._noise * depth**2 * eye / level
+        tinted = np.linalg.norm(shade - np.median(shade[bare], axis=0), axis=-1) > limits.colour
+        candidate = table & ((height > np.maximum(4 * noise, MIN_HEIGHT)) | tinted)
+        candidate &= height > -4 * noise
+        part = binary_propagation(seed, mask=seed | candidate, structure=np.ones((3, 3))) & ~seed
+        count = int(part.sum())
+        others = (owner != TABLE) & (owner != UNKNOWN_OWNER) & ~seed
+        if (others & binary_dilation(part, iterations=2)).any():
+            return
+        if not MIN_PART <= count <= max(2 * int(seed.sum()), 4 * MIN_PART):
+            return
+        if height[part].mean() < max(MIN_MEAN_HEIGHT, 3 * float(noise[part].mean()) / np.sqrt(count)):
+            return
+        whole = np.zeros(own.shape, np.bool_)
+        whole[window] = part
+        pixels = np.flatnonzero(whole)
+        reference.owner.ravel()[pixels] = thing.slot
+        row, column = np.divmod(pixels, own.shape[1])
+        rays = np.stack([column, row, np.ones(len(pixels))], axis=1) * reference.depth.ravel()[pixels, None]
+        points = (rays - view.offset) @ np.linalg.inv(view.matrix).T
+        thing.extend(points, reference.colour.reshape(-1, 3)[pixels], limits.detection.outlines)
 
     # What is new
 

@@ -6,6 +6,8 @@ often each step was there. The counts are sums, so the order of the examples doe
 
 from __future__ import annotations
 
+import json
+import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -17,7 +19,7 @@ from numpy.typing import NDArray
 from deixis.ontology.allen import ALL_ALLEN
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks, distances_from_bounds
-from deixis.reasoning.temporal.fluent import Fluent
+from deixis.reasoning.temporal.fluent import Fluent, Statement
 
 RELATIONS = 13
 
@@ -67,6 +69,18 @@ class Step:
         return f"{said} {self.number}" if self.number > 1 else said
 
 
+@dataclass(frozen=True, slots=True)
+class LaidThing:
+    """Thing that was laid: its kind, and the middle of its box in plan (x, y) in metres, or None."""
+
+    kind: str
+    place: tuple[float, float] | None
+
+
+Laying = tuple[LaidThing, ...]
+"""Things in the order in which they were laid."""
+
+
 @dataclass(frozen=True, eq=False)
 class StepSequence:
     """Fluents in the order of their starts, with the step that each is and the relations that each pair may have."""
@@ -93,11 +107,21 @@ class StepSequence:
         steps = []
         for each in ordered:
             said = each.statement
-            other = None if said.object is None else kind_of(said.object)
-            key = (kind_of(said.subject), said.predicate, other)
+            if box_of(said) is not None:
+                said = Statement(said.subject, "placed")
+            key = (kind_of(said.subject), said.predicate, None if said.object is None else kind_of(said.object))
             seen[key] += 1
             steps.append(Step(*key, seen[key]))
         return cls(ordered, tuple(steps))
+
+    @property
+    def laying(self) -> Laying:
+        """Things in the order of their fluents, with the places that statements of the predicate ``at`` give."""
+        places = [box_of(each.statement) for each in self.fluents]
+        return tuple(
+            LaidThing(step.thing, None if box is None else middle_of(box))
+            for step, box in zip(self.steps, places, strict=True)
+        )
 
     @cached_property
     def masks(self) -> NDArray[np.uint16]:
@@ -136,6 +160,50 @@ def kind_of(name: str) -> str:
     return "_".join(words[:-1] if len(words) > 1 and words[-1].isdigit() else words)
 
 
+def box_of(statement: Statement) -> tuple[float, ...] | None:
+    """Return the box in a statement of place, as the blackboard has it.
+
+    Parameters
+    ----------
+    statement
+        Such as ``at(fork, [0.1, 0.2, 0.12, 0.4])``.
+
+    Returns
+    -------
+    tuple or None
+        Lower and upper corner, 4 or 6 numbers in metres; None if it is not a statement of a box.
+    """
+    if statement.predicate != "at" or statement.object is None:
+        return None
+    try:
+        corners = tuple(map(float, json.loads(statement.object)))
+    except (ValueError, TypeError):
+        return None
+    return corners if len(corners) in (4, 6) and all(map(math.isfinite, corners)) else None
+
+
+def middle_of(box: tuple[float, ...]) -> tuple[float, float]:
+    """Return the middle of a box in plan.
+
+    Parameters
+    ----------
+    box
+        Lower and upper corner, 4 or 6 numbers in metres.
+
+    Returns
+    -------
+    tuple
+        x and y in metres.
+
+    Examples
+    --------
+    >>> middle_of((0.0, 0.0, 0.0, 0.2, 0.4, 0.1))
+    (0.1, 0.2)
+    """
+    half = len(box) // 2
+    return (box[0] + box[half]) / 2, (box[1] + box[half + 1]) / 2
+
+
 def members_of(masks: NDArray[np.uint16]) -> NDArray[np.float64]:
     """Return masks as arrays over the thirteen relations.
 
@@ -170,6 +238,8 @@ class Activity:
         Expected number of examples in which each relation held, shape (n, n, 13).
     examples
         Number of examples; 0 for a told activity.
+    layings
+        Things with their places, in the order of each example that has any.
     """
 
     name: str
@@ -178,6 +248,7 @@ class Activity:
     present: NDArray[np.float64]
     counts: NDArray[np.float64]
     examples: int = 0
+    layings: tuple[Laying, ...] = ()
 
     @classmethod
     def in_order(cls, name: str, groups: Sequence[Sequence[Step]]) -> Activity:
@@ -247,7 +318,8 @@ class Activity:
             share = example.members / example.members.sum(axis=2, keepdims=True) if len(at) else example.members
             counts[np.ix_(at, at)] += share
         told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
-        return cls(name, steps, told, present, counts, len(examples))
+        layings = tuple(example.laying for example in examples if example.steps)
+        return cls(name, steps, told, present, counts, len(examples), layings)
 
     def __add__(self, other: Activity) -> Activity:
         """Return the activity of the examples of two learned activities."""
@@ -259,7 +331,8 @@ class Activity:
             present[at] += each.present
             counts[np.ix_(at, at)] += each.counts
         told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
-        return Activity(self.name, steps, told, present, counts, self.examples + other.examples)
+        layings = self.layings + other.layings
+        return Activity(self.name, steps, told, present, counts, self.examples + other.examples, layings)
 
     @property
     def presence(self) -> NDArray[np.float64]:

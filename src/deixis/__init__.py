@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
+    from deixis.reasoning.activities.prediction import Prediction
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
@@ -71,6 +72,7 @@ __all__ = [
     "PerceivedObject",
     "Placements",
     "PointCloud",
+    "Prediction",
     "QueryResult",
     "Recall",
     "Recognised",
@@ -105,6 +107,7 @@ __all__ = [
 
 _HOMES = {
     "ActivityGrounding": "deixis.reasoning.activities.grounding",
+    "Prediction": "deixis.reasoning.activities.prediction",
     "Check": "deixis.workflows.grounding.check",
     "DeixisError": "deixis.errors",
     "Fact": "deixis.ontology.facts",

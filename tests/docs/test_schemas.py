@@ -84,6 +84,8 @@ CASES = [
     ("solve", "solve {e}/closed_but_inconsistent.csp --calculus allen"),
     ("taught", "teach {t}/table.scene.json o1 napkin"),
     ("activity_grounding", "activity ground 'first the cup, then the plate' --memory {t}/watched"),
+    ("predicted_activity", "activity predict --told 'first the plate, then the cup' --memory {t}/watched"),
+    ("predicted_activity", "activity predict {t}/laid.fluents.json --known {t}/laid.json"),
     ("recognised_activity", "activity recognise --known {t}/known.json --memory {t}/watched"),
     ("recall", "recall 'what is on the table?' --memory {t}/watched"),
     ("recall", "recall 'where was the spoon before?' --memory {t}/watched"),
@@ -127,6 +129,12 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     deixis_command("learn", script, folder / "table.scene.json", "--memory", folder / "memory")
     served = EXAMPLES / "serving.fluents.json"
     deixis_command("activity", "learn", "serving", served, "--known", folder / "known.json")
+    place = {"id": "a", "statement": ["cup", "at", "[0, 0, 0.1, 0.1]"], "start": [0, 1]}
+    later = {"id": "b", "statement": ["plate", "at", "[0.2, 0, 0.4, 0.2]"], "start": [2, 3]}
+    for name, fluents in (("laid", [place]), ("all", [place, later])):
+        text = json.dumps({"origin": "noon", "fluents": fluents})
+        (folder / f"{name}.fluents.json").write_text(text, encoding="utf-8")
+    deixis_command("activity", "learn", "laid", folder / "all.fluents.json", "--known", folder / "laid.json")
     with Blackboard.open(folder / "watched", create=True) as board:
         seen = Source(Origin.SEEN, "tracker")
         board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, source=seen), by="tracker")

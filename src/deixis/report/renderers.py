@@ -79,6 +79,9 @@ RENDERERS = {
     "ActivityGrounding": Renderer(
         "report.reasoning.activities:grounded_to_dict", "report.reasoning.activities:grounded_lines"
     ),
+    "Prediction": Renderer(
+        "report.reasoning.activities:predicted_to_dict", "report.reasoning.activities:predicted_lines"
+    ),
     "RecognisedActivity": Renderer(
         "report.reasoning.activities:recognised_to_dict", "report.reasoning.activities:recognised_lines"
     ),

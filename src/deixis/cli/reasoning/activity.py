@@ -1,4 +1,4 @@
-"""The commands ``deixis activity ground``, ``learn`` and ``recognise``: told and learned activities."""
+"""The commands ``deixis activity ground``, ``learn``, ``recognise`` and ``predict``: told and learned activities."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.activities.activity import StepSequence
 
 activity_app = typer.Typer(
-    help="Ground, learn and recognise activities: steps in the order of time.", no_args_is_help=True
+    help="Ground, learn, recognise and predict activities: steps in the order of time.", no_args_is_help=True
 )
 
 Known = Annotated[Path, typer.Option("--known", metavar="FILE", help="File of learned activities (JSON).")]
@@ -74,6 +74,30 @@ def recognise(
     else:
         print_lines(recognised_lines(found))
     if found.name is None:
+        raise typer.Exit(NO)
+
+
+@activity_app.command("predict")
+def predict(
+    file: Fluents = None,
+    known: Annotated[Path | None, typer.Option("--known", metavar="FILE", help="File of learned activities.")] = None,
+    name: Annotated[str | None, typer.Option(metavar="NAME", help="Learned activity, where there are several.")] = None,
+    told: Annotated[
+        str | None, typer.Option(metavar="TEXT", help="Order that was said: 'first the plate, then the forks'.")
+    ] = None,
+    memory: MemoryDir = None,
+    as_json: AsJson = False,
+) -> None:
+    """Predict what is laid next and where, from learned activities and a told order; exit 1 if nothing more comes."""
+    from deixis.report.reasoning.activities import predicted_lines, predicted_to_dict
+    from deixis.workflows.reasoning.activities import predict as run
+
+    found = run(_sequence(file, memory), () if known is None else known, name, told)
+    if as_json:
+        print_json(predicted_to_dict(found))
+    else:
+        print_lines(predicted_lines(found))
+    if not found.things or found.finished > found.things[0].probability:
         raise typer.Exit(NO)
 
 

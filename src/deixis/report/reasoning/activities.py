@@ -1,14 +1,16 @@
-"""Write grounded and recognised activities as lines of text and plain data."""
+"""Write grounded, recognised and predicted activities as lines of text and plain data."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from deixis.reasoning.activities.prediction import TABLE
 from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
+    from deixis.reasoning.activities.prediction import Prediction
 
 
 def grounded_lines(found: ActivityGrounding) -> Iterator[str]:
@@ -98,4 +100,63 @@ def recognised_to_dict(found: RecognisedActivity) -> dict[str, Any]:
         "activity": found.name,
         "probabilities": [{"activity": name, "probability": share} for name, share in found.probabilities],
         "grounding": None if found.grounding is None else grounded_to_dict(found.grounding),
+    }
+
+
+def predicted_lines(found: Prediction) -> Iterator[str]:
+    """Yield a line for each thing that may be laid next, with its place, and one for the end.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis activity predict``.
+
+    Yields
+    ------
+    str
+        A line of text.
+    """
+    for thing in found.things:
+        where = ""
+        if thing.place is not None:
+            (x, y), (dx, dy) = thing.place.place, thing.place.offset
+            where = f", at ({x:.2f}, {y:.2f}) m, within {100 * thing.place.spread:.0f} cm"
+            if thing.place.anchor != TABLE:
+                where += f": ({dx:+.2f}, {dy:+.2f}) m from the {thing.place.anchor.replace('_', ' ')}"
+        yield f"{thing.kind.replace('_', ' ')}: probability {thing.probability:.2f}{where}"
+    yield f"nothing more: probability {found.finished:.2f}"
+
+
+def predicted_to_dict(found: Prediction) -> dict[str, Any]:
+    """Return a prediction as plain data.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis activity predict``.
+
+    Returns
+    -------
+    dict
+        The object that ``deixis activity predict --json`` prints.
+    """
+    return {
+        "activity": found.activity,
+        "laid": list(found.laid),
+        "next": [
+            {
+                "kind": thing.kind,
+                "probability": thing.probability,
+                "place": None
+                if thing.place is None
+                else {
+                    "at": list(thing.place.place),
+                    "spread": thing.place.spread,
+                    "anchor": thing.place.anchor,
+                    "offset": list(thing.place.offset),
+                },
+            }
+            for thing in found.things
+        ],
+        "finished": found.finished,
     }

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.deadline import Deadline
 from deixis.grammar.activities import read_activities, told_activity, write_activities
 from deixis.grammar.formats.fluents import read_fluents
-from deixis.reasoning.activities.activity import Activity, StepSequence
+from deixis.reasoning.activities.activity import Activity, Laying, StepSequence, box_of
 from deixis.reasoning.activities.grounding import (
     ActivityGrounding,
     RecognisedActivity,
     ground_activity,
     recognise_activity,
 )
-from deixis.reasoning.errors import NothingFoundError
+from deixis.reasoning.activities.prediction import LayingModel, Prediction
+from deixis.reasoning.errors import NothingFoundError, SettingError
 from deixis.reasoning.temporal.fluent import Fluent, Statement
 
 if TYPE_CHECKING:
@@ -52,12 +55,17 @@ def sequence_of_episodes(board: Blackboard, start: float | None = None, end: flo
     Returns
     -------
     StepSequence
-        A fluent for each thing that came, named by its category.
+        A fluent for each thing that came, named by its category, with its box.
     """
     from deixis.workflows.knowledge.recall import arrivals
 
     fluents = [
-        Fluent(each.id, Statement(name, "placed"), each.start, each.finish)
+        Fluent(
+            each.id,
+            Statement(name, "placed") if box_of(each.statement) is None else replace(each.statement, subject=name),
+            each.start,
+            each.finish,
+        )
         for each, name in arrivals(board, start, end)
     ]
     return StepSequence.of(fluents)
@@ -135,7 +143,76 @@ def recognise(
     NothingFoundError
         If no activity is known.
     """
-    activities = read_activities(known) if isinstance(known, str | Path) else tuple(known)
+    activities = _known(known)
     if not activities:
         raise NothingFoundError("no activity is known; 'deixis activity learn' learns one from examples")
     return recognise_activity(activities, sequence_of(source), Deadline.after(time_limit))
+
+
+def predict(
+    source: str | Path | StepSequence | None,
+    known: str | Path | Sequence[Activity] = (),
+    name: str | None = None,
+    told: str | None = None,
+) -> Prediction:
+    """Predict what is laid next, and where.
+
+    Parameters
+    ----------
+    source
+        What was laid so far: a sequence, a file of fluents, or None for nothing. Places are those of statements of the
+        predicate ``at``, whose object is a box.
+    known
+        Learned activities, or the file that has them.
+    name
+        Name of the learned activity; it is needed if there are several.
+    told
+        Order that a person stated, such as ``first the plate, then the forks``.
+
+    Returns
+    -------
+    Prediction
+        Kinds with probabilities and places.
+
+    Raises
+    ------
+    NothingFoundError
+        If there is no learned activity of the name, and no told order.
+    SettingError
+        If there are several learned activities, and no name.
+
+    Examples
+    --------
+    >>> predict(None, told="first the plate, then the fork, finally the cup").things[0].kind
+    'plate'
+    """
+    activities = _known(known)
+    if name is not None:
+        activities = tuple(each for each in activities if each.name == name)
+    if len(activities) > 1:
+        raise SettingError(f"name one of the activities: {', '.join(sorted(each.name for each in activities))}")
+    if not activities and (told is None or name is not None):
+        raise NothingFoundError(
+            f"no activity {'' if name is None else repr(name) + ' '}is known; 'deixis activity learn' learns one"
+        )
+    layings = [laying for each in activities for laying in each.layings]
+    largest = StepSequence.of(
+        Fluent(f"{kind}_{number}", Statement(kind, "placed"))
+        for kind, count in _most(layings).items()
+        for number in range(count)
+    )
+    laid = () if source is None else sequence_of(source).laying
+    order = None if told is None else told_activity(told, largest)
+    return LayingModel(layings, order, name or (activities[0].name if activities else "told")).predict(laid)
+
+
+def _known(known: str | Path | Sequence[Activity]) -> tuple[Activity, ...]:
+    return read_activities(known) if isinstance(known, str | Path) else tuple(known)
+
+
+def _most(layings: Sequence[Laying]) -> Counter[str]:
+    """Return the largest number of things of each kind in one laying."""
+    most: Counter[str] = Counter()
+    for laying in layings:
+        most |= Counter(thing.kind for thing in laying)
+    return most
