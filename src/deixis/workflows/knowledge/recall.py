@@ -559,7 +559,7 @@ def _distinct(parts: Iterable[str]) -> list[str]:
 
 
 def _capital(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}."
+    return f"{text[0].upper()}{text[1:]}" + ("" if text.endswith(("?", "!")) else ".")
 
 
 def _fact(found: Recall, fact: Recalled) -> str:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import datetime, timedelta
+from pathlib import Path
 
 import pytest
+from commands import deixis
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +16,7 @@ from deixis.memory.episodes.changes import Add
 from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
+from deixis.session import Session
 from deixis.workflows.knowledge.recall import Recall, moment_of, recall
 
 NOW = datetime.now().astimezone().replace(hour=12, minute=30, second=0, microsecond=0)
@@ -174,3 +177,39 @@ def test_answers_about_random_histories_are_their_states(states: States, second:
         assert facts(on) == {
             (name, *place) for name, places in states.items() if (place := places[second]) == ("on", "plate")
         }
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "ids"),
+    [
+        ("where was the fork before?", "The fork was left of the plate", ["f3"]),
+        ("what was taken away since noon?", "The cup went at 12:10:00", ["f5"]),
+        ("which one did I show you first?", "Ada showed the fork", ["f1"]),
+        ("what did I tell you that you have not seen?", "Ada said at 12:15:00: there is a ball", ["f7"]),
+        ("is there a ball?", "Probably: Ada said at 12:15:00: there is a ball", ["f7"]),
+    ],
+)
+def test_python_command_and_sparql_answer_alike(tmp_path: Path, question: str, answer: str, ids: list[str]) -> None:
+    said = Source(Origin.SAID, "Ada", "sentence1")
+    told = [
+        (("t1", "isA", "fork"), 0, None, ADA),
+        (("t2", "isA", "plate"), 0, None, SEEN),
+        (("t1", "left", "t2"), 0, 600, SEEN),
+        (("t1", "on", "t2"), 600, None, SEEN),
+        (("t3", "right", "t2"), 30, 2400, SEEN),
+        (("t3", "isA", "cup"), 30, None, SEEN),
+        (("e1", "expected", "there is a ball"), 2700, None, said),
+        (("e1", "isA", "ball"), 2700, None, said),
+    ]
+    with Blackboard.open(tmp_path, create=True, origin=NOW - timedelta(hours=1)) as board:
+        for number, (statement, start, finish, source) in enumerate(told, 1):
+            board.add(episodic(f"f{number}", statement, start=start, finish=finish, source=source), by="test")
+    with Session(tmp_path) as session:
+        found = session.recall(question, at=NOW)
+        assert found.search is not None
+        rows = session.query(found.search.sparql()).rows
+    assert found.answer.startswith(answer)
+    assert [each.fluent.id for each in found.facts] == ids
+    assert [row[0].value for row in rows] == ids
+    code, out, _ = deixis("recall", question, "--at", NOW.isoformat(), "--memory", tmp_path)
+    assert (code, out) == (0, f"{found.answer}\n")
