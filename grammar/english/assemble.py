@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from deixis.grammar.english.build import Built, Noun, Said, Verb, misunderstood, notes, viewpoint_of
+from deixis.grammar.english.build import viewpoint_of
+from deixis.grammar.english.built import Built, Noun, Said, Verb, misunderstood, notes
 from deixis.grammar.english.chunks import Chunk, VerbGroup
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.joints import Segment
@@ -49,6 +50,8 @@ _POINTS = frozenset(
     {"rule", "point", "fact", "result", "thing", "trick", "secret", "requirement", "difference", "advantage", "problem"}
 )
 """Nouns of which *is that …* tells a fact: *the rule is that …*, not *the rumour is that …*."""
+_ALLOWING = frozenset({"may", "can", "must", "should", "shall"})
+"""Modal verbs that forbid with a subject such as *no one*: *no one may put a cup on it*."""
 _LETTING = frozenset({"let", "make", "help", "watch"})
 """Verbs whose object does something itself: *don't let the cat sleep in it*."""
 _OWNING = frozenset(
@@ -84,6 +87,7 @@ class Assembly:
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
+    is_coordinated: bool = False  # True for a condition after *and*
     is_lost: bool = False  # True if the clause before has an object and was not understood
     borne: NounPhrase | None = None  # thing that the subject of the clause before holds
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause that is being taken in was parsed
@@ -230,13 +234,16 @@ class Assembly:
             if verb.thing is not None and (
                 verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
             ):
-                placed = person and verb.group.lemma in _PLACING - {"leave", "keep"} and verb.group.past
+                kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}
+                placed = person and verb.group.lemma in _PLACING - kept and verb.group.past
                 if placed and " had " not in f" {self.text[slice(*verb.span)]} " and not self._was_undone(span):
                     verb = replace(verb, group=replace(verb.group, past=False))  # 'I stood the candle on the plate'
                 if verb.group.lemma in _PLACING and _is_plan(verb.group, subject.phrase):
                     verb = replace(verb, group=replace(verb.group, modal="might"))
                 moved, thing = self._of_the_thing(verb, subject)
-                if subject.phrase.pronoun == "nothing":
+                if subject.phrase.pronoun == "nothing" and moved.group.modal in _ALLOWING:
+                    moved = replace(moved, group=replace(moved.group, modal="must", positive=False))
+                elif subject.phrase.pronoun == "nothing":
                     misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
                     continue
                 if not moved.said and not front and verb.group.lemma not in ("have", "see", "find", "notice"):
@@ -349,7 +356,7 @@ class Assembly:
         found[:] = [
             note for note in found if not span[0] <= note.span[0] < span[1]
         ]  # a condition need not be understood
-        if self.clauses and self.clauses[-1].condition is None:
+        if self.clauses and self.clauses[-1].condition is None and not self.is_coordinated:
             self.clauses[-1] = replace(self.clauses[-1], condition=text)
         else:
             self.condition = text

@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
-from contextvars import ContextVar
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from lark import Transformer, v_args
 
+from deixis.grammar.english.built import Built, Noun, Said, Verb, misunderstood, notes, union
 from deixis.grammar.english.chunks import Chunk, Relator, VerbGroup
-from deixis.grammar.english.nouns import HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.nouns import PARTS, SUBSTANCES, last_word
 from deixis.grammar.english.places import directions_of, is_place, place
+from deixis.grammar.english.predicates import (
+    DIRECTION_RELATIONS,
+    GAPS,
+    MOVING,
+    WRAPPING,
+    accompanied_by,
+    arguments_of,
+    by_means,
+    checked,
+    destination,
+    merged,
+    moved,
+    transitive,
+)
 from deixis.grammar.english.tree import (
     Adjective,
     Degree,
     Measure,
-    Misunderstood,
     NounPhrase,
     Predicate,
     Span,
@@ -24,91 +37,11 @@ from deixis.grammar.english.tree import (
 from deixis.grammar.english.words import (
     COMPARISONS,
     DIRECTION_WORDS,
-    ENTER_VERBS,
     FACE_VERBS,
     NOT_PLACES,
     PLACE_NOUNS,
-    TRANSITIVE_RELATIONS,
     word_set,
 )
-
-notes: ContextVar[list[Misunderstood]] = ContextVar("notes")
-"""Phrases of the sentence being built that have no meaning here."""
-
-_DIRECTION_RELATIONS = word_set(
-    "corner left right top bottom above below in_front behind top_left top_right bottom_left bottom_right under inside"
-    " on beside near"
-)
-"""Relations of places, which can stand without an object and take that of their neighbour."""
-
-
-@dataclass(frozen=True, slots=True)
-class Noun:
-    """A noun phrase, and the phrases after it that belong to what stands above it: *to the left of it, on the tray*."""
-
-    phrase: NounPhrase
-    extra: tuple[Predicate, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Said:
-    """Predicates with their joint: ``choice`` is True after *or*, ``contrast`` after *but*."""
-
-    predicates: tuple[Predicate, ...]
-    choice: bool = False
-    contrast: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Verb:
-    """A verb group with what it says."""
-
-    group: VerbGroup
-    said: tuple[Said, ...]
-    span: Span
-    nominal: Noun | None = None
-    thing: Noun | None = None  # object of the verb
-
-
-@dataclass(frozen=True, slots=True)
-class Built:
-    """A clause as it is parsed: ``shape`` is the name of its rule."""
-
-    shape: str
-    subject: Noun | None
-    verbs: tuple[Verb, ...]
-    said: tuple[Said, ...] = ()
-
-
-def union(first: Span, last: Span) -> Span:
-    """Return the span from the start of one to the end of another.
-
-    Parameters
-    ----------
-    first, last
-        Spans in the same text, in any order.
-
-    Returns
-    -------
-    Span
-        Smallest span that contains both.
-    """
-    return min(first[0], last[0]), max(first[1], last[1])
-
-
-def misunderstood(span: Span, reason: str, suggestion: str | None = None) -> None:
-    """Note a phrase that has no meaning.
-
-    Parameters
-    ----------
-    span
-        Place of the phrase in the text.
-    reason
-        Why it has no meaning, for the message.
-    suggestion
-        Advice or a wording that would be understood, or None.
-    """
-    notes.get().append(Misunderstood(span, reason, suggestion))
 
 
 @v_args(inline=True)
@@ -157,17 +90,17 @@ class Builder(Transformer[Any, Built]):
                 )
                 for part in said
             )
-        if said and (group.lemma in _WRAPPING or group.lemma in _FASTENING):
-            said = tuple(replace(part, predicates=_means(group.lemma, part.predicates)) for part in said)
-        if group.lemma in _MOVING and said:
+        if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
+            said = tuple(replace(part, predicates=by_means(group.lemma, part.predicates)) for part in said)
+        if group.lemma in MOVING and said:
             said = tuple(
                 replace(
                     part,
-                    predicates=tuple(_destination(p) for p in part.predicates),
+                    predicates=tuple(destination(p) for p in part.predicates),
                 )
                 for part in said
             )
-        return Built("command", raws, (Verb(group, _moved(group, said, put.span) if said else (), put.span),))
+        return Built("command", raws, (Verb(group, moved(group, said, put.span) if said else (), put.span),))
 
     def other(self, do: Chunk, top: Noun) -> Built:
         """Return a command that does not put anything anywhere: *open the box on the tray*."""
@@ -223,14 +156,14 @@ class Builder(Transformer[Any, Built]):
                 shown = (Said(noun.extra), *shown)
             return Verb(group, shown, chunk.span, noun)
         if chunk.type == "VERB":
-            said = _moved(group, parts[1] or (), chunk.span)
+            said = moved(group, parts[1] or (), chunk.span)
             return Verb(group, said, chunk.span)
         _, things, said = parts
-        if group.lemma in _MOVING and said:
-            said = tuple(replace(part, predicates=tuple(map(_destination, part.predicates))) for part in said)
-        if group.lemma in _MOVING:
-            moved = replace(things.phrase, predicates=tuple(map(_destination, things.phrase.predicates)))
-            things = Noun(moved, tuple(map(_destination, things.extra)))
+        if group.lemma in MOVING and said:
+            said = tuple(replace(part, predicates=tuple(map(destination, part.predicates))) for part in said)
+        if group.lemma in MOVING:
+            thing = replace(things.phrase, predicates=tuple(map(destination, things.phrase.predicates)))
+            things = Noun(thing, tuple(map(destination, things.extra)))
         return Verb(group, said or (), chunk.span, thing=things)
 
     def nominal(self, nps: Noun, *joined: Any) -> Noun:
@@ -281,6 +214,8 @@ class Builder(Transformer[Any, Built]):
         if len(parts) == 1:
             single: Noun = parts[0]
             return single
+        if len(parts) == 3 and _is_second_content(parts[0].phrase, parts[2].phrase):
+            return parts[0]  # type: ignore[no-any-return]
         members = [part.phrase for part in parts[::2]]
         joints = [part.value for part in parts[1::2]]
         first = members[0]
@@ -418,6 +353,10 @@ class Builder(Transformer[Any, Built]):
         if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
             aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
             return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
+        own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
+        if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
+            turned = Predicate("upside_down", (), span, positive=relator.positive)
+            return (turned, *noun.phrase.predicates, *extra)
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))
@@ -443,7 +382,7 @@ class Builder(Transformer[Any, Built]):
         ):  # 'above X to the left'
             bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
             noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,)), *extra)
-        if last_word(noun.phrase.head) in _GAPS and relation in ("inside", "on") and noun.phrase.predicates:
+        if last_word(noun.phrase.head) in GAPS and relation in ("inside", "on") and noun.phrase.predicates:
             between = tuple(p for p in noun.phrase.predicates if p.relation == "between")
             if between:  # 'in the space between the plate and the cup'
                 return (*between, *extra)
@@ -485,7 +424,7 @@ class Builder(Transformer[Any, Built]):
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
         adverbs = (*relator.adverbs, written) if written == "over" or shaped else relator.adverbs
         made = Predicate(
-            relation, _arguments(relation, arguments), span, value=value, degree=degree,
+            relation, arguments_of(relation, arguments), span, value=value, degree=degree,
             than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,
         )  # fmt: skip
         return (made, *extra)
@@ -525,7 +464,7 @@ class Builder(Transformer[Any, Built]):
 
     def holding(self, chunk: Chunk, nps: Noun) -> tuple[Predicate, ...]:
         """Return the predicates of *facing the window*, *holding a pen*."""
-        return _transitive(chunk.value, nps, chunk.span)
+        return transitive(chunk.value, nps, chunk.span)
 
     def withs(self, chunk: Chunk, *nouns: Any) -> tuple[Predicate, ...]:
         """Return the predicates of *with a napkin on it*."""
@@ -578,7 +517,7 @@ class Builder(Transformer[Any, Built]):
         """Return the predicates of *that the cup stands on* and *which I keep under the mug*."""
         predicates = flat(verb)
         if noun.phrase.pronoun in ("me", "you", "we", "someone") or not predicates:
-            return tuple(p for p in predicates if p.arguments or p.relation in _DIRECTION_RELATIONS)
+            return tuple(p for p in predicates if p.arguments or p.relation in DIRECTION_RELATIONS)
         last = predicates[-1]
         if not last.arguments:
             span = union(noun.phrase.span, last.span)
@@ -589,6 +528,16 @@ class Builder(Transformer[Any, Built]):
     def whose(self, whose: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *whose handle points to the right*."""
         return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
+
+
+def _is_second_content(vessels: NounPhrase, other: NounPhrase) -> bool:
+    """Return True for *the cruets of wine* and *water*, which the cruets hold too."""
+    content = vessels.of
+    bare = other.determiner is None and other.owner is None and other.count is None and not other.predicates
+    return (
+        content is not None and vessels.plural and not content.predicates and bare
+        and content.head in SUBSTANCES and other.head in SUBSTANCES
+    )  # fmt: skip
 
 
 def flat(verb: Verb) -> list[Predicate]:
@@ -613,7 +562,7 @@ def flat(verb: Verb) -> list[Predicate]:
         elif not part.choice:
             found += part.predicates
     if verb.thing is not None:
-        found[:0] = _transitive(replace(verb.group, positive=True, adverbs=()), verb.thing, verb.span)
+        found[:0] = transitive(replace(verb.group, positive=True, adverbs=()), verb.thing, verb.span)
     if verb.nominal is not None:
         phrase = verb.nominal.phrase
         found.insert(0, Predicate("kind", (phrase,), phrase.span))
@@ -669,7 +618,7 @@ def _restricted(phrase: NounPhrase, mods: tuple[Predicate, ...]) -> NounPhrase:
     if related != mods:
         phrase = replace(phrase, adjectives=tuple(a for a in phrase.adjectives if a.word not in ("near", "far")))
     mods, adjectives = _ordinals(phrase, related)
-    mods = tuple(_checked(list(mods), phrase))
+    mods = tuple(checked(list(mods), phrase))
     last = mods[-1].span if mods else phrase.span
     return replace(phrase, predicates=(*phrase.predicates, *mods), adjectives=adjectives, span=union(phrase.span, last))
 
@@ -731,12 +680,6 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
 
 def _is_side(predicate: Predicate) -> bool:
     return predicate.relation in ("left", "right", "top", "bottom") and not predicate.arguments
-
-
-def _arguments(relation: str, phrase: NounPhrase) -> tuple[NounPhrase, ...]:
-    if relation in ("between", "among") and phrase.members and phrase.joined_by == "and":
-        return phrase.members
-    return (phrase,)
 
 
 def _places(relator: Relator, places: tuple[NounPhrase, ...], span: Span) -> list[Predicate]:
@@ -810,248 +753,24 @@ def _properties(words: tuple[Adjective, ...]) -> tuple[Predicate, ...]:
     return tuple(found)
 
 
-def _transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, ...]:
-    span = union(span, things.phrase.span)
-    phrase = things.phrase
-    if group.lemma in ("point", "face", "aim") and phrase.head in ("way", "direction") and phrase.adjectives:
-        return (Predicate("parallel_each_other", (), span, value=phrase.adjectives[0]), *things.extra)
-    if group.lemma in ("face", "look") or group.kind == "face":
-        relation, swap = "facing", False
-    elif group.lemma in ("point", "aim", "open"):
-        relation, swap = "pointing", False
-    elif group.lemma in TRANSITIVE_RELATIONS:
-        relation, swap = TRANSITIVE_RELATIONS[group.lemma]
-    elif group.kind in ("posture",):
-        relation, swap = "", False
-    else:
-        relation, swap = "", False
-    if group.lemma in ENTER_VERBS or group.lemma == "use":
-        relation = "through"
-    if relation == "with":
-        found = []
-        for member in phrase.members or (phrase,):
-            found += _accompanied_by(member, span)
-        return (*(_adverbs(p, group) for p in found), *things.extra)
-    between = tuple(p for p in phrase.predicates if p.relation == "between")
-    if last_word(phrase.head) in _GAPS and between:  # 'soft bags fill the gaps between the cases'
-        return (*between, *things.extra)
-    if not relation:
-        misunderstood(span, f"'{group.lemma}' with an object does not say where something is")
-        return things.extra
-    made = Predicate(
-        relation, _arguments(relation, phrase), span, adverbs=group.adverbs, reversed=swap, positive=group.positive
-    )
-    return (made, *things.extra)
-
-
-def _adverbs(predicate: Predicate, group: VerbGroup) -> Predicate:
-    return replace(predicate, adverbs=(*group.adverbs, *predicate.adverbs)) if group.adverbs else predicate
-
-
 def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predicate]:
-    found = _accompanied_by(member, span)
+    found = accompanied_by(member, span)
     if not relator.positive:
         found = [replace(p, positive=not p.positive) for p in found]
     return found
 
 
-def _accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
-    """Return the predicates of *with a napkin on it*, *with its handle pointing right*, *with the monitor*."""
-    found, rest = [], []
-    if member.head in _GAPS:
-        return []
-    for predicate in member.predicates:
-        if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
-            found.append((predicate, True))
-        elif not predicate.arguments and predicate.part is None and predicate.relation in _AT_THE_SUBJECT:
-            found.append((replace(predicate, arguments=(member,)), True))
-        elif predicate.relation in ("pointing", "facing", "open", "state", "parallel") and member.determiner != "a":
-            found.append((predicate, False))
-        else:
-            rest.append(predicate)
-    bare = replace(member, predicates=tuple(rest))
-    made = []
-    for predicate, swapped in found:
-        if swapped and len(predicate.arguments) == 1:
-            made.append(replace(predicate, arguments=(bare,), reversed=True, span=span))
-        else:
-            made.append(replace(predicate, subject_part=bare, span=span))
-    return made or [Predicate("with", (member,), span)]
-
-
-def _moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, ...]:
-    """Give the phrases after a verb the meaning of the verb: *leans against X*, *points to the right*, *faces away*."""
-    if not said:
-        if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
-            return ()
-        misunderstood(span, f"'{group.lemma}' does not say where something is")
-        return ()
-    if group.kind not in ("posture", "lean", "be", "face", "point") and group.lemma not in ENTER_VERBS:
-        misunderstood(span, f"'{group.lemma}' does not say where something is")
-        return said
-    first, *others = said
-    marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
-    return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
-
-
-_DIRECTIONAL = frozenset(
-    {"left", "right", "top", "bottom", "in_front", "behind", "above", "below", "far", "near", "part"}
-)
-
-
-def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tuple[Predicate, ...]:
-    """Return predicates as one list; a participle gives its meaning to the phrase after it.
-
-    Parameters
-    ----------
-    parts
-        Predicates of each part of a coordination or a sequence of phrases, in the order of the text.
-    check
-        True to leave out *apart*, and *to* where it names no place, which is noted as misunderstood.
-
-    Returns
-    -------
-    tuple of Predicate
-        Predicates without those that only stood for a participle.
-    """
-    flat_parts = [predicate for part in parts for predicate in part]
-    found: list[Predicate] = []
-    i = 0
-    while i < len(flat_parts):
-        predicate = flat_parts[i]
-        following = flat_parts[i + 1] if i + 1 < len(flat_parts) else None
-        if predicate.relation.startswith("~"):
-            lemma, kind = predicate.relation[1:].split("~")
-            if lemma in ("stack", "pile") and following is not None and following.relation not in ("on", "stacked"):
-                found.append(Predicate("stacked", (), predicate.span, positive=predicate.positive))
-            agent = flat_parts[i + 2] if i + 2 < len(flat_parts) else None
-            if (
-                lemma in _PASSIVES
-                and following is not None
-                and following.relation in ("left", "right")
-                and not following.arguments
-                and agent is not None
-                and agent.relation in ("near", "by")
-            ):  # 'bordered on the right by a pen'
-                flat_parts[i + 1 : i + 3] = [
-                    replace(agent, relation=following.relation, reversed=True, span=union(following.span, agent.span))
-                ]
-                i += 1
-                continue
-            if following is not None and lemma in _SHAPING and "into" in following.adverbs:
-                misunderstood(following.span, "this says what shape something gets, not where it is")
-                i += 2
-                continue  # 'folded into a fan'
-            if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
-                found.append(replace(following, relation="middle"))  # 'centred on the table'
-            if following is not None and not following.relation.startswith("~"):
-                flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
-                if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
-                    found.append(_state(lemma, predicate))
-            elif following is None and lemma in ("find", "see", "notice", "present"):
-                found.append(Predicate("there", (), predicate.span, positive=predicate.positive))
-            elif (following is None or kind == "unknown") and (kind != "posture" or lemma in _STATES):
-                found.append(_state(lemma, predicate))
-            i += 1
-            continue
-        if predicate.measure is not None and not predicate.arguments and following is not None:
-            joined = _distance(predicate, following)
-            if joined is not None:
-                flat_parts[i + 1] = joined[0]
-                if joined[1]:
-                    found.append(joined[1][0])
-                if not joined[0].relation:
-                    del flat_parts[i + 1]
-                i += 1
-                continue
-        if (
-            following is not None
-            and (following.relation == "to" or (following.relation == "from" and predicate.relation in ("near", "far")))
-            and not predicate.arguments
-            and (
-                predicate.relation in ("near", "far")
-                or predicate.relation in _DIRECTION_RELATIONS
-                or (predicate.value is not None and predicate.value.dimension == "clock")
-            )
-        ):
-            predicate = replace(predicate, arguments=following.arguments, span=union(predicate.span, following.span))
-            flat_parts[i + 1] = predicate
-            i += 1
-            continue
-        if (
-            predicate.relation == "far"
-            and predicate.degree is Degree.SUPERLATIVE
-            and not predicate.arguments
-            and following is not None
-            and following.relation in ("left", "right", "top", "bottom", "in_front", "behind")
-        ):  # 'the one furthest to the left'
-            joined_span = union(predicate.span, following.span)
-            flat_parts[i + 1] = replace(following, degree=Degree.SUPERLATIVE, span=joined_span)
-            i += 1
-            continue
-        if (
-            predicate.relation == "ordinal"
-            and predicate.value is not None
-            and following is not None
-            and (following.relation == "ordinal" and following.value is None)
-        ):
-            flat_parts[i + 1] = replace(following, value=predicate.value, span=union(predicate.span, following.span))
-            i += 1
-            continue
-        found.append(predicate)
-        i += 1
-    found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
-    return tuple(_checked(found)) if check else tuple(found)
-
-
-def _means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
-    """Return the predicates of a command with *with* read as what it uses: a cover, or a tool, which is left out."""
-    found: list[Predicate] = []
-    for predicate in predicates:
-        bare = predicate.relation == "with" and not any(a.predicates for a in predicate.arguments)
-        if bare and predicate.subject_part is None and lemma in _WRAPPING:
-            found.append(replace(predicate, relation=_WRAPPING[lemma], reversed=True))
-        elif not bare:
-            found.append(predicate)
-    return tuple(found)
-
-
-_STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
-
-
 _PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
-_MOVING = frozenset(
-    {"shift", "transfer", "relocate", "return", "move", "bring", "slide", "push", "add", "carry", "take"}
-)
-
-
-def _destination(predicate: Predicate) -> Predicate:
-    """Return *to the drawer* after a verb of motion as the place where the thing is now."""
-    if predicate.relation != "to" or not predicate.arguments:
-        return predicate
-    noun = last_word(predicate.arguments[0].head)
-    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
-    return replace(predicate, relation=relation)
 
 
 _LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
-_AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
-"""Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
 _ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
 _QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
-_WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": "inside", "flank": "each_side"}
-"""Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
 _FASTENING = word_set(
     "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"
     " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
 )
 """Commands in which *with* names a tool: *secure it with two bolts*."""
-_SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
-_ATTACHING = word_set(
-    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
-    " join fasten tie hook link stick pin clip clamp wire strap"
-)
-"""Verbs after which *to* means that two things touch."""
 _FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
 _SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
 _AMOUNTS = word_set(
@@ -1059,139 +778,11 @@ _AMOUNTS = word_set(
     " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
 )
 """Nouns of an amount, before the substance or the things that are meant."""
-_GAPS = frozenset({"gap", "space", "distance", "room"})
 _LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
-_LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 
 
-def _checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Predicate]:
-    kept = []
-    for predicate in found:
-        if predicate.relation == "apart":
-            continue
-        if predicate.relation == "to":
-            if phrase is not None and (
-                len(phrase.head) == 1
-                or phrase.pronoun == "one"
-                or phrase.head.endswith(("angle", "degree"))
-                or phrase.head.rpartition(" ")[2] in _LEADING
-                or phrase.head == "relation"
-            ):
-                kept.append(predicate)
-                continue
-            misunderstood(predicate.span, f"'{predicate.relation}' does not say where something is here")
-            continue
-        kept.append(predicate)
-    return kept
-
-
-def _state(lemma: str, marker: Predicate) -> Predicate:
-    word = Adjective(lemma, "state", Degree.PLAIN, marker.span)
-    return Predicate("state", (), marker.span, value=word, adverbs=marker.adverbs, positive=marker.positive)
-
-
-def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Predicate:
-    span = union(marker.span, following.span)
-    relation, value, arguments = following.relation, following.value, following.arguments
-    if relation == "to" and arguments and lemma in _MOVING:
-        relation = _destination(following).relation
-    if relation == "to" and arguments:
-        if lemma in _ATTACHING:
-            relation = "touching"
-        elif lemma in ("pull", "push", "tuck", "move", "scoot", "park"):
-            relation = "near"
-    if (kind == "lean" or lemma in ("lean", "prop")) and relation in ("against", "on", "at", "near"):
-        relation = "leaning"
-    elif (
-        lemma in _ROTATING and not arguments and (relation in ("left", "right") or following.part in ("left", "right"))
-    ):
-        value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
-        relation = "facing"
-    elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
-        relation = "through"  # 'the cat jumped over the vase'
-    elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
-        word = " ".join(filter(None, (following.part, relation)))
-        return replace(following, relation="pointing", arguments=(), part=word, span=span)
-    elif kind in ("face", "point") or lemma in ("look", "aim"):
-        meaning = "pointing" if kind == "point" else "facing"
-        if relation == "pointing":
-            relation = meaning
-        elif not arguments and (relation in _DIRECTIONAL or following.part):
-            value = Adjective((following.part or relation).replace("_", " "), "position", Degree.PLAIN, following.span)
-            relation = meaning
-        elif relation in ("to", "at", "facing", "pointing", "inside", "near", "on"):
-            relation = meaning
-        elif relation in ("far", "apart"):
-            value = Adjective("away", "position", Degree.PLAIN, following.span)
-            relation = meaning
-    elif (lemma == "hang" and relation == "from") or (
-        lemma in ("stack", "pile") and relation in ("on", "stacked") and arguments
-    ):
-        relation = "on"
-    elif lemma in ("centre", "center") and relation == "on":
-        relation = "middle"
-    elif lemma == "hang" and relation == "part" and arguments:
-        return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
-    elif relation == "next_to" and lemma in _ATTACHING:
-        relation = "touching"  # 'clipped to the side of the jug'
-    elif lemma in ("align", "line") and relation in ("with",):
-        relation = "aligned"
-    elif lemma in _TELLING and relation in ("inside", "on", "at"):
-        relation = "through"  # 'mentioned in the catalogue'
-    elif lemma in ("cover", "coat", "drape") and relation == "with":
-        return replace(following, relation="on", reversed=True, span=span)
-    elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
-        relation = "on"
-    elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
-        relation = "inside"
-    elif lemma in ("divide", "split", "separate", "cut", "break") and relation in ("inside", "near", "by"):
-        relation = "through"
-    elif relation == "by" and lemma not in _PASSIVES and lemma not in _STAYING:
-        relation = "through"  # 'sorted by price', 'hidden by the lamp' name no place
-    elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
-        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
-    positive = following.positive if marker.positive else not following.positive
-    return replace(
-        following,
-        relation=relation,
-        value=value,
-        span=span,
-        positive=positive,
-        adverbs=(*marker.adverbs, *following.adverbs),
-    )
-
-
-def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tuple[Predicate, ...]] | None:
-    """Return a distance joined with what follows: *10 cm from the cup*, *10 cm to the left of the cup*."""
-    span = union(measure.span, following.span)
-    if following.relation in ("measured_from", "from", "far", "to") and following.arguments:
-        return replace(measure, arguments=following.arguments, span=span), ()
-    if following.relation in _DIRECTION_RELATIONS and (following.arguments or following.relation in ("left", "right")):
-        return replace(following, measure=measure.measure, span=span), ()
-    return None
-
-
-_STAYING = word_set(
-    "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
-    " lean prop nestle perch find see go come wait live stop linger belong be"
-)
-"""Verbs after which *by* means *near*."""
 _MANNERS = word_set("colour color size hand name age height type kind length weight shape date number order brand")
 """Nouns after which *by* says how and not where: *sorted by colour*."""
-_LEAPING = word_set("jump leap climb walk step pass skip hop")
-"""Verbs of a motion past a thing."""
-_ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
-_TELLING = word_set(
-    "mention describe list show note picture record state name quote illustrate explain depict photograph"
-)
-"""Verbs after which *in* names a text or a picture."""
-_COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
-"""Verbs after which *over* means *on*."""
-_PASSIVES = {
-    "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
-    "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
-}  # fmt: skip
-"""Relation of the agent of a participle to its subject: *surrounded by cups*."""
 
 _HEIGHTS = {
     ("height", Degree.COMPARATIVE): {"low": "below", "high": "above"},
@@ -1200,7 +791,7 @@ _HEIGHTS = {
 }
 
 
-_SHARING = _DIRECTION_RELATIONS | {"opposite", "next_to", "far", "along", "against"}
+_SHARING = DIRECTION_RELATIONS | {"opposite", "next_to", "far", "along", "against"}
 
 
 def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:

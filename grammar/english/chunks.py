@@ -272,6 +272,12 @@ class Chunker:
             return Chunk("ADVERB", at, at + 1, norm)
         if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
             return Chunk("ADVERB", at, at + 2, "in first")
+        if (
+            norm in ("in", "over", "up", "down")
+            and self._previous() in FINITE
+            and self.norms[at + 1] in _UNDER_OR_BEHIND
+        ):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'it slides in behind the shelf'
         if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
             return Chunk("ADVERB", at, at + 2, "set up")
         if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:
@@ -292,7 +298,9 @@ class Chunker:
         if (
             norm == "over"
             and not self.nouns.starts(at + 1)
-            and not _TURNING.isdisjoint(self.norms[max(0, at - 5) : at])
+            and any(
+                form.lemma in _TURNING for word in self.norms[max(0, at - 5) : at] if (form := self._verbs.get(word))
+            )
         ):
             return Chunk("ADVERB", at, at + 1, norm)  # 'turn the desk over'
         if norm == "from" and self.norms[at + 1] == "where" and self.norms[at + 2] in ("i", "you", "we"):
@@ -351,7 +359,8 @@ class Chunker:
             wished = self._wish(at)
             if wished is not None:
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
-                return Chunk("CUT" if alone else "ADVERB", at, wished, "you want")
+                placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
+                return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
         if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
             return Chunk("ADVERB", at, at + 1, norm)
         if norm == "like" and self._previous() in ("BE", "TVERB") and self.nouns.number(at + 1) is not None:
@@ -583,6 +592,8 @@ class Chunker:
             return Chunk("SUB", at, at + 1, "because")
         if norm == "so" and previous in FINITE and (is_adjective(after) or self._match(at + 1) is not None):
             return None  # 'stood so close to it'
+        if norm == "otherwise" and previous == "SUB":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'because otherwise it falls'
         if norm in _WHOEVER:
             return Chunk("SUB", at, at + 1, "if")
         if norm in SUBORDINATORS:
@@ -1343,9 +1354,15 @@ class Chunker:
         if self.norms[at + 1] in ("quarters", "quarter", "thirds", "third") and self.norms[at + 2] in _HALF_STATES:
             span = self.words[at].start, self.words[at + 2].end
             return Chunk("ADJP", at, at + 3, (Adjective(f"partly {self.norms[at + 2]}", "state", Degree.PLAIN, span),))
+        if self.norms[at] in ("missing", "absent") and self._previous() == "BE":
+            span = self.words[at].start, self.words[at].end
+            return Chunk("ADJP", at, at + 1, (Adjective("missing", "state", Degree.PLAIN, span),))
         if self.norms[at] == "half" and self.norms[at + 1] in _HALF_STATES | ADVERBS:
             span = self.words[at].start, self.words[at + 1].end
             return Chunk("ADJP", at, at + 2, (Adjective(f"half {self.norms[at + 1]}", "state", Degree.PLAIN, span),))
+        self.nouns.is_object = self._previous() == "PUT" or (
+            self._previous() == "TVERB" and self.chunks[-1].value.lemma in ("hold", "contain", "have", "keep")
+        )
         found = self.nouns.phrase(at, self._previous())
         if found is None:
             return None
@@ -1417,6 +1434,7 @@ _GOVERNORS = word_set(
 """Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
 _HALF_STATES = word_set("dead empty full open closed finished done eaten asleep")
 _ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
+_UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "between", "beside", "below", "next"})
 _SPOTS = frozenset({"corner", "edge", "end", "side", "part"})
 _LATERAL = frozenset({"left", "right"})
 _CHOOSE = word_set("choose select pick click locate")

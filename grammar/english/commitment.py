@@ -69,6 +69,8 @@ UNREAL = re.compile(
     r"hesitat(?:es|ed))\s+to\b|\b(?:look|search|hunt|ask|wish)(?:s|es|ed|ing)?\s+for\s+(?:an?|some|any)\b"
     r"|^\s*in\s+(?:the|an?|this|that|his|her|my|our|your|their|one|[\w-]+['\u2019]s?)\s+(?:[\w'\u2019-]+\s+){0,2}?(?:story|novel|tale|fable|"
     r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
+    r"|\b(?:think|dream|talk|read|hear|speak|complain)(?:s|ing|ed)?\s+(?:of|about)\b"
+    r"|\bwill\s+have\s+(?:been|stood|lain|\w+ed)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )

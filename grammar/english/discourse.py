@@ -36,13 +36,13 @@ from deixis.grammar.english.nouns import (
     REMOVABLE,
     SUBSTANCES,
     SURFACES,
-    SURROUNDINGS,
     VESSELS,
     VIEWER,
     VIEWER_WORDS,
     last_word,
 )
 from deixis.grammar.english.references import OPPOSITES, POLES, REGIONS, Focus, References, Region
+from deixis.grammar.english.surfaces import DIRECTIONS, surface_noun
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Span
 from deixis.ontology.claims import COLLECTIVE, PLACES
 
@@ -96,36 +96,15 @@ SUPPOSED = {
 RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
 ABSENT = frozenset(["missing", "miss", "absent", "gone"])
 NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
-DIRECTIONS = frozenset(
-    [
-        "left",
-        "right",
-        "in_front",
-        "behind",
-        "above",
-        "below",
-        "top",
-        "bottom",
-        "top_left",
-        "top_right",
-        "bottom_left",
-        "bottom_right",
-    ]
-)
 EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"}
 """Relations that have an exact reading: *exactly left of*."""
 
-OF_SURFACES = PLACES | {"on", "inside", "at", "along", "across", "near", "around", "row", "circle", "part"} | DIRECTIONS
-"""Relations of things to the surface that they stand on."""
 GAPS = frozenset({"gap", "space", "room", "distance"})
 """Nouns of what is between things, which is not a thing."""
 NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"})
 """Relations of the parser that say nothing of where a thing is."""
 CONTAINING = frozenset({"contains", "contain", "containing"})
 HOLDING = frozenset({"holds", "hold", "holding"})
-SPREAD = frozenset({"blanket", "groundsheet", "tablecloth", "rug", "cloth"})
-HOLLOW_SURFACES = frozenset({"cabinet", "dresser", "trolley", "cart", "nightstand", "sideboard", "desk", "buffet"})
-"""Surfaces that things can also be inside of."""
 SUPPORTS = frozenset(
     [
         "saucer",
@@ -341,6 +320,11 @@ class Discourse:
             past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
         )  # fmt: skip
         subject = clause.subject
+        if subject is not None and {m.determiner == "no" for m in subject.members} == {True, False}:
+            members = tuple(
+                replace(m, determiner=None, negated=True) if m.determiner == "no" else m for m in subject.members
+            )
+            subject = replace(subject, members=members)  # 'a spoon but no fork'
         if subject is not None and any(member.negated for member in subject.members):
             self._contrast(clause, subject, sentence)  # 'the glass, not the cup, is on the mat'
             return
@@ -639,6 +623,14 @@ class Discourse:
         if known is not None and last_word(subject.head) not in GENERAL:
             self.how = replace(self.how, positive=False)  # 'no glass stands to the left of it' after 'the glasses'
             self._say(known, tuple(replace(p, positive=True) for p in predicates), None)
+            return
+        specific = bool(subject.head) and last_word(subject.head) not in GENERAL and subject.pronoun is None
+        if specific and all(p.arguments and p.relation in DIRECTIONS | {"near", "next_to"} for p in predicates):
+            thing = self.references.find(replace(subject, determiner="the", predicates=()))
+            if thing is not None:  # 'no flowers may stand in front of the cross', which may or may not be there
+                self.how = replace(self.how, positive=False)
+                self._say(thing, tuple(replace(p, positive=True) for p in predicates), None)
+                thing.absent = True
             return
         for predicate in predicates:
             arguments = [
@@ -1027,6 +1019,12 @@ class Discourse:
                 return
             if found is not None and found.role is Role.THING:
                 arguments.append(found)
+        if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
+            before = [
+                d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == predicate.relation
+            ]
+            if before and before[-1].value != predicate.part and subject not in before[-1].subjects:
+                arguments = list(before[-1].arguments)  # 'at the left end of the rail … and at the right end'
         if predicate.relation == "edge":
             self.edge = predicate.part
         others += arguments
@@ -1367,6 +1365,9 @@ _BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
 """Relations that, after a wall or a floor, are those of the thing that is on it: *on the wall near the exit*."""
 
 
+_LIMBS = frozenset({"elbow", "hand", "arm", "foot", "knee", "shoulder", "side"})
+
+
 def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
     """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
     around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
@@ -1378,78 +1379,5 @@ def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
         p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
     )
     amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
-    return (around and (bare or (wide and beside))) or flat or amid
-
-
-def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
-    """Return the noun of what everything stands on, such as *desk*; None if the text names none.
-
-    A surface noun that is said to be somewhere itself is an object; the noun of a place (*corner of the tray*) goes
-    before others.
-
-    Parameters
-    ----------
-    sentences
-        All sentences of the text.
-
-    Returns
-    -------
-    str or None
-        Last word of the surface that the text mentions most.
-    """
-    counts: dict[str, int] = {}
-    objects: set[str] = set()
-    for sentence in sentences:
-        for clause in sentence.clauses:
-            for phrase in _own_and_members(clause.subject):
-                if clause.mood is Mood.QUESTION:
-                    continue
-                outer = [a for p in clause.predicates for a in p.arguments]
-                if any(last_word(a.head) not in SURROUNDINGS for a in outer) or (clause.predicates and not outer):
-                    objects.add(last_word(phrase.head))
-            for predicate in [*clause.predicates, *(p for choice in clause.choices for p in choice)]:
-                _count_surfaces(predicate, counts)
-            _count_restrictions(clause.subject, counts)
-        for phrase in _own_and_members(sentence.fragment):
-            if phrase.of is not None and last_word(phrase.of.head) in SURFACES:
-                counts[last_word(phrase.of.head)] = counts.get(last_word(phrase.of.head), 0) + 2
-            elif phrase.predicates:
-                objects.add(last_word(phrase.head))
-        _count_restrictions(sentence.fragment, counts)
-        if sentence.heading:  # 'Setup of the bench'
-            for word in sentence.text.casefold().replace("(", " ").replace(")", " ").split():
-                if word in SURFACES - {"top"}:
-                    counts[word] = counts.get(word, 0) + 1
-        for clause in sentence.clauses:  # the thing that was spread or set up, not placed
-            for phrase in _own_and_members(clause.subject):
-                if last_word(phrase.head) in SPREAD and last_word(phrase.head) not in objects:
-                    counts[last_word(phrase.head)] = counts.get(last_word(phrase.head), 0) + 1
-    counts = {noun: number for noun, number in counts.items() if noun not in objects}
-    return max(counts, key=lambda noun: counts[noun]) if counts else None
-
-
-def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
-    for argument in predicate.arguments:
-        of_place = predicate.relation in PLACES or argument.of is not None
-        if predicate.relation not in OF_SURFACES and not of_place:
-            continue
-        for phrase in (*_own_and_members(argument), *_own_and_members(argument.of)):
-            noun = last_word(phrase.head)
-            told_apart = any(a.dimension in ("position", "colour", "rank") for a in phrase.adjectives)
-            held = predicate.relation == "inside" and noun in HOLLOW_SURFACES and not of_place
-            if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart and not held:
-                counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)
-        _count_restrictions(argument, counts)
-
-
-def _count_restrictions(phrase: NounPhrase | None, counts: dict[str, int]) -> None:
-    for own in _own_and_members(phrase):
-        for predicate in (*own.predicates, *(own.of.predicates if own.of is not None else ())):
-            _count_surfaces(predicate, counts)
-
-
-def _own_and_members(phrase: NounPhrase | None) -> Iterator[NounPhrase]:
-    if phrase is not None:
-        yield phrase
-        for member in phrase.members:
-            yield from _own_and_members(member)
+    own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
+    return (around and (bare or (wide and beside))) or flat or amid or own

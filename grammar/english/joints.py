@@ -25,6 +25,7 @@ class Segment:
 
     chunks: tuple[Chunk, ...]
     link: str
+    is_coordinated: bool = False  # True after *and if*: the condition is not one of the clause before
 
 
 def segments(chunks: list[Chunk]) -> list[Segment]:
@@ -42,7 +43,7 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
     """
     types = [chunk.type for chunk in chunks]
     found: list[Segment] = []
-    start, link = 0, ""
+    start, link, coordinated = 0, "", False
     i = 0
     while i < len(chunks):
         if types[i] in JOINTS:
@@ -56,8 +57,9 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
             cut = _cuts(chunks, types, start, i, end, kinds, link, labelled)
             if cut:
                 if i > start:
-                    found.append(Segment(tuple(chunks[start:i]), link))
+                    found.append(Segment(tuple(chunks[start:i]), link, coordinated))
                     link = ""
+                coordinated = "AND" in kinds and "SUB" in kinds
                 words = {"COMMA": ",", "AND": "and", "OR": "or", "BUT": "but", "THEN": "then", "CUT": ";", "COLON": ":"}
                 names = [words.get(types[k]) or str(chunks[k].value) for k in range(i, end)]
                 link = next((n for n in reversed(names) if n not in (",", ";")), link or names[-1])
@@ -72,7 +74,7 @@ def segments(chunks: list[Chunk]) -> list[Segment]:
             start, link = i, ""
         i += 1
     if len(chunks) > start:
-        found.append(Segment(tuple(chunks[start:]), link))
+        found.append(Segment(tuple(chunks[start:]), link, coordinated))
     return found
 
 
@@ -154,6 +156,9 @@ def _subject_follows(
     chunks: list[Chunk], types: list[str], start: int, at: int, end: int, kinds: set[str], complete: bool
 ) -> bool:
     i, seen_noun, mods = end, False, 0
+    last = types[at - 2 : at] == ["PREP", "NP"] and not chunks[at - 1].value.plural
+    if kinds == {"AND"} and last and chunks[at - 2].value.preposition.relation == "between":
+        return False  # 'between me and the guest, and the tea is …'
     while i < len(types):
         kind = types[i]
         if kind in FINITE:

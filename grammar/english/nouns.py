@@ -152,6 +152,10 @@ ABSTRACT = frozenset(
         "doubt",
         "reason",
         "fact",
+        "name",
+        "initial",
+        "title",
+        "date",
         "trace",
     ]
 )

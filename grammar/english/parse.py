@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
 from deixis.grammar.english.assemble import Assembly, Found
-from deixis.grammar.english.build import Builder, Built, notes
+from deixis.grammar.english.build import Builder
+from deixis.grammar.english.built import Built, notes
 from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
@@ -124,7 +125,7 @@ def _sentence(
                 Misunderstood((raw.start, raw.end), "none of these words is known as English", "write it in English")
             )
         elif not raw.heading:
-            chunks = rewritten(_without_parentheses(Chunker(words, nouns).run(), text))
+            chunks = rewritten(Chunker(words, nouns).run(), text)
             assembly.hedges = [
                 (chunk.span[0], chunk.value)
                 for chunk in chunks
@@ -154,32 +155,6 @@ def _sentence(
     )
 
 
-def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
-    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
-
-    *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
-    with its blade to the left*.
-    """
-    kept: list[Chunk] = []
-    after: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        chunk = chunks[i]
-        closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
-        inside = chunks[i + 1 : closing]
-        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
-        if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
-            noun = replace(kept[-1].value, determiner="the", count=None)
-            named = Chunk("NP", kept[-1].start, kept[-1].end, noun, kept[-1].span)
-            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
-            i = (closing or i) + 1
-            continue
-        kept.append(chunk)
-        i += 1
-    ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
-    return [*kept[:ends], *after, *kept[ends:]]
-
-
 def _is_foreign(words: list[Word]) -> bool:
     """Return True for a run of words of which almost none is a function word, an adjective or a verb of the tables."""
     longest = run = known = 0
@@ -196,6 +171,7 @@ def _is_foreign(words: list[Word]) -> bool:
 def _parse_segment(segment: Segment, assembly: Assembly) -> None:
     """Parse one clause; at a chunk that does not fit, end the clause there and begin another one, or leave it out."""
     hedge, segment = assembly.without_frame(segment)
+    assembly.is_coordinated = segment.is_coordinated
     chunks = classify(segment)
     if not chunks:
         return

@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 
 from deixis.grammar.english.known_nouns import KnownNouns
+from deixis.grammar.english.nouns import PEOPLE
 from deixis.grammar.english.tokens import Word
 from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
 from deixis.grammar.english.words import (
@@ -107,6 +108,7 @@ class NounChunker:
         self.words, self.norms, self._nouns = words, norms, nouns
         self._closed, self._verbs, self._adjectives = _closed(), verb_forms(), adjectives()
         self._relating = _relating()
+        self.is_object = False  # True while a phrase after *put* or *hold* is read
 
     # categories of words
 
@@ -224,7 +226,7 @@ class NounChunker:
         if after in self._closed or after in ("", ",", "."):
             return False
         if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
-            return False
+            return self.norms[at - 1] in PEOPLE and self.norms[at - 3 : at - 1] in (["to", "the"], ["on", "the"])
         if after in ("right", "left") and self.norms[at + 2] in PLACE_NOUNS:
             return True
         form = self._verbs.get(after)
@@ -1032,6 +1034,11 @@ class NounChunker:
         owner: NounPhrase | None,
         negated: bool,
     ) -> tuple[int, NounPhrase | None, tuple[Adjective, ...]]:
+        def lettered(name: str, end: int) -> tuple[int, NounPhrase, tuple[Adjective, ...]]:
+            span = self._span(start, end)
+            phrase = NounPhrase(span, name, determiner, count, False, None, modifiers, owner=owner, negated=negated)
+            return end, phrase, ()
+
         i, norms = at, self.norms
         nouns: list[str] = []
         while i < len(self.words):
@@ -1090,41 +1097,13 @@ class NounChunker:
             if letter is not None and nouns and nouns[-1] in PLACE_NOUNS:
                 break
             if letter is not None and ((nouns and nouns[-1] in _GENERIC) or not nouns):
-                return (
-                    i + 1,
-                    NounPhrase(
-                        self._span(start, i + 1),
-                        letter,
-                        determiner,
-                        count,
-                        False,
-                        None,
-                        modifiers,
-                        owner=owner,
-                        negated=negated,
-                    ),
-                    (),
-                )
+                return lettered(letter, i + 1)
             nouns.append(norm)
             i += 1
             if nouns[-1] in _GENERIC and norms[i] in ("labeled", "labelled", "called", "named", "marked"):
                 named = self._letter(i + 1)
                 if named is not None:
-                    return (
-                        i + 2,
-                        NounPhrase(
-                            self._span(start, i + 2),
-                            named,
-                            determiner,
-                            count,
-                            False,
-                            None,
-                            modifiers,
-                            owner=owner,
-                            negated=negated,
-                        ),
-                        (),
-                    )
+                    return lettered(named, i + 2)
         if not nouns:
             if determiner is None and owner is None and count is None:
                 if len(modifiers) and any(a.dimension != "rank" for a in modifiers):
@@ -1248,6 +1227,9 @@ class NounChunker:
         norm = self.norms[at]
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
             return False
+        form = self._verbs.get(norm)
+        if nouns and self.is_object and form is not None and form.form == "s" and self._nouns.singular(norm)[1]:
+            return True  # 'keep the cam screws in the bag'
         named = self.words[at].text[:1].isupper() and self.norms[at + 1] == "'s"
         alone = at == 1 and not self._nouns.knows(self.norms[0])
         if nouns and named and (alone or self.words[at - 1].text[:1].islower()):

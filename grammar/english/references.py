@@ -42,6 +42,8 @@ REGIONS = frozenset(
         "side",
         "middle",
         "centre",
+        "midpoint",
+        "quadrant",
         "center",
         "front",
         "back",
@@ -144,8 +146,8 @@ class References:
             return None
         words = [a.word for a in phrase.adjectives if a.dimension in ("position", "size", "length", "other")]
         of = self.find(phrase.of) if phrase.of is not None else None
-        term = {"centre": "middle", "center": "middle", "rear": "back"}.get(term, term)
-        if term in ("front", "back", "half", "part"):
+        term = {"centre": "middle", "center": "middle", "midpoint": "middle", "rear": "back"}.get(term, term)
+        if term in ("front", "back", "half", "part", "quadrant"):
             words, term = ([*words, term] if term in ("front", "back") else words), "part"
         return Region(term, " ".join(words) or None, None if of is None or of.role is Role.SURFACE else of)
 
@@ -205,6 +207,9 @@ class References:
         if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
             others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
             earlier = next((e for e in others if not _conflicting(e, phrase)), earlier)
+        of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
+        if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
+            earlier = None  # 'the cake is in its box' beside a cool box
         if earlier is not None:
             return self._seen(earlier, phrase)
         several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
@@ -489,6 +494,9 @@ class References:
             chosen = self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
+        if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
+            last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
+            return last if last is not None and last.role is Role.THING and not last.members else None
         if word in ("former", "latter"):
             pair = next(
                 (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from deixis.grammar.english.chunks import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
@@ -16,24 +17,30 @@ _FOUND_OR_PUT = frozenset(
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
+_Run = tuple[int, Chunk | None]
+"""End of a run of chunks, and the chunk that is put in its place, if any."""
 
-def rewritten(chunks: list[Chunk]) -> list[Chunk]:
+
+def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """Return the chunks of a sentence in the order and with the words of plain clauses.
 
     Parameters
     ----------
     chunks
         Chunks of a sentence in the order of the text.
+    text
+        The whole text, for its parentheses.
 
     Returns
     -------
     list of Chunk
         Chunks from which the clauses are cut. A chunk that was put in is empty and stands where its words would.
     """
+    chunks = _without_parentheses(chunks, text)
     for rewrite in (
-        _without_vocatives, _without_times, _without_beneficiaries, _without_bare_superlatives, _without_free_places,
+        _without_vocatives, _without_times, _without(_beneficiary), _without(_bare_superlative), _without(_free_place),
         _without_asides, _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person,
-        _without_searches, _without_infinitives, _without_counts_apart, _with_relative_places,
+        _without(_search), _without(_infinitive), _without(_count_apart), _with_relative_places,
         _with_measures_denied, _with_destinations, _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns,
         _with_telegraphic_places, _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps,
     ):  # fmt: skip
@@ -50,6 +57,32 @@ def _empty(chunk: Chunk, value: str = "") -> Chunk:
     return Chunk("ADVERB", chunk.start, chunk.end, value, chunk.span)
 
 
+def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
+    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
+
+    *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
+    with its blade to the left*.
+    """
+    kept: list[Chunk] = []
+    after: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
+        inside = chunks[i + 1 : closing]
+        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
+        if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
+            noun = replace(kept[-1].value, determiner="the", count=None)
+            named = Chunk("NP", kept[-1].start, kept[-1].end, noun, kept[-1].span)
+            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
+            i = (closing or i) + 1
+            continue
+        kept.append(chunk)
+        i += 1
+    ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
+    return [*kept[:ends], *after, *kept[ends:]]
+
+
 def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out who is spoken to, and interjections: *My dear boy, the soup is …*, *No, look again*, *Right, …*."""
     found: list[Chunk] = []
@@ -57,6 +90,13 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
         starts = all(c.type == "ADVERB" or (c.type in _ENDS and k) for k, c in enumerate(found))
         closed = _type(chunks, i + 1) in ("COMMA", "CUT") and (starts or _type(chunks, i - 1) == "COMMA")
         spoken_to = chunk.type == "NP" and _names_listener(chunk.value) and (starts or _type(chunks, i + 2) in _ENDS)
+        addressed = (
+            starts and chunk.type == "NP" and chunk.value.determiner is None and not chunk.value.plural
+            and bool(chunk.value.head) and chunk.value.owner is None and not chunk.value.adjectives
+            and _type(chunks, i + 1) == "COMMA" and _type(chunks, i + 2) == "NP"
+            and (chunks[i + 2].value.pronoun == "you" or _is_yours(chunks[i + 2].value))
+        )  # fmt: skip
+        spoken_to = spoken_to or addressed  # 'Lena, your bag is …'
         exclamation = (
             starts and not found and chunk.type in ("NP", "ADV", "PART") and _type(chunks, i + 1) == "COMMA"
             and chunk.end == chunk.start + 1 and _is_exclamation(chunk)
@@ -64,6 +104,10 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
         )  # fmt: skip
         found.append(_empty(chunk) if closed and (spoken_to or exclamation) else chunk)
     return found
+
+
+def _is_yours(phrase: NounPhrase) -> bool:
+    return phrase.owner is not None and phrase.owner.pronoun == "you"
 
 
 def _names_listener(phrase: NounPhrase) -> bool:
@@ -98,57 +142,98 @@ def _without_times(chunks: list[Chunk]) -> list[Chunk]:
     return [*chunks[:start], _empty(chunks[start]), *chunks[start + 3 :]]
 
 
-def _without_beneficiaries(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        chunk = chunks[i]
-        helped = (
-            chunk.type == "PREP" and chunk.value.preposition.phrase == "for" and _type(chunks, i + 1) == "NP"
-            and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she", "they", "everyone")
-            and _type(chunks, i + 2) in JOINT_TYPES | {""} and bool(found)
-        )  # fmt: skip
-        i += 2 if helped else 1
-        if not helped:
-            found.append(chunk)
-    return found
+def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
+    helped = (
+        chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and _type(chunks, at + 1) == "NP"
+        and chunks[at + 1].value.pronoun in ("me", "you", "we", "he", "she", "they", "everyone")
+        and _type(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"} and at > 0
+    )  # fmt: skip
+    return (at + 2, None) if helped else None
 
 
-def _without_bare_superlatives(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the member of an uncounted group that is told apart: *pipettes on the stand, largest on the left*."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        apart = (
-            [_type(chunks, i + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
-            and _type(chunks, i + 4) in _ENDS and chunks[i + 1].value[-1].degree is Degree.SUPERLATIVE
-            and chunks[i + 3].value.head in PLACE_NOUNS
-        )  # fmt: skip
-        i += 4 if apart else 1
-        if not apart:
-            found.append(chunks[i - 1])
-    return found
+def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the member of an uncounted group that is told apart: *pipettes on the stand, largest on the left*."""
+    apart = (
+        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
+        and _type(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 3].value.head in PLACE_NOUNS
+    )  # fmt: skip
+    return (at + 4, None) if apart else None
 
 
-def _without_free_places(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out *where it always is* after *is*: what follows after the comma says where the thing is."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        free = (
-            chunks[i].type == "SUB" and chunks[i].value == "where" and _type(chunks, i - 1) == "BE"
-            and _type(chunks, i + 1) == "NP" and _type(chunks, i + 2) in FINITE
-        )  # fmt: skip
-        if free:
-            i += 3
-            while i < len(chunks) and chunks[i].type not in JOINT_TYPES:
-                i += 1
-            i += _type(chunks, i) == "COMMA"
-            continue
-        found.append(chunks[i])
-        i += 1
-    return found
+def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find *where it (always) is*: what follows after the comma says where the thing is."""
+    thing = _type(chunks, at + 1) == "NP"
+    there = (
+        chunks[at].type == "REL" and thing and chunks[at + 1].value.pronoun in ("it", "they")
+        and _type(chunks, at + 2) == "BE" and _type(chunks, at + 3) in _ENDS
+    )  # fmt: skip
+    free = (
+        chunks[at].type == "SUB" and chunks[at].value == "where" and _type(chunks, at - 1) == "BE"
+        and thing and _type(chunks, at + 2) in FINITE
+    )  # fmt: skip
+    if not there and not free:
+        return None
+    end = _end(chunks, at + 3, JOINT_TYPES)
+    return end + (_type(chunks, end) == "COMMA"), None
+
+
+def _search(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a command to look somewhere: *look behind the bandages*."""
+    verb = chunks[at].value
+    looks = (
+        isinstance(verb, VerbGroup) and verb.lemma in ("look", "search", "check", "peek")
+        and verb.form == "base" and _type(chunks, at - 1) in JOINT_TYPES | {"", "ADVERB"}
+        and _type(chunks, at + 1) == "PREP"
+        and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
+    )  # fmt: skip
+    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
+    chunk = chunks[at]
+    to = chunk.type == "UNKNOWN" and chunk.value == "to" and _type(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
+    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+
+
+def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a number that is given apart: *the mugs hang from the hooks, five of them, and …*."""
+    counts = (
+        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
+        and _type(chunks, at + 4) in _ENDS and chunks[at + 3].value.pronoun in ("they", "these", "those")
+        and not chunks[at + 1].value.head and chunks[at + 1].value.count is not None
+        and any(chunk.type in FINITE for chunk in chunks[:at])
+    )  # fmt: skip
+    return (at + 4, None) if counts else None
+
+
+def _without(find: Callable[[list[Chunk], int], _Run | None]) -> Callable[[list[Chunk]], list[Chunk]]:
+    """Return the rewriting that leaves out each run of chunks that ``find`` finds, or puts its chunk there."""
+
+    def rewrite(chunks: list[Chunk]) -> list[Chunk]:
+        found: list[Chunk] = []
+        at = 0
+        while at < len(chunks):
+            end, instead = find(chunks, at) or (at + 1, chunks[at])
+            found += [] if instead is None else [instead]
+            at = end
+        return found
+
+    return rewrite
+
+
+def _end(chunks: list[Chunk], at: int, types: frozenset[str]) -> int:
+    """Return the place of the first chunk of one of the types, from a place on; the end if there is none."""
+    return next((k for k in range(at, len(chunks)) if chunks[k].type in types), len(chunks))
+
+
+def _unknown(chunks: list[Chunk], at: int, end: int) -> _Run:
+    """Return a run with one chunk for it that is reported as not understood."""
+    return end, Chunk(
+        "UNKNOWN", chunks[at].start, chunks[end - 1].end, None, (chunks[at].span[0], chunks[end - 1].span[1])
+    )
 
 
 def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
@@ -204,66 +289,6 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
         if spoken and _type(chunks, first + 1) in FINITE:
             chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
     return chunks
-
-
-def _without_searches(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out a command to look somewhere: *look behind the bandages*."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        chunk = chunks[i]
-        looks = (
-            isinstance(chunk.value, VerbGroup) and chunk.value.lemma in ("look", "search", "check", "peek")
-            and chunk.value.form == "base" and _type(chunks, i - 1) in JOINT_TYPES | {"", "ADVERB"}
-            and _type(chunks, i + 1) == "PREP"
-            and chunks[i + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
-        )  # fmt: skip
-        if looks:
-            end = next((k for k in range(i, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
-            span = (chunk.span[0], chunks[end - 1].span[1])
-            found.append(Chunk("UNKNOWN", chunk.start, chunks[end - 1].end, None, span))
-            i = end
-            continue
-        found.append(chunk)
-        i += 1
-    return found
-
-
-def _without_infinitives(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        chunk = chunks[i]
-        if chunk.type == "UNKNOWN" and chunk.value == "to" and _type(chunks, i + 1) in ("UNKNOWN", "VERB", "TVERB"):
-            end = next((k for k in range(i, len(chunks)) if chunks[k].type in JOINT_TYPES | {"REL"}), len(chunks))
-            found.append(
-                Chunk("UNKNOWN", chunk.start, chunks[end - 1].end, None, (chunk.span[0], chunks[end - 1].span[1]))
-            )
-            i = end
-            continue
-        found.append(chunk)
-        i += 1
-    return found
-
-
-def _without_counts_apart(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out a number that is given apart: *the mugs hang from the hooks, five of them, and …*."""
-    found: list[Chunk] = []
-    i = 0
-    while i < len(chunks):
-        counts = (
-            [_type(chunks, i + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
-            and _type(chunks, i + 4) in _ENDS and chunks[i + 3].value.pronoun in ("they", "these", "those")
-            and not chunks[i + 1].value.head and chunks[i + 1].value.count is not None
-            and any(chunk.type in FINITE for chunk in found)
-        )  # fmt: skip
-        if counts:
-            i += 4
-            continue
-        found.append(chunks[i])
-        i += 1
-    return found
 
 
 def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:

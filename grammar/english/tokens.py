@@ -69,7 +69,8 @@ _DEPICTIONS = re.compile(
 )
 _SHOWN = re.compile(
     r"\b(?:(?:picture|photo|photograph|drawing|print|image|sketch|engraving)\s+(?:on|above|over|in|at|by|behind|beside)\s"
-    r"+(?:the|my|our|her|his|their)\s+[\w-]+|(?:painting|portrait|poster|postcard|mural|tapestry|stamp)"
+    r"+(?:the|my|our|her|his|their)\s+[\w-]+|(?:photos|photographs|pictures|drawings|sketches)|"
+    r"(?:painting|portrait|poster|postcard|mural|tapestry|stamp)"
     r"(?:\s+(?:on|above|over|in|at|by|behind|beside)\s+(?:the|my|our|her|his|their)\s+[\w-]+)?)\s+"
     r"((?:shows?|showed|depicts?|depicted|portrays?|portrayed|showing|depicting)\s[^,.;]*)",
     re.I,

@@ -1028,6 +1028,8 @@ PLACE_NOUNS = {
     "side": "side",
     "hand": "side",
     "middle": "middle",
+    "midpoint": "middle",
+    "quadrant": "part",
     "center": "middle",
     "centre": "middle",
     "part": "part",

@@ -10,6 +10,8 @@ from deixis.ontology.claims import Claim
 
 TEXTS = Path(__file__).parent / "texts"
 MIN_FOUND, MIN_RIGHT = 0.8, 0.9
+MIN_FOUND_UNSEEN = 0.7
+"""Share of the facts of ``unseen.txt``, whose texts were written before the reader was changed for them."""
 
 
 @pytest.mark.parametrize(
@@ -19,7 +21,7 @@ def test_most_stated_facts_are_found_and_right(file: Path) -> None:
     score = Score()
     for text in written_texts(file):
         score.add(text)
-    assert score.found >= MIN_FOUND * score.stated
+    assert score.found >= (MIN_FOUND_UNSEEN if file.stem == "unseen" else MIN_FOUND) * score.stated
     assert score.right >= MIN_RIGHT * score.told
 
 
