@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept
     from deixis.ontology.tbox import Ontology
     from deixis.perception.scene import Scene
+    from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.description_logic.object_view import ObjectView
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.evidence.meaning import Meaning
@@ -155,7 +156,29 @@ class Session(Closing):
             ask=ask,
             max_questions=max_questions,
             memory_limit=memory_limit,
+            attributes=self.attributes(),
         )
+
+    @_one_at_a_time
+    def attributes(self) -> dict[str, Attribute]:
+        """Return the adjectives that sentences in the episodes of this memory taught.
+
+        Returns
+        -------
+        dict
+            Attributes by word; empty without episodes, and while another process has them open.
+        """
+        from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+        from deixis.memory.errors import MemoryBusyError
+        from deixis.workflows.descriptions.remembered_attributes import remembered_attributes
+
+        if not has_episodes(self.path):
+            return {}
+        try:
+            with Blackboard.open(self.path) as board:
+                return remembered_attributes(board)
+        except MemoryBusyError:
+            return {}
 
     @_one_at_a_time
     def learn(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.attributes.attribute import MEASURES
+from deixis.reasoning.attributes.attribute import MEASURES, Attribute
 
 Array = NDArray[np.float64]
 
@@ -89,3 +91,31 @@ def _surface(scene: Scene, thing: PerceivedObject) -> tuple[float, float]:
     bright = lab[:, 0] > np.median(lab[:, 0]) + HIGHLIGHT
     rest = lab[~bright]
     return float(bright.mean()), float(np.sqrt(rest.var(axis=0).sum()))
+
+
+def attribute_ratios(names: Sequence[str], scene: Scene, attributes: Mapping[str, Attribute]) -> NDArray[np.float64]:
+    """Return the evidence of learned adjectives that are part of names.
+
+    Parameters
+    ----------
+    names
+        Names of n1 objects, such as ``blick_cup``.
+    scene
+        Scene of n2 things.
+    attributes
+        Learned attributes by word.
+
+    Returns
+    -------
+    ndarray
+        Log-likelihood ratios of each object being each thing, against a random thing of the scene, shape (n1, n2).
+    """
+    ratios = np.zeros((len(names), len(scene.objects)))
+    if not scene.objects:
+        return ratios
+    labels = [thing.label for thing in scene.objects]
+    for place, name in enumerate(names):
+        for word in set(name.lower().split("_")) & attributes.keys():
+            p = attributes[word].probabilities(measured(scene), labels)
+            ratios[place] += np.log(p) - np.log(p.mean())
+    return ratios

@@ -31,6 +31,7 @@ from deixis.cli.output import StandardInput
 from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
+    from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.grounding.answer import Grounding
     from deixis.reasoning.grounding.evidence.meaning import Meaning
     from deixis.workflows.grounding.dialogue import Ask
@@ -75,6 +76,7 @@ def ground(
     deadline = deadline_of(time_limit)
     out = sys.stderr if as_json else sys.stdout  # for the questions
     described, seen = read_script(script, deadline=deadline), load_scene(scene, hide_labels, image)
+    meaning, attributes = _learned(memory)
     request = GroundingRequest(
         script=described,
         scene=seen,
@@ -87,7 +89,8 @@ def ground(
         max_questions=max_questions,
         time_limit=time_limit,
         memory_limit=memory_limit,
-        meaning=_meaning(memory),
+        meaning=meaning,
+        attributes=attributes,
         deadline=deadline,
     )
     found = answer(request, working)
@@ -109,16 +112,18 @@ def ground(
     raise typer.Exit(_verdict(found))
 
 
-def _meaning(memory: Path | None) -> Meaning:
-    """Return the words and sizes that a memory has learned, or the shipped ones without a memory."""
+def _learned(memory: Path | None) -> tuple[Meaning, dict[str, Attribute]]:
+    """Return the words and sizes that a memory has learned, or the shipped ones without a memory, and adjectives."""
+    from deixis.memory.episodes.blackboard import has_episodes
     from deixis.reasoning.grounding.evidence.meaning import SHIPPED
     from deixis.session import Session
 
     if memory is None:
-        return SHIPPED
+        return SHIPPED, {}
     with Session(memory) as session:
-        session.memory()  # raises MemoryFormatError without a memory
-        return session.meaning()
+        if not has_episodes(memory):
+            session.memory()  # raises MemoryFormatError without a memory
+        return session.meaning(), session.attributes()
 
 
 def _dialogue(oracle: Path | None, out: TextIO) -> Ask:

@@ -9,14 +9,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from numbers import Integral
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
+from deixis.learning.attributes import attribute_ratios
 from deixis.learning.scene_evidence import (
     conflict_notes,
     graph_evidence,
@@ -47,6 +49,7 @@ from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT, EngineName, S
 from deixis.workflows.layouts.read import as_scene, as_script
 
 if TYPE_CHECKING:
+    from deixis.reasoning.attributes.attribute import Attribute
     from deixis.workflows.grounding.dialogue import Ask
 
 CONFLICT_SHARE = 0.15
@@ -99,6 +102,8 @@ class GroundingRequest:
     memory_limit
         Gigabytes (10^9 bytes) that the answer may take beyond the program itself. What takes more is refused before it
         is begun.
+    attributes
+        Learned adjectives by word, which count where they are part of a name (*blick cup*).
     deadline
         When the answer is due, where the time limit began before the request was made, as with reading. None begins it
         now.
@@ -124,6 +129,7 @@ class GroundingRequest:
     meaning: Meaning = SHIPPED
     memory_limit: float = DEFAULT_MEMORY_LIMIT
     deadline: Deadline | None = None
+    attributes: Mapping[str, Attribute] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         require_time_limit(self.time_limit)
@@ -243,6 +249,8 @@ class GroundingRequest:
             deadline=self.due,
             claims=self.script.claims,
         )
+        if self.attributes:
+            known = replace(known, sizes=known.sizes + attribute_ratios(self.graph.nodes, scene, self.attributes))
         if self.surface is not None and keep_surface_free:
             known = known.with_surface(self.surface[1])
         return replace(known, memory_limited=memory_limited, consistent=self._consistent)
@@ -270,6 +278,7 @@ def ground(
     sizes: bool = True,
     ask: Ask | None = None,
     max_questions: int | None = None,
+    attributes: Mapping[str, Attribute] = MappingProxyType({}),
 ) -> Grounding:
     """Find which perceived thing each object of a script refers to.
 
@@ -301,6 +310,8 @@ def ground(
         :class:`deixis.workflows.grounding.dialogue.Dialogue`. None asks nothing.
     max_questions
         Maximum number of questions.
+    attributes
+        Learned adjectives by word, which count where they are part of a name (*blick cup*).
 
     Returns
     -------
@@ -341,6 +352,7 @@ def ground(
         meaning=meaning,
         memory_limit=memory_limit,
         deadline=deadline,
+        attributes=attributes,
     )
     return answer(request)
 

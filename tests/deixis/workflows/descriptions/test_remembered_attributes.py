@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from commands import deixis as run
 
+import deixis
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.errors import DescriptionError
@@ -16,6 +17,7 @@ from deixis.workflows.descriptions.remembered_attributes import (
     remember_sentence,
     remembered_attributes,
 )
+from deixis.workflows.knowledge.unlearn import Selection
 
 DARK, LIGHT = (32, 48, 128), (208, 216, 160)
 
@@ -69,3 +71,21 @@ def test_the_command_teaches_and_uses_a_memory(tmp_path: Path) -> None:
     code, out, _ = run("refer", "the blick one", tmp_path / "t2.scene.json", "--memory", tmp_path / "m")
     assert out.startswith("o2 ")
     assert run("refer", "the blick one", tmp_path / "t2.scene.json", "--picked", "o2")[0] == 2
+
+
+def cups(*sides: float) -> Scene:
+    centres = [[0.4 * place, 0.0, side / 2] for place, side in enumerate(sides)]
+    return Scene.from_boxes(centre=centres, size=[[side] * 3 for side in sides], labels=["cup"] * len(sides))
+
+
+def test_learned_adjective_counts_in_grounding_until_taken_back(tmp_path: Path) -> None:
+    with Blackboard.open(tmp_path, create=True) as board:
+        for number in range(6):
+            remember_sentence(board, "the blick cup", cups(0.06, 0.12, 0.06 + 0.002 * number), "o2", by="ada")
+    script, scene = deixis.read_script(text="blick_cup beside other_cup"), cups(0.06, 0.061, 0.12)
+    with deixis.Session(tmp_path) as session:
+        found = session.ground(script, scene).matches["blick_cup"]
+        assert (found.perceived, (found.probability or 0.0) > 0.7) == ("o3", True)
+        session.unlearn(Selection(sentence="the blick cup"))
+        again, plain = (each.ground(script, scene).matches["blick_cup"] for each in (session, deixis))
+        assert again.probability == plain.probability
