@@ -101,6 +101,7 @@ RUNS = (
     Run("detection", "Perception", "objects segmented in point clouds", data=True),
     Run("clouds", "Perception", "reading of point clouds"),
     Run("tracking", "Perception", "things followed while a hand moves them"),
+    Run("live", "Perception", "the robot that runs, on stories of one table and two customers"),
     Run("recognition", "Perception", "search of the nearest views"),
     Run("recognition-tables", "Perception", "objects named on laid tables", "recognition", "--tables"),
     Run("naming", "Perception", "meshes of unseen objects named", data=True),

@@ -10,16 +10,45 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from enum import Enum
+from typing import Protocol
 
-from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.rdf import EP, SOSA, predicate_iri, resource_iri, thing_iri
 from deixis.memory.semantic.rdf.graphs import FLUENTS
-from deixis.reasoning.temporal.fluent import Pattern
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 
 MAX_LOOKUPS = 20
 """Number of subjects up to which their fluents are looked up one by one, rather than in one pass over all."""
+
+
+class Episodes(Protocol):
+    """Fluents of a memory: a blackboard, or the board of a module."""
+
+    @property
+    def origin(self) -> datetime:
+        """Time from which the memory counts seconds."""
+        ...
+
+    def holding(
+        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
+    ) -> tuple[EpisodicFluent, ...]:
+        """Return the fluents that may have held in a window of time.
+
+        Parameters
+        ----------
+        pattern
+            Subject, predicate and object; None matches everything.
+        start, end
+            Ends of the window in seconds; by default it has no end on that side.
+
+        Returns
+        -------
+        tuple of EpisodicFluent
+            The fluents in the order of their earliest starts.
+        """
+        ...
 
 
 class Edge(Enum):
@@ -85,7 +114,7 @@ class FluentSearch:
     event: Event | None = None
     places: frozenset[str] = frozenset()
 
-    def run(self, board: Blackboard) -> tuple[EpisodicFluent, ...]:
+    def run(self, board: Episodes) -> tuple[EpisodicFluent, ...]:
         """Return the fluents that the search finds.
 
         Parameters
@@ -103,7 +132,7 @@ class FluentSearch:
             found = self._events(found, board)
         return tuple(self._picked(found))
 
-    def _candidates(self, board: Blackboard) -> Iterable[EpisodicFluent]:
+    def _candidates(self, board: Episodes) -> Iterable[EpisodicFluent]:
         if self.subjects is None:
             whole = self.edge is not Edge.HOLDS
             return board.holding() if whole else board.holding(start=self.start, end=self.end)
@@ -129,7 +158,7 @@ class FluentSearch:
             return start.lower > -math.inf and start.lower <= self.end and start.upper >= self.start
         return finish.upper < math.inf and finish.lower <= self.end and finish.upper >= self.start
 
-    def _events(self, found: Sequence[EpisodicFluent], board: Blackboard) -> list[EpisodicFluent]:
+    def _events(self, found: Sequence[EpisodicFluent], board: Episodes) -> list[EpisodicFluent]:
         """Return the fluents with which their subjects come, go or move."""
         by_subject: dict[str, list[EpisodicFluent]] = defaultdict(list)
         for each in self._all_of({each.statement.subject for each in found}, board):
@@ -137,7 +166,7 @@ class FluentSearch:
                 by_subject[each.statement.subject].append(each)
         return [each for each in found if self._is_event(each, by_subject[each.statement.subject])]
 
-    def _all_of(self, subjects: set[str], board: Blackboard) -> Iterator[EpisodicFluent]:
+    def _all_of(self, subjects: set[str], board: Episodes) -> Iterator[EpisodicFluent]:
         """Yield all fluents of some subjects: one by one where they are few, else in one pass."""
         if len(subjects) <= MAX_LOOKUPS:
             for name in subjects:

@@ -83,6 +83,10 @@ class Situation:
         Transform (4, 4) from the frame of the cloud to the table's, or None while no table is known.
     notes
         Warnings about the frame.
+    merged
+        Things that turned out to be parts of other ones.
+    busy
+        True if a hand, or something else that is not a thing, moves over the table.
     """
 
     at: float
@@ -92,6 +96,8 @@ class Situation:
     went: tuple[TrackedThing, ...] = ()
     frame: NDArray[np.float64] | None = None
     notes: tuple[str, ...] = ()
+    merged: tuple[TrackedThing, ...] = ()
+    busy: bool = False
 
     def scene(self, viewpoint: str = "chair") -> Scene:
         """Return the things as a scene, in the table's frame.

@@ -9,7 +9,7 @@ things or the places of things that were lost.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from deixis.perception.detection.detect import Detection, detect, detect_above
 from deixis.perception.detection.plane import Plane
 from deixis.perception.detection.viewpoint import moved
 from deixis.perception.errors import CloudError
-from deixis.perception.scene import OrientedBox
+from deixis.perception.scene import OrientedBox, Scene
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
 from deixis.perception.tracking.particles import Estimate
@@ -94,6 +94,18 @@ MIN_PART = 12
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are segmented again."""
 
+BLINK = 1.5
+"""Time in seconds between two frames from which anything may have happened in between."""
+
+HAND_MEMORY = 0.5
+"""Time in seconds after a hand was seen in which it may have moved several things at once."""
+
+SAME_PIXELS = 0.3
+"""Intersection over union of pixels from which a detected and a tracked thing may be one."""
+
+SAME_MODEL = 0.8
+"""Intersection over union of pixels from which a tracked thing keeps its model at a look at the whole table."""
+
 
 class Tracker:
     """Follow the things on one table through the frames of a depth camera.
@@ -134,6 +146,7 @@ class Tracker:
         self._detected_at = -np.inf
         self._hand_at = -np.inf
         self._workers: ThreadPoolExecutor | None = None
+        self._last: tuple[PointCloud, FrameImage, int] | None = None  # the last frame that was used
 
     def __enter__(self) -> Tracker:
         return self
@@ -145,7 +158,7 @@ class Tracker:
         """Free the threads and all things."""
         if self._workers is not None:
             self._workers.shutdown()
-        self._workers, self._reference, self._things = None, None, []
+        self._workers, self._reference, self._last, self._things = None, None, None, []
 
     def update(self, cloud: PointCloud, at: float) -> Situation:
         """Take in a frame, and return the situation after it.
@@ -171,7 +184,7 @@ class Tracker:
         before, self._at = self._at, at
         if self._reference is None:
             return self._begin(cloud, at, number)
-        assert self._optics is not None and self._view is not None
+        assert self._optics is not None and self._view is not None and before is not None
         image = image_of(cloud, self._optics, self.settings.stride)
         changes = self._seen_from_here(image, at)
         if _camera_moved(changes):
@@ -179,19 +192,40 @@ class Tracker:
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
         self._reference.remember(image, changes, at, self.settings.tolerance, self._deviation)
         hand = self._hand(image, changes)
+        by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
+        if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
+            return self._begin_anew(cloud, image, changes, at, number)
         if hand.any() or self._is_busy(image, changes, at):
             self._hand_at = at
+        self._last = cloud, image, number
         self._look_at_resting(image, changes, at)
-        self._follow(image, changes, at, at - (before if before is not None else at))
+        self._follow(image, changes, at, at - before)
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
         self._complete(image, at)
-        return self._situation(at, number, came, went)
+        return replace(self._situation(at, number, came, went), busy=self._hand_at == at)
 
     @property
     def particles(self) -> int:
         """Number of particles that the last frame needed, over all things."""
         return sum(thing.particles for thing in self._things)
+
+    def owners(self) -> NDArray[np.int16]:
+        """Return which thing each compared pixel shows.
+
+        Returns
+        -------
+        ndarray
+            Number of the thing among those of the situation, from 0; -1 for none. Every ``settings.stride``-th row and
+            column of the image, from ``settings.stride // 2``.
+        """
+        if self._reference is None:
+            return np.zeros((0, 0), np.int16)
+        number = np.full(max((thing.slot for thing in self._things), default=0) + 2, -1, np.int16)
+        for place, thing in enumerate(self._things):
+            number[thing.slot] = place
+        owner = self._reference.owner
+        return np.where(owner < len(number) - 1, number[owner], np.int16(-1))
 
     @property
     def _deviation(self) -> float:
@@ -247,39 +281,175 @@ class Tracker:
         self._outline = np.zeros((0, 2))
         self._extend_outline(image, on)
         self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
-        first = self.settings.stride // 2
-        assert cloud.organised is not None
-        of = found.labels.reshape(cloud.organised)[first :: self.settings.stride, first :: self.settings.stride]
-        owner = np.full(of.shape, UNKNOWN_OWNER, np.int16)
-        self._reference = Reference(image, owner, at)
+        return self._situation(at, number, self._lay_out(found, cloud, image, at, {}))
+
+    def _lay_out(
+        self, found: Detection, cloud: PointCloud, image: FrameImage, at: float, kept: Mapping[int, Pipeline]
+    ) -> tuple[str, ...]:
+        """Make a frame the reference, in which the objects of a detection are new things or those that are kept."""
+        assert self._view is not None
+        self._last = cloud, image, self._number - 1
+        of = self._shown(found.labels, cloud)
+        self._reference = Reference(image, np.full(of.shape, UNKNOWN_OWNER, np.int16), at)
         near = np.abs(image.depth - self._view.level) < np.maximum(
             self.settings.tolerance, self._deviation * image.depth**2
         )
-        plan = moved(image.points.reshape(-1, 3), found.frame)
+        plan = moved(image.points.reshape(-1, 3), self._view.back)
         beyond = self._beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
         self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
         came = []
         for k in range(len(found.boxes)):
             own = np.flatnonzero(of == k)
-            if not self._comes_from_outside(own, image):
+            if k in kept:
+                self._reference.give(own, kept[k].slot, image)
+            elif not self._comes_from_outside(own, image):
                 came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
                 self._reference.give(own, self._things[-1].slot, image)
         rests = {thing.slot: thing.rest for thing in self._things}
+        assert self._motion is not None
         self._motion.add_keyframe(image, levels_of(image), self._reference.owner, self._view, rests)
-        return self._situation(at, number, tuple(came))
+        return tuple(came)
+
+    def _shown(self, labels: NDArray[np.int32], cloud: PointCloud) -> NDArray[np.int32]:
+        """Return the labels of a cloud at the pixels that are compared."""
+        assert cloud.organised is not None
+        first, stride = self.settings.stride // 2, self.settings.stride
+        return labels.reshape(cloud.organised)[first::stride, first::stride]
 
     def _enter(self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, at: float) -> str:
         """Begin the pipeline of object ``k`` of a detection, which has the given points of the cloud."""
-        assert self._frame is not None
-        change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
-        thing = _model(found, cloud, points, k, change)
         used = {pipeline.slot for pipeline in self._things}
         slot = next(slot for slot in range(1, len(used) + 2) if slot not in used)
         self._names += 1
-        own, half, oriented, pose = thing
-        self._things.append(Pipeline(f"t{self._names}", slot, own, half, oriented, pose, at, self.settings))
-        self._things[-1].rest = next(self._rests)
+        self._things.append(self._modelled(found, cloud, points, k, f"t{self._names}", slot, at))
         return self._things[-1].id
+
+    def _modelled(
+        self, found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, id: str, slot: int, at: float
+    ) -> Pipeline:
+        assert self._frame is not None
+        change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
+        own, half, oriented, pose = _model(found, cloud, points, k, change)
+        made = Pipeline(id, slot, own, half, oriented, pose, at, self.settings)
+        made.rest = next(self._rests)
+        return made
+
+    # Looks at the whole table
+
+    def _is_laid_anew(self, changes: Changes) -> bool:
+        """Return True if most things that were at rest left their places at once."""
+        resting = [thing for thing in self._things if not thing.active]
+        left = sum(self._has_left(thing, changes) for thing in resting)
+        return left >= 2 and 2 * left >= len(resting)
+
+    def _begin_anew(self, cloud: PointCloud, image: FrameImage, changes: Changes, at: float, number: int) -> Situation:
+        """Look at the whole table again: things that are not at their places are gone, and others are new."""
+        try:
+            found = detect(cloud, self.settings.detection)
+        except CloudError as error:
+            return self._situation(at, number, notes=(str(error),))
+        if found.table is None:
+            return self._situation(at, number, notes=("; ".join(found.notes) or "no table was found",))
+        there = [thing for thing in self._things if not thing.active and not self._has_left(thing, changes)]
+        kept = self._matches(self._shown(found.labels, cloud), len(found.boxes), image, there)
+        went = tuple(thing for thing in self._things if thing not in kept.values())
+        for thing in went:
+            thing.lost("gone")
+        self._things = [thing for thing in self._things if thing in kept.values()]
+        came = self._lay_out(found, cloud, image, at, kept)
+        return self._situation(at, number, came, went, ("most things changed at once: the table is looked at again",))
+
+    def look_again(self, scene: Scene) -> tuple[Situation, dict[str, str]]:
+        """Correct the things by a detection of the whole table in the last frame, in which nothing moves.
+
+        A tracked thing that is a part of a detected one ends, or becomes the whole. A detected thing that is not
+        tracked is new. Things that are hidden or out of view stay.
+
+        Parameters
+        ----------
+        scene
+            Scene that was perceived in the cloud of the last frame, with its detection.
+
+        Returns
+        -------
+        tuple
+            The situation, whose ``merged`` things were parts of others; and the id of the tracked thing by that of
+            the detected one.
+
+        Raises
+        ------
+        CloudError
+            If no frame was used yet, or the scene was perceived in a cloud of another size.
+        """
+        found = scene.detection
+        if self._last is None or self._reference is None or self._at is None:
+            raise CloudError("look_again() needs a frame; call update() first")
+        cloud, image, number = self._last
+        if not isinstance(found, Detection) or len(found.labels) != len(cloud):
+            raise CloudError("`scene` must be perceived in the cloud of the last frame")
+        at, reference = self._at, self._reference
+        whole = _detected(scene)
+        of = self._shown(whole.labels, cloud)
+        matches = self._matches(of, len(whole.boxes), image, self._things)
+        merged = []
+        for thing in self._things:
+            if thing in matches.values():
+                continue
+            if thing.active:
+                thing.lost()
+                continue
+            own = of[reference.owner == thing.slot]
+            if len(own) and thing.state == "seen" and (own >= 0).mean() >= 0.5:
+                merged.append(thing)
+        self._things = [thing for thing in self._things if thing not in merged]
+        for thing in merged:
+            reference.take(thing.slot, None, set())
+        came, ids = [], {}
+        for k, detected in enumerate(scene.objects):
+            pixels = np.flatnonzero(of == k)
+            points = np.flatnonzero(whole.labels == k)
+            if k in matches:
+                thing = matches[k]
+                if thing.active or _shared(reference.owner == thing.slot, of == k) < SAME_MODEL:
+                    thing = self._remodelled(thing, self._modelled(whole, cloud, points, k, thing.id, thing.slot, at))
+            elif self._comes_from_outside(pixels, image):
+                continue
+            else:
+                came.append(self._enter(whole, cloud, points, k, at))
+                thing = self._things[-1]
+                thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
+            ids[detected.id] = thing.id
+            reference.give(pixels, thing.slot, image)
+        situation = self._situation(at, number, tuple(came))
+        return replace(situation, merged=tuple(thing.report(at) for thing in merged)), ids
+
+    def _matches(
+        self, of: NDArray[np.int32], count: int, image: FrameImage, things: list[Pipeline]
+    ) -> dict[int, Pipeline]:
+        """Return which of the things each detected object is, by the pixels that both have."""
+        from scipy.optimize import linear_sum_assignment
+
+        assert self._reference is not None
+        shared = np.zeros((count, len(things)))
+        above = np.flatnonzero(of >= 0)
+        points = moved(image.points.reshape(-1, 3)[above].astype(np.float64), self._back)
+        for column, thing in enumerate(things):
+            own = np.zeros(of.shape, np.bool_)
+            if not thing.active:
+                own = self._reference.owner == thing.slot
+            elif thing.found:
+                own.ravel()[above] = thing.contains(points, self.settings.margin)
+            both = np.bincount(of[own & (of >= 0)], minlength=count)
+            shared[:, column] = both / np.maximum(np.bincount(of[of >= 0], minlength=count) + own.sum() - both, 1)
+        pairs = zip(*linear_sum_assignment(-shared), strict=True)
+        return {int(k): things[column] for k, column in pairs if shared[k, column] >= SAME_PIXELS}
+
+    def _remodelled(self, thing: Pipeline, new: Pipeline) -> Pipeline:
+        """Replace a pipeline by another one of the same thing, and return it."""
+        moves = thing.active and float(np.linalg.norm(new.pose[:3, 3] - thing.pose[:3, 3])) > self.settings.still
+        new.since, new.at = (new.at if moves else thing.since), thing.at
+        self._things[self._things.index(thing)] = new
+        return new
 
     # What rests and what moves
 
@@ -318,7 +488,7 @@ class Tracker:
 
     def _look_at_resting(self, image: FrameImage, changes: Changes, at: float) -> None:
         """Decide by their pixels which resting things are still at their places."""
-        from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER, SAME
+        from deixis.perception.tracking.kernels import MISSING, NEARER, SAME
 
         assert self._reference is not None
         for thing in self._things:
@@ -327,16 +497,15 @@ class Tracker:
             count = changes.counts[thing.slot]
             measured = int(count.sum() - count[MISSING])
             visible = measured - int(count[NEARER])
-            left = int(count[FARTHER] + count[COLOUR])
             if measured < MIN_OWN_PIXELS:
-                self._look_again(thing, image, at)
-            elif visible >= max(MIN_OWN_PIXELS, 0.25 * measured) and left > self.settings.moved * visible:
+                self._look_once_more(thing, image, at)
+            elif self._has_left(thing, changes):
                 self._start(thing)
             elif count[SAME] >= self.settings.doubtful * measured:
                 thing.seen_at_rest(at, float(count[SAME]) / max(visible, 1))
                 thing.particles = 0
 
-    def _look_again(self, thing: Pipeline, image: FrameImage, at: float) -> None:
+    def _look_once_more(self, thing: Pipeline, image: FrameImage, at: float) -> None:
         """Compare a resting thing without pixels in the reference, such as one that comes into view, with the frame."""
         assert self._reference is not None and self._view is not None
         others = (self._reference.owner != TABLE) & (self._reference.owner != thing.slot)
@@ -347,6 +516,16 @@ class Tracker:
             self._start(thing)
         else:
             thing.seen_at_rest(at, agreement)
+
+    def _has_left(self, thing: Pipeline, changes: Changes) -> bool:
+        """Return True if the place of a thing that was at rest shows what is behind it."""
+        from deixis.perception.tracking.kernels import COLOUR, FARTHER, MISSING, NEARER
+
+        count = changes.counts[thing.slot]
+        measured = int(count.sum() - count[MISSING])
+        visible, left = measured - int(count[NEARER]), int(count[FARTHER] + count[COLOUR])
+        seen = visible >= max(MIN_OWN_PIXELS, 0.25 * measured)
+        return seen and left > self.settings.moved * visible
 
     def _start(self, thing: Pipeline) -> None:
         """Let a thing move: its pixels are free."""
@@ -705,6 +884,23 @@ def _camera_moved(changes: Changes) -> bool:
     table = changes.counts[TABLE]
     left = table[FARTHER] + table[COLOUR]
     return bool(left > table[SAME] and left > 0.2 * table.sum())
+
+
+def _shared(first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float:
+    """Return the intersection over union of two masks."""
+    return float((first & second).sum()) / max(int((first | second).sum()), 1)
+
+
+def _detected(scene: Scene) -> Detection:
+    """Return the detection of a scene with its objects, some of which may have been joined, numbered from 0."""
+    found = scene.detection
+    assert isinstance(found, Detection)
+    number = {int(thing.id[1:]) - 1: place for place, thing in enumerate(scene.objects)}
+    places = np.full(max([*number, int(found.labels.max(initial=0))], default=0) + 2, -1, np.int32)
+    for old, new in number.items():
+        places[old] = new
+    oriented = tuple(thing.oriented for thing in scene.objects if thing.oriented is not None)
+    return replace(found, labels=places[found.labels], boxes=scene.boxes, oriented=oriented)
 
 
 def _noise(depth: NDArray[np.float32], level: NDArray[np.float32]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -113,6 +114,52 @@ def new_figure(width: float, height: float, **subplots: Any) -> tuple[Figure, An
     figure = Figure(figsize=(width, height), facecolor=PAPER, layout=room)
     FigureCanvasAgg(figure)
     return figure, figure.subplots(**subplots)
+
+
+class Names:
+    """Names in a picture, each put where it covers no other one, if there is such a place.
+
+    Parameters
+    ----------
+    axes
+        The axes to write into.
+    letter
+        Width and height of a letter in the axes' units.
+    size
+        Size of the letters in points.
+    """
+
+    def __init__(self, axes: Axes, letter: tuple[float, float], size: float) -> None:
+        self._axes, self._letter, self._size = axes, letter, size
+        self._placed: list[tuple[float, float, float]] = []
+
+    def write(self, name: str, x: float, heights: Sequence[float], colour: str = INK) -> None:
+        """Write a name.
+
+        Parameters
+        ----------
+        name
+            The name.
+        x
+            Its middle.
+        heights
+            Heights of its middle that are tried in turn; the first one is taken if all are crowded.
+        colour
+            Its colour.
+        """
+        from matplotlib.patheffects import withStroke
+
+        width, high = len(name) * self._letter[0], self._letter[1]
+
+        def crowded(y: float) -> bool:
+            return any(
+                abs(x - other) < (width + wide) / 2 and abs(y - height) < high for other, height, wide in self._placed
+            )
+
+        y = next((y for y in heights if not crowded(y)), heights[0])
+        self._placed.append((x, y, width))
+        stroke = withStroke(linewidth=2.2, foreground="#ffffff")
+        self._axes.text(x, y, name, color=colour, fontsize=self._size, ha="center", va="center", path_effects=[stroke])
 
 
 def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:

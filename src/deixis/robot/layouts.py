@@ -311,7 +311,7 @@ class LearnedLayout:
         told = {tuple(sorted((fact.subject, fact.object))) for fact in graph.facts() if fact.subject != fact.object}
         for first, second in sorted(told):
             seen = self.experience.apart.get((first, second))
-            if seen is None or seen.count < 1.5:
+            if seen is None or seen.count < 0.5:
                 continue
             density = predictive(offset, seen, np.full(2, OFFSET_DEVIATION), OFFSET_PRIOR).prod(axis=2)
             table = np.log((1 - OFFSET_OUTLIERS) * density * REACH**2 + OFFSET_OUTLIERS)

@@ -23,7 +23,7 @@ import threading
 from collections.abc import Callable, Sequence
 from datetime import datetime
 from importlib import import_module
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 from deixis.errors import DeixisError
 from deixis.memory.episodes.blackboard import Blackboard
@@ -33,6 +33,10 @@ from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
 PAUSE = 0.2
 """Pause in seconds before a module whose run method raised is run again; it doubles each time, up to 10 s."""
+
+
+Made = TypeVar("Made")
+"""Class of what a name of a class makes."""
 
 
 class AccessError(DeixisError, PermissionError):
@@ -108,6 +112,11 @@ class Board(Protocol):
         AccessError
             If the pattern matches nothing that the module declares.
         """
+        ...
+
+    @property
+    def origin(self) -> datetime:
+        """Time from which the memory counts seconds."""
         ...
 
     def new_id(self, prefix: str) -> str:
@@ -225,14 +234,39 @@ class ModuleSpec(NamedTuple):
         ModuleError
             If there is no such class, it is not a module, or it refuses the settings.
         """
-        place, _, name = self.factory.partition(":")
-        try:
-            made = getattr(import_module(place), name)(**self.settings)
-        except (ImportError, AttributeError, TypeError, ValueError) as error:
-            raise ModuleError(f"the module '{self.factory}' cannot be made: {error}") from error
-        if not isinstance(made, Module):
-            raise ModuleError(f"'{self.factory}' must be a subclass of Module, got {type(made).__name__}")
-        return made
+        return made(self.factory, Module, **self.settings)
+
+
+def made(factory: str, base: type[Made], **settings: Any) -> Made:
+    """Return a new object of a class that is given by its name, such as a module or a camera driver.
+
+    Parameters
+    ----------
+    factory
+        Name of the class, ``package.module:Class``.
+    base
+        Class or protocol that it must have.
+    settings
+        Arguments of the class.
+
+    Returns
+    -------
+    object
+        The object.
+
+    Raises
+    ------
+    ModuleError
+        If there is no such class, it has another base, or it refuses the settings.
+    """
+    place, _, name = factory.partition(":")
+    try:
+        found = getattr(import_module(place), name)(**settings)
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
+        raise ModuleError(f"the module '{factory}' cannot be made: {error}") from error
+    if not isinstance(found, base):
+        raise ModuleError(f"'{factory}' must be a {base.__name__}, got {type(found).__name__}")
+    return found
 
 
 class ModuleBoard(Board):
@@ -268,6 +302,11 @@ class ModuleBoard(Board):
         """Return the fluents that have not finished, as far as the module declares to read them."""
         self._check_readable(pattern)
         return tuple(filter(self._readable, self._board.now(pattern)))
+
+    @property
+    def origin(self) -> datetime:
+        """Time from which the memory counts seconds."""
+        return self._board.origin
 
     def new_id(self, prefix: str) -> str:
         """Return an id that this memory has never given before."""

@@ -19,6 +19,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from datetime import datetime
+from functools import cached_property
 from typing import Any
 
 from deixis import extras
@@ -247,11 +248,16 @@ class RemoteBoard(Board):
         """Return an id that this memory has never given before."""
         return str(self._call(method="new_id", prefix=prefix))
 
+    @cached_property
+    def origin(self) -> datetime:
+        """Time from which the memory counts seconds."""
+        origin, _ = self._call(method="origin")
+        return datetime.fromisoformat(origin)
+
     def seconds(self) -> float:
         """Return the present time, which never goes back."""
         if self._clock is None:
-            origin, _ = self._call(method="origin")
-            self._clock = Clock(datetime.fromisoformat(origin), _say)
+            self._clock = Clock(self.origin, _say)
         return self._clock.seconds()
 
     def log(self, since: int) -> tuple[list[Logged], int]:

@@ -103,6 +103,7 @@ class Robot:
         self.expected: list[ExpectedObject] = []
         self._sightings: dict[str, Sighting] = {}
         self._seen_at = 0.0
+        self._known_at = 0.0  # when it last saw, was shown or was told something
         self._resumed: Scene | None = None  # the last table that an earlier run kept
         self.layouts: dict[str, LearnedLayout] = {}
         self.lessons: list[TableLesson] = []
@@ -207,6 +208,11 @@ class Robot:
     # ---- seeing
 
     @property
+    def sees_a_table(self) -> bool:
+        """True once a scene was seen."""
+        return self._scene is not None
+
+    @property
     def scene(self) -> Scene:
         """The scene that is seen now.
 
@@ -246,7 +252,7 @@ class Robot:
         self._scene, self._look = scene, None
         if self._fullest is None or len(scene.objects) >= len(self._fullest.objects):
             self._fullest = scene
-        self._seen_at = self._time(at)
+        self._seen_at = self._known_at = self._time(at)
         self.diary.saw(scene, self._seen_at)
         self._sightings = {}
         self._look_for_expected(self._seen_at)
@@ -332,7 +338,7 @@ class Robot:
         if look.layout is not None:
             found.add(("table", LAYOUT, look.layout))
             certain["table", LAYOUT, look.layout] = min(look.layouts[look.layout], 1.0)
-        self.diary.concluded(found, (IS_A, LAYOUT, FAULT), self._seen_at, certain)
+        self.diary.concluded(found, (IS_A, LAYOUT, FAULT), self._known_at, certain)
 
     def names(self) -> Mapping[str, Mapping[str, float]]:
         """Return the names that each thing may have, with their probabilities.
@@ -409,7 +415,8 @@ class Robot:
         taught = self.session.teach(self.scene, thing, label, by, settles)
         for lesson, role in pointed:
             self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
-        self.diary.shown(thing, taught.category, by, self._time(at))
+        self._known_at = max(self._known_at, self._time(at))
+        self.diary.shown(thing, taught.category, by, self._known_at)
         self._forget_look()
         return taught
 
@@ -456,6 +463,7 @@ class Robot:
         if isinstance(text, str) and (presence := self._presence(text)) is not None:
             return self._told_presence(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
+        self._known_at = max(self._known_at, self._time(at))
         seen = self.knowledge().recognised(self.scene)
         learned = self.session.learn(script, seen, teacher=by)
         lesson = self._learned(script, self.scene, learned)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.detection.detect import detect
+from deixis.perception.errors import CloudError
 from deixis.perception.simulator.laying import Placement
 from deixis.perception.simulator.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.tracking.settings import TrackingSettings
@@ -110,3 +112,54 @@ def test_cloud_without_a_table_is_reported_until_one_comes() -> None:
         assert len(tracker.update(plate_only, 0.0).notes) == 1
         now = tracker.update(cloud, 0.1)
         assert [thing.id for thing in now.things] == ["t1", "t2"] and not now.notes
+
+
+def test_table_laid_anew_between_two_frames_is_looked_at_again() -> None:
+    actions = (TakeAway("plate"), TakeAway("mug"), Bring(replace(PLATE, name="other", x=0.1)), Bring(BOWL))
+    story = film([PLATE, MUG], [Rest(0.2), *actions, Rest(0.2)])
+    first, second = story.frames(1 / story.seconds, scale=0.4)
+    with Tracker(HALF) as tracker:
+        tracker.update(first.cloud, 0.0)
+        now = tracker.update(second.cloud, second.at)
+        assert [thing.id for thing in now.went] == ["t1", "t2"] and all(each.state == "gone" for each in now.went)
+        assert now.came == ("t3", "t4") == tuple(thing.id for thing in now.things)
+        assert "looked at again" in now.notes[0]
+        assert all(thing.state == "seen" for thing in tracker.update(second.cloud, second.at + 0.2).things)
+
+
+def test_whole_look_merges_the_piece_of_a_thing() -> None:
+    frame = next(iter(film([PLATE, MUG], [Rest(0.2)]).frames(5, scale=0.4)))
+    found = detect(frame.cloud)
+    plate = np.flatnonzero(found.labels == 0)
+    rim = plate[frame.cloud.points[plate, 0] < np.quantile(frame.cloud.points[plate, 0], 0.3)]
+    labels = found.labels.copy()
+    labels[rim] = len(found.boxes)
+    cut = replace(
+        found,
+        labels=labels,
+        boxes=np.concatenate([found.boxes, found.boxes[:1]]),
+        oriented=(*found.oriented, found.oriented[0]),
+    )
+    with Tracker(HALF) as tracker:
+        tracker.update(frame.cloud, 0.0)
+        now, ids = tracker.look_again(cut.scene())
+        assert [thing.id for thing in now.things] == ["t1", "t2", "t3"] and now.came == ("t3",)
+        assert ids == {"o1": "t1", "o2": "t2", "o3": "t3"}
+        now, ids = tracker.look_again(found.scene())
+        assert [thing.id for thing in now.things] == ["t1", "t2"]
+        assert [thing.id for thing in now.merged] == ["t3"]
+        assert set(np.unique(tracker.owners())) == {-1, 0, 1}
+        with pytest.raises(CloudError, match="perceived in the cloud of the last frame"):
+            tracker.look_again(now.scene())
+
+
+def test_work_grows_with_what_moves_and_ends_with_it() -> None:
+    moving = [sum(thing.moving for thing in now.things) for _, now in moved_mug()]
+    assert max(moving) == 1  # the plate rests, which costs nothing
+    with Tracker(HALF) as tracker:
+        needed = []
+        for frame in film([PLATE, MUG], [Rest(0.2), TakeAway("mug"), Rest(1.0)]).frames(3, scale=0.4):
+            tracker.update(frame.cloud, frame.at)
+            needed.append(tracker.particles)
+        assert needed[0] == 0 < max(needed) and needed[-1] == 0
+        assert np.unique(tracker.owners()).tolist() == [-1, 0]

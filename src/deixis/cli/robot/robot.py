@@ -5,16 +5,23 @@ from __future__ import annotations
 import sys
 import threading
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from deixis.cli.common import AsJson, MemoryDir, print_json, print_line
+from deixis.cli.common import AsJson, MemoryDir, print_json, print_line, print_written
+from deixis.errors import DeixisError
 
 if TYPE_CHECKING:
     from deixis.robot.live.run import LiveRobot
+
+
+class LiveError(DeixisError, ValueError):
+    """Story that ended early."""
+
 
 SHOWN_LINES = 12
 """Number of lines of the conversation in the terminal view."""
@@ -30,7 +37,12 @@ def _robot() -> None:
 @robot_app.command("run")
 def run(
     source: Annotated[
-        str, typer.Option("--from", metavar="SOURCE", help="A folder with clouds, or 'simulator'.")
+        str,
+        typer.Option(
+            "--from",
+            metavar="SOURCE",
+            help="A folder with clouds, a camera driver (package.module:Class), or 'simulator'.",
+        ),
     ] = "simulator",
     layout: Annotated[
         str | None, typer.Option(metavar="SCRIPT", help="How the simulated table is laid; default: a shipped one.")
@@ -39,6 +51,14 @@ def run(
     rate: Annotated[float, typer.Option(min=0.5, max=30, help="Frames a second of the simulator.")] = 4.0,
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
+    words: Annotated[
+        Path | None, typer.Option("--say", metavar="FILE", help="What persons say (.said.jsonl), besides the story's.")
+    ] = None,
+    live: Annotated[bool, typer.Option("--live", help="Play the story at its own speed, as a camera does.")] = False,
+    stay: Annotated[bool, typer.Option("--stay", help="Listen after the story until the input ends.")] = False,
+    story: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write key frames and a page with the story.")
+    ] = None,
     processes: Annotated[bool, typer.Option("--processes", help="Run each module in a process of its own.")] = False,
     plain: Annotated[bool, typer.Option("--plain", help="Print lines, without the view of the table.")] = False,
     memory: MemoryDir = None,
@@ -48,22 +68,12 @@ def run(
 
     In a terminal, type to talk to it: names, layouts and questions.
     """
-    from deixis.examples_data import example
     from deixis.memory.on_demand import default_memory
-    from deixis.robot.live.run import LiveSettings, live_robot
-    from deixis.robot.live.story import recorded_story
+    from deixis.plots.live_story import write_story
+    from deixis.robot.live.run import live_robot
+    from deixis.robot.live.story import StorySettings
 
-    if source != "simulator":
-        recorded_story(source, intrinsics, grows)  # raises the error of a folder that cannot be used
-    settings = LiveSettings(
-        source if source == "simulator" else str(Path(source)),
-        str(layout or example("tea.layout")),
-        seed,
-        rate,
-        None if intrinsics is None else str(intrinsics),
-        grows,
-        processes,
-    )
+    settings = StorySettings(source, layout, seed, rate, _text(intrinsics), grows, _text(words), live)
     view = not (plain or as_json) and sys.stdout.isatty()
     lines: deque[str] = deque(maxlen=SHOWN_LINES)
 
@@ -72,13 +82,19 @@ def run(
         if not view and not as_json:
             print_line(line)
 
-    with live_robot(memory or default_memory(), settings, report) as robot:
+    with live_robot(memory or default_memory(), settings, report, processes) as robot:
+        typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
         if sys.stdin.isatty():
-            threading.Thread(target=_listen, args=(robot,), name="typed words", daemon=True).start()
-        if view:
-            _watch(robot, lines)
-        else:
+            typing.start()
+        with _watched(robot, lines) if view else nullcontext():
             robot.wait()
+            if robot.problem is not None:
+                raise LiveError(f"{robot.problem}; the story has ended")
+            if stay:
+                if not typing.is_alive():
+                    typing.start()  # a file or a pipe is read after the story
+                typing.join()
+                robot.answered()
         answer = {
             "layout": robot.layout(),
             "things": [
@@ -86,23 +102,34 @@ def run(
                 for thing in robot.things()
             ],
             "faults": list(robot.faults()),
+            "dropped": robot.dropped,
         }
+        written = None if story is None else write_story(robot, story)
     if as_json:
         print_json(answer)
         return
     for line in _summary(answer):
         print_line(line)
+    print_written(written)
 
 
-def _listen(robot: LiveRobot) -> None:
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
+def _listen(robot: LiveRobot, report: Callable[[str], None]) -> None:
     """Tell the robot each line that is typed."""
     for line in sys.stdin:
         if line.strip():
-            robot.says(line.strip())
+            try:
+                robot.says(line.strip())
+            except DeixisError as error:
+                report(str(error))
 
 
-def _watch(robot: LiveRobot, lines: deque[str]) -> None:
-    """Show the table and the conversation in the terminal until the story ends."""
+@contextmanager
+def _watched(robot: LiveRobot, lines: Sequence[str]) -> Iterator[None]:
+    """Show the table and the conversation in the terminal."""
     from rich.console import Group
     from rich.live import Live
     from rich.table import Table
@@ -115,12 +142,12 @@ def _watch(robot: LiveRobot, lines: deque[str]) -> None:
         for thing in robot.things():
             probability = f"{thing.probability:.2f}" if thing.name else ""
             table.add_row(thing.id, thing.name or "?", probability, f"{thing.since:.1f} s")
-        return Group(table, *(Text(f"wrong: {fault}", style="red") for fault in robot.faults()), *map(Text, lines))
+        return Group(
+            table, *(Text(f"wrong: {fault}", style="red") for fault in robot.faults()), *map(Text, list(lines))
+        )
 
-    with Live(picture(), refresh_per_second=4) as live:
-        while not robot.wait(0.25):
-            live.update(picture())
-        live.update(picture())
+    with Live(get_renderable=picture, refresh_per_second=4):
+        yield
 
 
 def _summary(answer: Mapping[str, Any]) -> list[str]:

@@ -81,7 +81,7 @@ def tell(out: Path) -> None:
 
     with tempfile.TemporaryDirectory() as folder, Session(Path(folder) / "memory") as session:
         _remembered(tour, session, full, scene, out)
-    _running(tour)
+    _running(tour, out)
     tour.write_page()
 
 
@@ -154,20 +154,28 @@ def _seen(tour: Tour, session: Session, full: Script, out: Path) -> None:
     tour.picture("another.png", "The things recognised in another cloud")
 
 
-def _running(tour: Tour) -> None:
+def _running(tour: Tour, out: Path) -> None:
     """Print the part of the tour in which the robot runs on a film of one table and two customers."""
-    from deixis.robot.live.run import LiveSettings, live_robot
+    from deixis.plots.live_story import OVERVIEW, write_story
+    from deixis.robot.live.run import live_robot
+    from deixis.robot.live.story import StorySettings
 
     tour.chapter(
         "The robot runs: a teacher shows and tells, and asks about the next customer's table",
-        "deixis robot run --from simulator --seed 1 --memory out/robot",
+        "deixis robot run --from simulator --seed 1 --memory out/robot --story out/live",
     )
     lines: list[str] = []
-    with tempfile.TemporaryDirectory() as folder:
-        settings = LiveSettings("simulator", str(example("tea.layout")), seed=1)
-        with live_robot(Path(folder) / "memory", settings, lines.append) as robot:
-            robot.wait()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        live_robot(Path(folder) / "memory", StorySettings("simulator", seed=1), lines.append) as robot,
+    ):
+        robot.wait()
+        write_story(robot, out / "live")
     tour.listing(lines)
+    tour.picture(
+        f"live/{OVERVIEW}",
+        "A teacher points at a thing, describes the layout, and asks what is wrong",
+    )
 
 
 def full_text(name: str) -> list[str]:

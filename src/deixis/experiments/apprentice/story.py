@@ -17,7 +17,7 @@ import numpy as np
 from deixis.experiments.apprentice.run import ApprenticePlan, looked_at, teach
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
-from deixis.plots.figure import INK, PAPER, QUIET, new_figure, require_picture, save
+from deixis.plots.figure import INK, QUIET, Names, new_figure, require_picture, save
 from deixis.robot.looking import Fault
 from deixis.robot.robot import Robot
 
@@ -27,8 +27,18 @@ STORY_TABLES = 4
 MAX_POINTS = 20_000
 """Number of points of a cloud that a frame shows."""
 
-RIGHT, WRONG = "#2e7d32", "#b3261e"
-"""Colours of what is known, and of what is wrong."""
+RIGHT, WRONG, WOOD = "#00563f", "#b3261e", "#b9a48c"
+"""Colours of what is known, of what is wrong, and of the table."""
+
+LETTER = (0.0075, 0.018)
+"""Width and height of a letter in metres of the table."""
+
+
+LEGEND = (
+    "Each picture shows the points that the camera saw, from above, with the boxes of the things that were detected. "
+    "Green names are known, red ones are of things that are wrong, and ? marks things that are not known yet."
+)
+"""Explanation of the pictures on the page."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +103,8 @@ def _teaching(
     for lesson in teach(robot, plan):
         known = robot.lessons[lesson.number]
         taught = {settled.thing: role for role, settled in known.settled.items()}
-        names = {id: (taught[id].replace("_", " "), RIGHT) if id in taught else ("?", QUIET) for id in known.scene.ids}
-        asked = f", asks {lesson.questions} times" if lesson.questions else ""
+        names = {id: (taught[id].replace("_", " "), RIGHT) if id in taught else ("?", INK) for id in known.scene.ids}
+        asked = f", and asks {lesson.questions} question(s)" if lesson.questions else ""
         title = lesson.layout.replace("_", " ")
         keep(known.scene, names, f"The teacher describes: {title}. The robot learns {len(taught)} things{asked}.")
 
@@ -109,18 +119,20 @@ def _said(faults: tuple[Fault, ...]) -> str:
 def _draw(scene: Scene, names: Mapping[str, tuple[str, str]], caption: str, path: Path) -> None:
     """Draw the points of all things from above in their colours, with boxes and names."""
     figure, axes = new_figure(7.0, 5.2)
-    axes.set_facecolor(PAPER)
+    axes.set_facecolor(WOOD)
+    text = Names(axes, LETTER, 8)
     for thing in scene.objects:
         if isinstance(thing.cloud, PointCloud):
             step = max(1, len(thing.cloud) * len(scene.objects) // MAX_POINTS)
             points = thing.cloud.points[::step]
             shades = np.full(len(points), 0.5) if thing.cloud.colours is None else thing.cloud.colours[::step] / 255
-            axes.scatter(points[:, 0], points[:, 1], c=shades, s=0.6, linewidths=0, rasterized=True)
+            axes.scatter(points[:, 0], points[:, 1], c=shades, s=2.5, linewidths=0, rasterized=True)
+    for thing in sorted(scene.objects, key=lambda thing: (-thing.maximum[1], thing.minimum[0])):
         name, colour = names.get(thing.id, ("", QUIET))
         low, high = np.array(thing.minimum[:2]), np.array(thing.maximum[:2])
         corners = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
-        axes.plot(corners[:, 0], corners[:, 1], color=colour, linewidth=1.2)
-        axes.text(low[0], high[1] + 0.006, name, color=colour, fontsize=7)
+        axes.plot(corners[:, 0], corners[:, 1], color=colour, linewidth=1.6)
+        text.write(name, (low[0] + high[0]) / 2, (high[1] + 0.01, low[1] - 0.01, (low[1] + high[1]) / 2), colour)
     axes.set_aspect("equal")
     axes.set_xticks([])
     axes.set_yticks([])
@@ -141,5 +153,5 @@ def _page(frames: list[Frame]) -> str:
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>The apprentice</title>'
         "<style>body{font:16px sans-serif;max-width:60em;margin:2em auto}img{max-width:100%}</style>"
-        f"<h1>The apprentice</h1>\n{shown}</html>\n"
+        f"<h1>The apprentice</h1>\n<p>{LEGEND}</p>\n{shown}</html>\n"
     )

@@ -6,23 +6,23 @@ import re
 import threading
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from deixis.errors import DeixisError
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.perception.formats.scene_json import read_scene
-from deixis.reasoning.temporal.fluent import Pattern
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
-from deixis.robot.live.senses import AT, CALLED, ENDED, NOT_CALLED, SAID, TABLE, WATCHED
+from deixis.robot.live.senses import CALLED, ENDED, SAID, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
 from deixis.workflows.knowledge.recall import CONTRADICTED, EXPECTED, IS_A, SAME_AS
-from deixis.workflows.scenes.point import spoken_name
+from deixis.workflows.scenes.point import MIN_CONFIDENCE
 
 SAYS, DONE = "says", "done"
 """Predicates: what the robot says, and that it has dealt with the whole story."""
@@ -43,9 +43,6 @@ _NAME = re.compile(
 )
 """Answer to the question for the name of a layout: a name of up to four words, or that it has none."""
 
-if TYPE_CHECKING:
-    pass
-
 
 class Learner(Module):
     """Module that holds the robot's concepts and its memory of views.
@@ -57,9 +54,7 @@ class Learner(Module):
     """
 
     name: ClassVar[str] = "learner"
-    reads: ClassVar[tuple[Pattern, ...]] = tuple(
-        Pattern(predicate=each) for each in (TABLE, WATCHED, CALLED, NOT_CALLED, SAID, ENDED, AT, RECORDED)
-    )
+    reads: ClassVar[tuple[Pattern, ...]] = (ANYTHING,)  # it answers questions about all that happened
 
     def __init__(self, memory: str) -> None:
         self._memory = memory
@@ -178,18 +173,22 @@ class Learner(Module):
         except DeixisError as error:
             self._say(f"I could not learn '{label}': {error}", at, board)
             return
-        self._say(f"I see: {thing} is a {label}.", at, board)
         self._understand(board, at)
+        self._say(f"I see: {thing} is a {label}.", at, board)
 
     def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
         by, at = fluent.source.by, fluent.start.lower
-        answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or spoken_name(text) is None
+        names = named(text)[1] is not None
+        answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or not names
         if self._named is not None and answers and self._learned_name(text, by, at, board):
             return
-        if spoken_name(text) is not None:
+        if names:
             return  # the senses say which thing it names
+        if fluent.certainty < MIN_CONFIDENCE:
+            self._say(f"I am not sure that I heard this right: {text} Please say it again.", at, board)
+            return
         if text.strip().endswith("?"):
-            self._say(self._answer(text), at, board)
+            self._say(self._answer(text, by, at, board), at, board)
             return
         if self._asked is not None and self._settled(text, by, at, board):
             return
@@ -201,8 +200,8 @@ class Learner(Module):
         if isinstance(told, Told):
             taught = _listed(told.taught) or "nothing new"
             waiting = f" I am not sure yet about: {_listed(told.waiting)}." if told.waiting else ""
-            self._say(f"I learned how '{told.lesson.layout}' is laid. I know now: {taught}.{waiting}", at, board)
             self._understand(board, at)
+            self._say(f"I learned how '{told.lesson.layout}' is laid. I know now: {taught}.{waiting}", at, board)
             self._ask(at, board)
             return
         if left := [one.name for one in told if one.standing is Standing.EXPECTED]:
@@ -225,19 +224,23 @@ class Learner(Module):
         question, self._asked = self._asked, None
         self.robot.answers(question, given, by)
         name = question.role.replace("_", " ")
-        self._say(f"Thank you: {given} is the {name}." if given else f"Then the {name} is not here.", at, board)
         self._understand(board, at)
+        self._say(f"Thank you: {given} is the {name}." if given else f"Then the {name} is not here.", at, board)
         self._ask(at, board)
         return True
 
-    def _answer(self, question: str) -> str:
+    def _answer(self, question: str, by: str, at: float, board: Board) -> str:
         """Return the answer to a question: what is wrong with the table, or what was when."""
+        from deixis.workflows.knowledge.recall import recall
+
         if not _WRONG.search(question) or _TOLD.search(question):
             try:
-                found = self.robot.session.recall(question)
+                found = recall(question, board, at, self.robot.session.ontology, by)
                 return found.answer if found.known else f"I do not know: {found.reason}."
             except DeixisError as error:
                 return f"I did not understand: {str(error).splitlines()[0]}"
+        if not self.robot.sees_a_table:
+            return "I do not see a table yet."
         look = self.robot.look()
         if look.layout is None:
             return "I do not know how this table should be laid."

@@ -5,35 +5,28 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Logged
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.changes import Add, Finish, Logged
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE, SAYS
-from deixis.robot.live.senses import AT, NOTICED, SAID
+from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, NOTICED, SAID, TABLE, TYPED
+from deixis.robot.live.story import StorySettings
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
 from deixis.scratch import scratch_folder
 from deixis.workflows.knowledge.recall import IS_A
 
+STATES = (AT, TABLE, TYPED, DROPPED, BEGAN, ENDED, DONE)
+"""Predicates of the senses' fluents that hold at present; the robot ends its own conclusions."""
+
 Report = Callable[[str], None]
-
-
-@dataclass(frozen=True, slots=True)
-class LiveSettings:
-    """Settings: what the robot looks at, and how its modules run; see :class:`deixis.robot.live.senses.Senses`."""
-
-    source: str
-    layout: str | None = None
-    seed: int = 0
-    rate: float = 4.0
-    intrinsics: str | None = None
-    grows: bool = False
-    processes: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +46,29 @@ class LiveRobot:
     ----------
     board
         Its blackboard.
-    started
-        Time on the blackboard's clock at which it started.
+    folder
+        Folder of the scenes and images that it sees.
     """
 
-    def __init__(self, board: Blackboard) -> None:
-        self.board, self.started = board, board.seconds()
+    def __init__(self, board: Blackboard, folder: Path) -> None:
+        self.board, self.folder = board, folder
+        self.runtime: Runtime | None = None
+
+    @property
+    def began(self) -> float:
+        """Time at which the story began, in seconds since the origin of the memory; the present before it has."""
+        found = self._now(BEGAN)
+        return found[-1].start.lower if found else self.board.seconds()
+
+    @property
+    def problem(self) -> str | None:
+        """Reason why the story ended early; None if it did not."""
+        return next((each.statement.object for each in self._now(ENDED)), None)
+
+    @property
+    def dropped(self) -> int:
+        """Number of frames that came too late to be seen."""
+        return next((int(each.statement.object or 0) for each in self._now(DROPPED)), 0)
 
     def things(self) -> tuple[SeenThing, ...]:
         """Return the things on the table, in the order in which they came.
@@ -74,7 +84,7 @@ class LiveRobot:
                 each.statement.subject,
                 None if (name := names.get(each.statement.subject)) is None else name.statement.object,
                 0.0 if name is None else name.certainty,
-                each.start.lower - self.started,
+                each.start.lower - self.began,
             )
             for each in self._now(AT)
         )
@@ -110,15 +120,12 @@ class LiveRobot:
         speaker
             Name of the person.
         """
+        said = Utterance(text, 0.0, speaker=speaker)  # checked here, so that the caller gets the error
         at = self.board.seconds()
-        said = episodic(
-            self.board.new_id("f"),
-            (speaker, SAID, text),
-            start=at,
-            finish=at + 1e-3,
-            source=Source(Origin.SAID, speaker),
+        typed = episodic(
+            self.board.new_id("f"), (speaker, TYPED, said.text), start=at, source=Source(Origin.SAID, speaker)
         )
-        self.board.write(Add(said), by=speaker)
+        self.board.write(Add(typed), by=speaker)
 
     def wait(self, seconds: float | None = None) -> bool:
         """Wait until the robot has dealt with the whole story.
@@ -140,23 +147,46 @@ class LiveRobot:
             time.sleep(0.1)
         return True
 
-    def _now(self, predicate: str):  # type: ignore[no-untyped-def]
-        found = self.board.now(Pattern(predicate=predicate))
-        return [each for each in found if each.start.lower >= self.started - 1.0]
+    def answered(self, seconds: float = 60.0) -> bool:
+        """Wait until the robot has dealt with all typed words.
+
+        Parameters
+        ----------
+        seconds
+            Longest time to wait.
+
+        Returns
+        -------
+        bool
+            True if it has.
+        """
+        until = time.monotonic() + seconds
+        while self._now(TYPED):
+            if time.monotonic() > until:
+                return False
+            time.sleep(0.05)
+        return self.runtime is None or self.runtime.wait(timeout=max(until - time.monotonic(), 0.0))
+
+    def _now(self, predicate: str) -> tuple[EpisodicFluent, ...]:
+        return self.board.now(Pattern(predicate=predicate))
 
 
 @contextmanager
-def live_robot(memory: str | Path, settings: LiveSettings, report: Report) -> Iterator[LiveRobot]:
+def live_robot(
+    memory: str | Path, story: StorySettings, report: Report, processes: bool = False
+) -> Iterator[LiveRobot]:
     """Run the robot until the ``with`` block ends.
 
     Parameters
     ----------
     memory
         Folder of the memory.
-    settings
+    story
         What it looks at.
     report
         Called with a line for everything that is said and noticed, from any thread.
+    processes
+        True to run each module in a process of its own.
 
     Yields
     ------
@@ -164,40 +194,47 @@ def live_robot(memory: str | Path, settings: LiveSettings, report: Report) -> It
         The robot.
     """
     with scratch_folder() as folder, Blackboard.open(memory, create=True) as board:
-        robot = LiveRobot(board)
+        _end_earlier(board)
+        robot = LiveRobot(board, folder)
 
         def told(change: Logged) -> None:
-            if change.after is not None and change.before is None:
-                said = change.after.statement
-                clock = f"{change.after.start.lower - robot.started:6.1f} s"
-                if said.predicate == SAID:
-                    report(f"{clock}  {said.subject}: {said.object}")
-                elif said.predicate == SAYS:
-                    report(f"{clock}  robot: {said.object}")
-                elif said.predicate == NOTICED:
-                    report(f"{clock}  note: {said.object}")
-
-        senses = {
-            "source": settings.source,
-            "folder": str(folder),
-            "layout": settings.layout,
-            "seed": settings.seed,
-            "rate": settings.rate,
-            "intrinsics": settings.intrinsics,
-            "grows": settings.grows,
-        }
-        modules = [
-            ModuleSpec("deixis.robot.live.learner:Learner", {"memory": str(memory)}),
-            ModuleSpec("deixis.robot.live.senses:Senses", senses),
-        ]
-        subscription = board.subscribe("view", Pattern(), told, since=board.sequence)
+            if change.after is None or change.before is not None:
+                return
+            line = _line(change.after)
+            if line is not None:
+                report(f"{change.after.start.lower - robot.began:6.1f} s  {line}")
 
         def trouble(line: str) -> None:
             if " is slow," not in line:  # learning from a table takes seconds, and nothing is lost
                 report(line)
 
-        with Runtime(board, modules, settings.processes, trouble):
+        modules = [
+            ModuleSpec("deixis.robot.live.learner:Learner", {"memory": str(memory)}),
+            ModuleSpec("deixis.robot.live.senses:Senses", {"story": asdict(story), "folder": str(folder)}),
+        ]
+        subscription = board.subscribe("view", Pattern(), told, since=board.sequence)
+        with Runtime(board, modules, processes, trouble) as runtime:
+            robot.runtime = runtime
             try:
                 yield robot
             finally:
+                subscription.wait(board.sequence, 2.0)
                 board.unsubscribe(subscription.name)
+
+
+def _line(fluent: EpisodicFluent) -> str | None:
+    """Return what a fluent says as a line of the conversation; None if it is not a part of it."""
+    said = fluent.statement
+    who = {SAID: said.subject, SAYS: "robot", NOTICED: "note"}.get(said.predicate)
+    if said.predicate == DROPPED:
+        return f"note: {said.object} frames came too late and were left out"
+    return None if who is None else f"{who}: {said.object}"
+
+
+def _end_earlier(board: Blackboard) -> None:
+    """End what an earlier run left as the present: it ceased to hold at an unknown time before now."""
+    now = board.seconds()
+    left = [each for predicate in STATES for each in board.now(Pattern(predicate=predicate))]
+    changes = [Finish(each.id, Bounds(each.start.upper, max(now, each.start.upper))) for each in left]
+    if changes:
+        board.write(*changes, by="robot")

@@ -1,14 +1,18 @@
-"""Stories: what a robot sees and hears in the order of time, from a recorded folder or from the simulator.
+"""Stories: what a robot sees and hears in the order of time, from a camera, a recorded folder or the simulator.
 
 A folder has clouds (see :class:`~deixis.perception.tracking.stream.FolderSource`) and, if there are any, the words
 (``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds. Skeletons
 are in the frame of the camera.
+
+A live story does not wait for the robot: a thread reads its frames, and those that come too fast are dropped and
+counted.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import merge
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +21,10 @@ import numpy as np
 
 from deixis.grammar.utterances import Utterance
 from deixis.perception.pointing.skeleton import Skeleton
+from deixis.perception.scene import Scene
 from deixis.perception.tracking.frame import Frame
+from deixis.perception.tracking.stream import CloudSource, LatestFrames
+from deixis.robot.modules import made
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -37,12 +44,41 @@ BREAK = 5.0
 
 
 @dataclass(frozen=True, eq=False)
+class StoryTruth:
+    """Truth about a simulated story, by which a robot is judged.
+
+    Attributes
+    ----------
+    things
+        The things on the table at the end, with their names, in the frame of the simulated table.
+    camera
+        The camera with its pose in that frame.
+    forgotten
+        Name of the thing that is missing at the end.
+    """
+
+    things: Scene
+    camera: Camera
+    forgotten: str
+
+
+@dataclass(frozen=True, eq=False)
 class Story:
-    """Events in the order of their times, which :meth:`events` yields one by one."""
+    """Events in the order of their times, which :meth:`events` yields one by one.
+
+    ``truth`` is that of a simulated story.
+    """
 
     frames: Iterable[Frame]
     words: tuple[Utterance, ...] = ()
     skeletons: tuple[Skeleton, ...] = ()
+    truth: StoryTruth | None = None
+    live: LatestFrames | None = None
+
+    @property
+    def dropped(self) -> int:
+        """Number of frames that came too late to be seen."""
+        return 0 if self.live is None else self.live.dropped
 
     def events(self) -> Iterator[Event]:
         """Yield the events in the order of their times.
@@ -53,6 +89,116 @@ class Story:
             A frame, a skeleton or an utterance; of several at one time, the frame first.
         """
         return merge(self.frames, self.skeletons, self.words, key=lambda event: event.at)
+
+
+@dataclass(frozen=True, slots=True)
+class StorySettings:
+    """Choice of what a robot looks at.
+
+    Parameters
+    ----------
+    source
+        ``simulator``, a folder with clouds, or a camera driver as ``package.module:Class``.
+    layout
+        Script of the simulated table.
+    seed
+        Seed of the simulated story.
+    rate
+        Frames a second of the simulator.
+    intrinsics
+        File with the intrinsics of the camera, for depth images.
+    grows
+        True if the folder grows.
+    words
+        File of words in addition to those of the story, such as those of a speech recogniser (``.said.jsonl``).
+    live
+        True to play the simulated story or the recording at its own speed, as a camera does.
+    """
+
+    source: str
+    layout: str | None = None
+    seed: int = 0
+    rate: float = 4.0
+    intrinsics: str | None = None
+    grows: bool = False
+    words: str | None = None
+    live: bool = False
+
+    def story(self) -> Story:
+        """Return the story.
+
+        Returns
+        -------
+        Story
+            The story, whose frames are read or computed one by one.
+
+        Raises
+        ------
+        CloudError
+            If there is no such folder, or it has no clouds.
+        ModuleError
+            If there is no such camera driver.
+        UtteranceError, PointingError
+            If a file of words or skeletons has an error.
+        SimulationError
+            If no table can be laid as the script says.
+        """
+        from deixis.grammar.utterances import read_utterances
+        from deixis.perception.tracking.stream import LatestFrames
+
+        driver = self.source != "simulator" and not Path(self.source).exists() and ":" in self.source
+        if self.source == "simulator":
+            from deixis.examples_data import example
+            from deixis.workflows.layouts.read import as_script
+
+            found = simulated_story(as_script(self.layout or str(example("tea.layout"))), self.seed, self.rate)
+        elif driver:
+            found = Story(made(self.source, CloudSource).frames())  # type: ignore[type-abstract]
+        else:
+            found = recorded_story(self.source, self.intrinsics, self.grows)
+        if self.words is not None:
+            words = sorted((*found.words, *read_utterances(self.words)), key=lambda said: said.at)
+            found = replace(found, words=tuple(words))
+        if not (self.live or self.grows or driver):
+            return found
+        latest = LatestFrames(AtOwnSpeed(found.frames) if self.live else Frames(found.frames))
+        return replace(found, frames=latest.frames(), live=latest)
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """Frames as a source."""
+
+    given: Iterable[Frame]
+
+    def frames(self) -> Iterator[Frame]:
+        """Yield the frames.
+
+        Yields
+        ------
+        Frame
+            The frames as they were given.
+        """
+        yield from self.given
+
+
+class AtOwnSpeed(Frames):
+    """Frames as a source that yields each when its time has come."""
+
+    def frames(self) -> Iterator[Frame]:
+        """Yield the frames.
+
+        Yields
+        ------
+        Frame
+            Each frame as long after the first one as their times say.
+        """
+        ahead: float | None = None
+        for frame in self.given:
+            now = time.monotonic()
+            ahead = frame.at - now if ahead is None else ahead
+            time.sleep(max(frame.at - ahead - now, 0.0))
+            yield frame
 
 
 def recorded_story(folder: str | Path, intrinsics: str | Path | None = None, grows: bool = False) -> Story:
@@ -150,6 +296,8 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     after.carry_out(Rest(TALK))
     top = top_under((*first.things, *second.things))
     camera = chair_camera(LaidTable(top, (*first.things, *second.things)))
+    left = tuple(thing for k, thing in enumerate(second.things) if k != forgotten)
+    truth = StoryTruth(truth_scene(LaidTable(top, left)), camera, second.things[forgotten].name)
     films = [stage.film(top, camera) for stage in (before, after)]
     asked_at = films[0].seconds + BREAK + films[1].seconds
     words.append(Utterance("What is wrong?", asked_at, speaker="teacher"))
@@ -161,7 +309,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
                 yield Frame(frame.cloud, start + frame.at, number)
                 number += 1
 
-    return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons))
+    return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons), truth)
 
 
 def _bears(thing: LaidThing, things: Iterable[LaidThing]) -> bool:

@@ -11,7 +11,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING
 
 from deixis.answers import Answer
@@ -24,7 +24,7 @@ from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.reasoning.errors import SettingError
 
 if TYPE_CHECKING:
-    from deixis.memory.episodes.blackboard import Blackboard
+    from deixis.memory.episodes.search import Episodes
 
 AT, IS_A, SAID, POINTED_AT = "at", "isA", "said", "pointedAt"
 """Predicates of situations: the box of a thing, its category, what a person said, and what a person pointed at."""
@@ -113,7 +113,7 @@ class Recall(Answer):
 
 def recall(
     question: str,
-    board: Blackboard,
+    board: Episodes,
     at: float | None = None,
     ontology: Ontology | None = None,
     speaker: str | None = None,
@@ -125,7 +125,7 @@ def recall(
     question
         The question, in English.
     board
-        The blackboard.
+        The blackboard, or a module's board.
     at
         Time of asking in seconds since the origin of the memory; default: the present.
     ontology
@@ -144,13 +144,13 @@ def recall(
         If the question is not understood; the message has wordings that would be.
     """
     ontology = ontology or default_ontology()
-    asked = board.seconds() if at is None else at
+    asked = (datetime.now(UTC) - board.origin).total_seconds() if at is None else at
     read = read_question(question, ontology)
     return _Remembering(board, asked, ontology, speaker).answer(read)
 
 
 def arrivals(
-    board: Blackboard, start: float | None = None, end: float | None = None
+    board: Episodes, start: float | None = None, end: float | None = None
 ) -> tuple[tuple[EpisodicFluent, str], ...]:
     """Return the fluents with which things came, each with the category of its thing.
 
@@ -205,7 +205,7 @@ class _NotKnownError(Exception):
 class _Remembering:
     """The blackboard at the time of a question: the names of its things, and the searches of questions."""
 
-    def __init__(self, board: Blackboard, asked: float, ontology: Ontology, speaker: str | None) -> None:
+    def __init__(self, board: Episodes, asked: float, ontology: Ontology, speaker: str | None) -> None:
         self.board, self.asked, self.ontology, self.speaker = board, asked, ontology, speaker
         self.names: dict[str, list[tuple[float, str]]] = defaultdict(list)
         self.things: set[str] = set()
@@ -303,9 +303,8 @@ class _Remembering:
             return then, then
         if moment.kind in EVENTS:
             return self._span_of_event(moment)
-        present = self.board.moment(self.asked).astimezone()
-        first, last = _local_span(moment, present)
-        return self.board.seconds(first), self.board.seconds(last)
+        first, last = _local_span(moment, self._present())
+        return (first - self.board.origin).total_seconds(), (last - self.board.origin).total_seconds()
 
     def _span_of_event(self, moment: Moment) -> tuple[float, float]:
         search = self.event_search(EVENTS[moment.kind], self.resolve(moment.value), -math.inf, self.asked, Pick.LAST)
@@ -465,7 +464,7 @@ class _Remembering:
             gone = self.event_search(Event.GOES, self.resolve(asked.thing or ""), -math.inf, self.asked, Pick.LAST)
             found = gone.run(self.board)
             if found:
-                clock = _clock(self.board.moment(found[-1].finish.upper).astimezone(), self._present())
+                clock = _clock(self._moment(found[-1].finish.upper), self._present())
                 return f"the {asked.thing} is gone since {clock}"
             return f"no place of the {asked.thing} is recorded"
         if asked.kind == "where" and asked.when.kind == "before":
@@ -474,7 +473,10 @@ class _Remembering:
         return what if asked.when.kind in ("unstated", "now") else f"{what} for that time"
 
     def _present(self) -> datetime:
-        return self.board.moment(self.asked).astimezone()
+        return self._moment(self.asked)
+
+    def _moment(self, seconds: float) -> datetime:
+        return (self.board.origin + timedelta(seconds=seconds)).astimezone()
 
 
 _DID = {"gone": "went", "come": "came", "moved": "moved"}

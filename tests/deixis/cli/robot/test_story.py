@@ -49,7 +49,7 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], mon
         "I learned how 'tea' is laid",
     ):
         assert said in told
-    for name in ("script1.png", "second_table.png", "table.png", "another.png"):
+    for name in ("script1.png", "second_table.png", "table.png", "another.png", "live/story.png"):
         picture = tmp_path / "out" / name
         assert f"Picture: out/{name}" in told
         assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
@@ -59,7 +59,7 @@ def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], mon
     assert "All of this on one page: out/index.html" in told
     assert [unescape(title) for title in re.findall("<h2>(.*)</h2>", page)] == CHAPTERS
     linked = re.findall('(?:src|href)="([^"]*)"', page)
-    assert len(linked) == 4 and all((tmp_path / "out" / name).is_file() for name in linked)
+    assert len(linked) == 5 and all((tmp_path / "out" / name).is_file() for name in linked)
     for shown in re.findall(
         r"^(?:<pre class=\"command\">)?(deixis (?:parse|ground|infer) .*?)(?:</pre>)?$", page, re.M
     ):

@@ -1,67 +1,148 @@
-"""Test the robot that runs, on a simulated story of two things."""
+"""Test the robot that runs, on a simulated story of two things: its modules as threads, and as processes."""
 
 from __future__ import annotations
 
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
-from timing import BUSY_SECONDS
 
 from deixis.grammar.parser import parse_script
 from deixis.grammar.utterances import Utterance
+from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.tracking.frame import Frame
-from deixis.robot.live.run import LiveSettings, live_robot
-from deixis.robot.live.story import recorded_story, simulated_story
+from deixis.plots.live_story import write_story
+from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.live.moments import key_moments
+from deixis.robot.live.run import SeenThing, live_robot
+from deixis.robot.live.senses import AT
+from deixis.robot.live.story import AtOwnSpeed, StorySettings, simulated_story
 from deixis.session import Session
 
 PAIR = "layout pair\nfork left of plate\n"
 
+SAID_BEFORE = '{"text": "The fork is behind the plate.", "at": 0.5, "confidence": 0.2}\n'
 
-@pytest.fixture(scope="module")
-def heard(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str], str | None, list[str | None]]:
+
+@dataclass(frozen=True)
+class Ran:
+    """Results of a run."""
+
+    memory: Path
+    pictures: Path
+    lines: list[str]
+    things: tuple[SeenThing, ...]
+    moments: int
+
+
+@pytest.fixture(
+    scope="module", params=[False, pytest.param(True, marks=pytest.mark.kills)], ids=["threads", "processes"]
+)
+def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Ran:
     folder = tmp_path_factory.mktemp("live")
     (folder / "pair.layout").write_text(PAIR, encoding="utf-8")
+    (folder / "before.said.jsonl").write_text(SAID_BEFORE, encoding="utf-8")
     lines: list[str] = []
-    settings = LiveSettings("simulator", str(folder / "pair.layout"), seed=2, rate=2.0)
-    with live_robot(folder / "memory", settings, lines.append) as robot:
-        assert robot.wait(10 * BUSY_SECONDS)
-        return folder / "memory", lines, robot.layout(), [thing.name for thing in robot.things()]
+    words = str(folder / "before.said.jsonl")
+    story = StorySettings("simulator", str(folder / "pair.layout"), seed=2, rate=0.5, words=words)
+    with live_robot(folder / "memory", story, lines.append, processes=request.param) as robot:
+        assert robot.wait(120.0)
+        robot.says("what did the teacher say?")
+        robot.says("t3 is a bowl.")
+        robot.says("t99 is a bowl.")
+        assert robot.answered(60.0)
+        write_story(robot, folder / "pictures")
+        moments = len(key_moments(robot.board, robot.began))
+        return Ran(folder / "memory", folder / "pictures", lines, robot.things(), moments)
 
 
-def test_robot_learns_what_it_is_told(heard: tuple[Path, list[str], str | None, list[str | None]]) -> None:
-    memory, lines, _, _ = heard
-    assert any("I learned how 'pair' is laid" in line for line in lines)
-    with Session(memory) as session:
+def heard(ran: Ran, *words: str) -> bool:
+    """Return whether a line of the conversation has all these words."""
+    return any(all(word in line for word in words) for line in ran.lines)
+
+
+def test_robot_learns_what_it_is_told(ran: Ran) -> None:
+    assert heard(ran, "I learned how 'pair' is laid")
+    with Session(ran.memory) as session:
         assert [layout.name for layout in session.layouts()] == ["pair"]
-        assert set(session.categories()) == {"fork", "plate"}
-
-
-def test_robot_answers_what_is_wrong(heard: tuple[Path, list[str], str | None, list[str | None]]) -> None:
-    _, lines, _, _ = heard
-    asked = next(k for k, line in enumerate(lines) if "What is wrong?" in line)
-    assert any("robot:" in line for line in lines[asked:])
-
-
-def test_what_happened_can_be_recalled(heard: tuple[Path, list[str], str | None, list[str | None]]) -> None:
-    memory, _, _, _ = heard
-    with Session(memory) as session:
+        assert {"fork", "plate"} <= set(session.categories())
         assert session.recall("what did the teacher say?").known
+
+
+def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
+    assert heard(ran, "teacher: What is wrong?")
+    assert heard(ran, "robot: This is 'pair'", "the plate is missing")
+    assert [(thing.id, thing.name) for thing in ran.things] == [("t3", "fork")]
+
+
+def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
+    assert heard(ran, "user: what did the teacher say?")
+    assert heard(ran, "robot: Teacher said", "This is a fork.")
+    assert heard(ran, "robot: I see: t3 is a bowl.")
+    assert heard(ran, "there is no t99 on the table")
+
+
+def test_words_that_were_hardly_recognised_are_asked_for_again(ran: Ran) -> None:
+    assert heard(ran, "The fork is behind the plate.", "say it again")
+
+
+def test_story_has_a_picture_of_each_moment(ran: Ran) -> None:
+    page = (ran.pictures / "index.html").read_text(encoding="utf-8")
+    pictures = sorted(file.name for file in ran.pictures.glob("moment*.png"))
+    assert ran.moments == len(pictures) == page.count("<section>") >= 6
+    assert "I learned how &#x27;pair&#x27; is laid" in page
+    assert 5_000 < (ran.pictures / "story.png").stat().st_size < 200_000
+
+
+def test_next_run_begins_with_an_empty_table(ran: Ran, tmp_path: Path) -> None:
+    with live_robot(ran.memory, StorySettings(str(tmp_path / "nothing")), lambda line: None) as robot:
+        assert robot.wait(30.0)
+        assert robot.board.now(Pattern(predicate=AT)) == ()
+        assert "no such folder" in (robot.problem or "")
 
 
 def test_story_has_its_events_in_order() -> None:
     story = simulated_story(parse_script(PAIR), seed=2, rate=0.5)
+    assert story.truth is not None and story.truth.forgotten in {"fork", "plate"}
+    story = type(story)((Frame(PointCloud(np.zeros((1, 3), np.float32)), 0.0, 0),), story.words, story.skeletons)
     events = list(story.events())
     assert [event.at for event in events] == sorted(event.at for event in events)
     assert {Skeleton, Utterance} < {type(event) for event in events}
     assert isinstance(events[0], Frame)
 
 
+class Camera:
+    """Camera driver with twenty frames at once."""
+
+    def frames(self) -> Iterator[Frame]:
+        """Yield the frames."""
+        for number in range(20):
+            yield Frame(PointCloud(np.zeros((1, 3), np.float32)), number / 1000, number)
+
+
+def test_late_frames_of_a_driver_are_dropped_and_counted() -> None:
+    story = StorySettings(f"{__name__}:Camera").story()
+    seen = []
+    for frame in story.frames:
+        time.sleep(0.05)
+        seen.append(frame.number)
+    assert story.dropped > 0 and len(seen) + story.dropped == 20
+    assert seen == sorted(seen)
+
+
+def test_live_story_keeps_its_own_speed() -> None:
+    empty = PointCloud(np.zeros((1, 3), np.float32))
+    began = time.monotonic()
+    assert len(list(AtOwnSpeed([Frame(empty, 3.0, 0), Frame(empty, 3.2, 1)]).frames())) == 2
+    assert time.monotonic() - began >= 0.19
+
+
 def test_folder_without_clouds_ends_the_story(tmp_path: Path) -> None:
     (tmp_path / "clouds").mkdir()
-    lines: list[str] = []
-    with live_robot(tmp_path / "memory", LiveSettings(str(tmp_path / "clouds")), lines.append) as robot:
-        assert robot.wait(BUSY_SECONDS)
-    assert any("no clouds in this folder" in line for line in lines)
-    with pytest.raises(Exception, match="no such folder"):
-        recorded_story(tmp_path / "nothing")
+    with live_robot(tmp_path / "memory", StorySettings(str(tmp_path / "clouds")), lambda line: None) as robot:
+        assert robot.wait(30.0)
+        assert "no clouds in this folder" in (robot.problem or "")

@@ -1,0 +1,187 @@
+"""Draw the story of a live run: a picture of each key moment, a picture of the most telling ones, and a page."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from deixis.errors import DeixisError
+from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, Names, new_figure, require_picture
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from deixis.robot.live.moments import Moment
+    from deixis.robot.live.run import LiveRobot
+
+OVERVIEW, PAGE = "story.png", "index.html"
+"""Names of the picture of the most telling moments, and of the page."""
+
+SHADES = 96
+"""Number of colours of a picture, which keeps its file small."""
+
+LINE = 62
+"""Number of characters of a line below a picture."""
+
+LETTER = (9.0, 20.0)
+"""Width and height of a letter, in pixels of the camera's image."""
+
+MAX_LINES, MAX_SAID = 7, 3
+"""Number of lines below a picture, and of each that speaks; the page has all words."""
+
+
+def write_story(robot: LiveRobot, folder: str | Path) -> Path:
+    """Write the story of a run: pictures of its key moments, one of the most telling of them, and a page.
+
+    Parameters
+    ----------
+    robot
+        The robot at the end of its story.
+    folder
+        The folder, which is made if need be.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    DeixisError
+        If the folder cannot be written.
+    """
+    from deixis.robot.live.moments import key_moments
+
+    place = Path(folder)
+    require_picture(place / OVERVIEW)
+    moments = key_moments(robot.board, robot.began)
+    for number, moment in enumerate(moments, 1):
+        _write([moment], place / _file(number))
+    if moments:
+        _write(telling(moments), place / OVERVIEW)
+    page = place / PAGE
+    try:
+        page.write_text(_page(moments), encoding="utf-8")
+    except OSError as error:
+        raise DeixisError(f"{page}: cannot write the page: {error.strerror}") from error
+    return page
+
+
+def telling(moments: Sequence[Moment]) -> tuple[Moment, ...]:
+    """Choose three moments that tell a story: a person points at a thing, names become known, and the end.
+
+    Parameters
+    ----------
+    moments
+        All moments in order.
+
+    Returns
+    -------
+    tuple of Moment
+        At most three, in order: the first at which a thing is pointed at, the one after which most things have names
+        that had none, and the last one.
+    """
+    known = [sum(name is not None for name in moment.things.values()) for moment in moments]
+    more = [now - before for before, now in zip([0, *known], known, strict=False)]
+    pointed = next((place for place, moment in enumerate(moments) if moment.pointed), 0)
+    chosen = {pointed, int(np.argmax(more)), len(moments) - 1}
+    return tuple(moments[place] for place in sorted(chosen))
+
+
+def _file(number: int) -> str:
+    return f"moment{number:02}.png"
+
+
+def _write(moments: Sequence[Moment], path: Path) -> None:
+    """Draw moments side by side."""
+    figure, panels = new_figure(4.6 * len(moments), 4.8, ncols=len(moments), squeeze=False)
+    for axes, moment in zip(panels[0], moments, strict=True):
+        _draw(axes, moment)
+    _save(figure, path)
+
+
+def _draw(axes: Axes, moment: Moment) -> None:
+    """Draw the camera's image with outlines and names of the things, and what is said below it."""
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.set_facecolor(PAPER)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+    layout = f", laid as '{moment.layout.replace('_', ' ')}'" if moment.layout else ""
+    axes.set_title(f"{moment.at:.1f} s: {len(moment.things)} things{layout}", fontsize=9, loc="left", color=INK)
+    if moment.view is not None and moment.view.exists():
+        with np.load(moment.view) as view:
+            _draw_view(axes, moment, view["image"], view["owner"], view["ids"].tolist())
+    said = [*moment.said, *(("wrong", fault) for fault in moment.faults if not moment.said)]
+    lines: list[str] = []
+    for who, words in said:
+        whole = textwrap.wrap(f"{who}: {words}", LINE, subsequent_indent="   ")
+        lines += whole if len(whole) <= MAX_SAID else [*whole[: MAX_SAID - 1], f"{whole[MAX_SAID - 1]} …"]
+    lines = [*lines[:MAX_LINES], *[""] * (MAX_LINES - len(lines))]
+    axes.set_xlabel("\n".join(lines), fontsize=8, loc="left", color=INK, family="DejaVu Sans")
+
+
+def _draw_view(axes: Axes, moment: Moment, image: Any, owner: Any, ids: Sequence[str]) -> None:
+    rows, columns = image.shape[:2]
+    axes.imshow(_smooth(image), extent=(0, columns, rows, 0))
+    stride = max(1, round(rows / max(len(owner), 1)))
+    names = Names(axes, LETTER, 8)
+    for number, id in enumerate(ids):
+        own = np.pad(owner == number, 1)
+        if id not in moment.things or not own.any():
+            continue
+        name = moment.things[id]
+        colour = WRONG if id in moment.pointed else BELONGS if name else "#ffffff"
+        ys, xs = ((np.arange(length) - 0.5) * stride for length in own.shape)
+        axes.contour(xs, ys, own, [0.5], colors=colour, linewidths=2.2 if id in moment.pointed else 1.1)
+        y, x = (stride * np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        shown = name.replace("_", " ") if name else f"{id}?"
+        names.write(shown, (x[0] + x[-1]) / 2, (y[0] - 12, y[-1] + 12, (y[0] + y[-1]) / 2))
+    axes.set_xlim(0, columns)
+    axes.set_ylim(rows, 0)
+
+
+def _smooth(image: Any) -> Any:
+    """Return an image of half the size without its noise, with values from 0 to 1."""
+    rows, columns = (length // 2 * 2 for length in image.shape[:2])
+    blocks = image[:rows, :columns].astype(float).reshape(rows // 2, 2, columns // 2, 2, 3)
+    return blocks.mean(axis=(1, 3)) / 255
+
+
+def _save(figure: Figure, path: Path) -> None:
+    """Write a picture with few colours."""
+    from PIL import Image
+
+    canvas: Any = figure.canvas
+    figure.set_dpi(110)
+    canvas.draw()
+    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
+    try:
+        picture.quantize(SHADES, dither=Image.Dither.NONE).save(path, optimize=True)
+    except OSError as error:
+        raise DeixisError(f"{path}: cannot write the picture: {error.strerror}") from error
+
+
+def _page(moments: Sequence[Moment]) -> str:
+    shown = []
+    for number, moment in enumerate(moments, 1):
+        said = "".join(f"<li><b>{escape(who)}</b>: {escape(words)}</li>" for who, words in moment.said)
+        wrong = "".join(f'<li class="wrong">{escape(fault)}</li>' for fault in moment.faults)
+        known = ", ".join(f"{id} ({(name or 'unknown').replace('_', ' ')})" for id, name in moment.things.items())
+        new = f" New: {escape(', '.join(sorted(moment.new)))}." if moment.new else ""
+        shown.append(
+            f'<section><h2>{number}. {moment.at:.1f} s</h2><img src="{_file(number)}" alt="The table after '
+            f'{moment.at:.1f} s"><p>Tracked: {escape(known) or "nothing"}.{new}</p><ul>{said}{wrong}</ul></section>'
+        )
+    style = "body{font:16px sans-serif;max-width:60em;margin:2em auto;padding:0 1em}img{max-width:100%}"
+    return (
+        '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>The robot runs</title>'
+        f"<style>{style}.wrong{{color:{WRONG}}}</style></head>\n"
+        f"<body><h1>The robot runs</h1>\n{chr(10).join(shown)}\n</body></html>\n"
+    )
