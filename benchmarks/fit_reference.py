@@ -1,7 +1,8 @@
 """Fit the weights of ``deixis refer`` to Nr3D, ScanRefer and Sr3D in ``$DEIXIS_DATA/refer3d``, and write them as JSON.
 
 ``python benchmarks/fit_reference.py FILE`` writes the weights; without FILE it only prints figures for held-out rooms.
-The power of the probabilities (``calibration``) is fitted to the answers for held-out rooms.
+The calibration of the probabilities is fitted to the answers for held-out rooms; for the figures of some rooms, to
+those for the others.
 """
 
 from __future__ import annotations
@@ -46,21 +47,23 @@ def main() -> None:
     rooms = sorted({one.room for one in chosen})
     random.Random(1).shuffle(rooms)
     start = model_with(initial_weights(default_ontology().colours))
-    calibrated: list[tuple[Model, Example]] = []
-    told: list[tuple[Described, Model]] = []
+    models: dict[str, Model] = {}
     for fold in range(FOLDS):
         held = set(rooms[fold::FOLDS])
         train = [example for one, example in examples if one.room not in held]
         model = replace(start, weights=fit(start, train, PENALTY, ITERATIONS))
-        calibrated += [(model, example) for one, example in examples if one.room in held and one in people]
-        told += [(one, model) for one in (*people, *generated[::5]) if one.room in held]
-    power = fit_calibration(calibrated)
-    for name, those in (("Nr3D", people), ("Sr3D", generated)):
-        kept = {id(one) for one in those}
-        held_out = [(one, with_calibration(model, power)) for one, model in told if id(one) in kept]
-        print(f"{name}, held-out rooms: {figures(name, held_out)}")
+        models |= dict.fromkeys(held, model)
+    told_by_people = {id(one) for one in people}
+    answered = [(one, models[one.room], example) for one, example in examples if id(one) in told_by_people]
+    for fold in range(FOLDS):
+        held = set(rooms[fold::FOLDS])
+        power = fit_calibration([(model, example) for one, model, example in answered if one.room not in held])
+        models |= {room: with_calibration(models[room], power) for room in held}
+    for name, those in (("Nr3D", people), ("Sr3D", generated[::5])):
+        print(f"{name}, held-out rooms: {figures(name, [(one, models[one.room]) for one in those])}", flush=True)
     if len(sys.argv) > 1:
         weights = fit(start, [example for _, example in examples], PENALTY, ITERATIONS)
+        power = fit_calibration([(model, example) for _, model, example in answered])
         counts = (len(people), len(longer), min(GENERATED, len(generated)))
         write_reference(model_with({**weights, "calibration": power}), Path(sys.argv[1]), source(*counts))
 

@@ -134,6 +134,7 @@ RUNS = (
     Run("laying-told", "Learning", "what is laid next, also from what was said", "laying", "--told"),
     Run("activities", "Learning", "ways of laying a table that are recognised, and steps in the wrong order"),
     Run("attributes", "Learning", "adjectives with hidden meanings, learned from sentences"),
+    Run("orientation", "Perception", "heads and handles found in simulated clouds"),
     Run("pointing", "Perception", "things that simulated teachers point at"),
     Run("startup", "Command line", "processor time of commands on small jobs"),
 )

@@ -24,6 +24,8 @@ class StatedFact:
     members of two groups. ``need_not_hold`` is True for an alternative of a choice of which none need hold.
     ``confidence`` is the probability that the text states the fact, in [0, 1]; ``guesses`` names the steps that
     make it doubtful (``deixis.grammar.english.confidence``).
+    ``by_handle`` is True for a direction of the handle of a tool (*the handle of the spoon points to the right*): the
+    statement of the script is about its head, which points the other way.
     """
 
     content: Fact | Claim
@@ -37,6 +39,7 @@ class StatedFact:
     need_not_hold: bool = False
     confidence: float = 1.0
     guesses: tuple[str, ...] = ()
+    by_handle: bool = False
 
     @property
     def asserted(self) -> bool:
@@ -78,7 +81,7 @@ class Reading:
 
     ``mentions`` holds the phrases used for each object. ``absent`` are the things that the text says are not there.
     ``surface`` is the name of what everything stands on (``desk``), or None where the text does not name it.
-    ``uncounted`` are groups of unknown size (*the cups*), which are one object each.
+    ``uncounted`` are groups of unknown number (*the cups*): one object each, which stands for all things that fit it.
     """
 
     text: str

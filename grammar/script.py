@@ -199,6 +199,11 @@ class Script(Answer):
                 found.update(dict.fromkeys(mention.names))
         return tuple(found)
 
+    @property
+    def uncounted(self) -> tuple[str, ...]:
+        """Objects that are groups of unknown number (*the chairs*), as English texts may state them."""
+        return () if self.reading is None else self.reading.uncounted
+
     @cached_property
     def facts(self) -> tuple[Fact, ...]:
         """Stated facts in order, each with its source."""

@@ -121,6 +121,33 @@ PLACED_VIEWER = "viewer"
 
 
 @dataclass(frozen=True, slots=True)
+class Heading:
+    """Direction in which a part of a thing points, as measured in its cloud.
+
+    Parameters
+    ----------
+    part
+        ``head`` for the end of a long thing away from its handle (tines, bowl, blade), or ``handle`` for the handle of
+        a round thing.
+    direction
+        Horizontal direction (x, y), of any length except 0.
+    probability
+        Probability that the direction is right, rather than the opposite one or none.
+    """
+
+    part: str
+    direction: tuple[float, float]
+    probability: float = 1.0
+
+
+HEADING_PARTS = ("head", "handle")
+"""Parts that a heading may be measured by."""
+
+MIN_FRONT_PROBABILITY = 0.95
+"""Probability from which a measured heading counts: a handle as the front of its thing, a head as what points."""
+
+
+@dataclass(frozen=True, slots=True)
 class PerceivedObject:
     """Object of a scene: an axis-aligned box with an optional label, colour and point cloud.
 
@@ -147,6 +174,9 @@ class PerceivedObject:
     front
         Horizontal direction (x, y) in which the front of the object points, such as from the back of a chair over its
         seat, of any length except 0; None if the object has no front or it is unknown.
+    heading
+        Direction of its head or handle, as measured in its cloud; None if it has neither or it is unknown. A handle is
+        the front of a thing without another one.
     """
 
     id: str
@@ -159,6 +189,7 @@ class PerceivedObject:
     oriented: OrientedBox | None = None
     candidates: tuple[tuple[str, float], ...] = ()
     front: tuple[float, float] | None = None
+    heading: Heading | None = None
 
     def to_open3d(self) -> Any:
         """Return the axis-aligned box for Open3D.
@@ -486,10 +517,16 @@ class Scene(Answer):
 
     @cached_property
     def fronts(self) -> NDArray[np.float64]:
-        """Unit vectors in the plane in which the fronts of the objects point, shape (n, 2); NaN where unknown."""
-        given = [(np.nan, np.nan) if thing.front is None else thing.front for thing in self.objects]
-        directions = np.array(given, dtype=np.float64).reshape(-1, 2)
-        return directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
+        """Unit vectors in the plane in which the fronts of the objects point, shape (n, 2); NaN where unknown.
+
+        A handle that was measured is the front of a thing without another one.
+        """
+        return _unit_vectors([thing.front or _measured(thing, "handle") for thing in self.objects])
+
+    @cached_property
+    def heads(self) -> NDArray[np.float64]:
+        """Unit vectors in the plane from the handles of long things to their heads, shape (n, 2); NaN where unknown."""
+        return _unit_vectors([_measured(thing, "head") for thing in self.objects])
 
     @cached_property
     def poses(self) -> Poses | None:
@@ -497,10 +534,10 @@ class Scene(Answer):
         from deixis.reasoning.geometry.poses import Poses
 
         turned = [(i, thing.oriented) for i, thing in enumerate(self.objects) if thing.oriented is not None]
-        if not turned and all(thing.front is None for thing in self.objects):
+        if not turned and all(thing.front is None and thing.heading is None for thing in self.objects):
             return None
         places, boxes = [i for i, _ in turned], [box for _, box in turned]
-        known = Poses.of_boxes(self.boxes, self.fronts)
+        known = replace(Poses.of_boxes(self.boxes, self.fronts), heads=self.heads)
         return known.with_oriented(
             places, [box.yaw for box in boxes], [(box.extents[0], box.extents[1]) for box in boxes]
         )
@@ -574,13 +611,20 @@ class Scene(Answer):
 
         boxes = turned(self.boxes, angle, mirrored)
         cosine, sine = math.cos(angle), math.sin(angle)
-        fronts = self.fronts * (-1.0 if mirrored else 1.0, 1.0) @ np.array([[cosine, sine], [-sine, cosine]])
+
+        def along(way: tuple[float, float]) -> tuple[float, float]:
+            x, y = -way[0] if mirrored else way[0], way[1]
+            return cosine * x - sine * y, sine * x + cosine * y
+
         things = [
             replace(
                 thing, minimum=tuple(box[0].tolist()), maximum=tuple(box[1].tolist()), oriented=None,
-                front=None if thing.front is None else (float(front[0]), float(front[1])),
+                front=None if thing.front is None else along(thing.front),
+                heading=None if thing.heading is None else replace(
+                    thing.heading, direction=along(thing.heading.direction)
+                ),
             )
-            for thing, box, front in zip(self.objects, boxes, fronts, strict=True)
+            for thing, box in zip(self.objects, boxes, strict=True)
         ]  # fmt: skip
         return replace(self, objects=tuple(things))
 
@@ -778,6 +822,19 @@ def _rows(values: ArrayLike, what: str) -> NDArray[np.float64]:
     return rows
 
 
+def _measured(thing: PerceivedObject, part: str) -> tuple[float, float] | None:
+    """Return the direction of a part of a thing, None unless it was measured and is probably right."""
+    found = thing.heading
+    known = found is not None and found.part == part and found.probability >= MIN_FRONT_PROBABILITY
+    return found.direction if found is not None and known else None
+
+
+def _unit_vectors(given: Sequence[tuple[float, float] | None]) -> NDArray[np.float64]:
+    """Return directions as unit vectors, shape (n, 2); NaN for None."""
+    directions = np.array([(np.nan, np.nan) if way is None else way for way in given], dtype=np.float64).reshape(-1, 2)
+    return directions / np.hypot(directions[:, 0], directions[:, 1])[:, None]
+
+
 def _require_box(thing: PerceivedObject, file: str) -> None:
     if any(unicodedata.category(character) == "Cc" for character in thing.id + (thing.label or "")):
         raise SceneError(f"{file}: object {thing.id!a}: the id or the label contains a control character; remove it")
@@ -812,9 +869,17 @@ def _require_box(thing: PerceivedObject, file: str) -> None:
         raise SceneError(f"{where}: 'candidates' must name each category once")
     if thing.colour is not None and (len(thing.colour) != 3 or not all(0 <= part <= 255 for part in thing.colour)):
         raise SceneError(f"{where}: a colour must be red, green and blue, each from 0 to 255, got {thing.colour}")
-    if thing.front is not None:
-        known = len(thing.front) == 2 and bool(np.isfinite(thing.front).all())
-        if not known or not 0 < max(map(abs, thing.front)) <= MAX_COORDINATE:
+    measured = None if thing.heading is None else thing.heading.direction
+    for name, way in (("front", thing.front), ("heading", measured)):
+        known = way is None or (len(way) == 2 and bool(np.isfinite(way).all()))
+        if not known or (way is not None and not 0 < max(map(abs, way)) <= MAX_COORDINATE):
             raise SceneError(
-                f"{where}: 'front' must be a direction of 2 finite numbers that are not both 0, got {thing.front}"
+                f"{where}: '{name}' must be a direction of 2 finite numbers that are not both 0, got {way}"
             )
+    if thing.heading is not None and thing.heading.part not in HEADING_PARTS:
+        parts = " or ".join(HEADING_PARTS)
+        raise SceneError(f"{where}: the part of a heading must be {parts}, got {thing.heading.part!r}")
+    if thing.heading is not None and not 0 <= thing.heading.probability <= 1:
+        raise SceneError(
+            f"{where}: the probability of a heading must be from 0 to 1, got {thing.heading.probability:g}"
+        )

@@ -262,6 +262,9 @@ class Chunker:
         told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
         if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
             return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
+        goal = self._goal(at)
+        if goal is not None:
+            return Chunk("FIND", at, goal, VerbGroup(norm, "other", "base"))
         if norm == "welcome" and at == 0 and self.norms[1] in ("in", "to", "at"):
             end = next(i for i in range(1, len(self.norms)) if self.norms[i] in ("", ",", "!", ".", ":", ";"))
             return Chunk("ADVERB", at, end, norm)
@@ -357,6 +360,8 @@ class Chunker:
             return Chunk("ADVERB", at, at + 2 + (self.norms[at + 2] in ("up", "out")), "to pick")
         if norm in ("you", "we", "i", "that"):
             wished = self._wish(at)
+            if wished is not None and self._previous() in ("COMMA", "AND", "BUT") and self._chooses(wished):
+                return Chunk("FIND", at, wished, VerbGroup("choose", "other", "base"))
             if wished is not None:
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
@@ -375,6 +380,26 @@ class Chunker:
                 end += 1
             return Chunk("ADVERB", at, end, norm)
         return None
+
+    def _goal(self, at: int) -> int | None:
+        """Return where the goal of a command begins: *go over to the chair by the window*; None for another command.
+
+        The goal of *go to the table and take the cup* is the cup.
+        """
+        end = at + 1 + (self.norms[at + 1] in ("over", "up", "straight", "back"))
+        if not (
+            self.norms[at] in _APPROACHING
+            and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT")
+            and (self.norms[end] in ("to", "toward", "towards") or (self.norms[at], self.norms[end]) == ("head", "for"))
+            and self.nouns.is_determiner(end + 1)
+            and self.norms[end + 2] not in ("left", "right")
+            and "you" not in self.norms[:at]
+        ):
+            return None
+        later = zip(self.norms[end + 1 :], self.norms[end + 2 :], strict=False)
+        if any(joint in ("and", ",", "then") and norm in FIND_VERBS | PUT_VERBS | _LOOKING for joint, norm in later):
+            return None
+        return end + 1
 
     def _is_told_to(self, at: int) -> bool:
         """Return True if the words before an infinitive make it a command: *remember to put*, not *afraid to put*."""
@@ -469,6 +494,10 @@ class Chunker:
             i += 1
             return i + (self.norms[i] in ("for", "on", "out", "up"))
         return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
+
+    def _chooses(self, at: int) -> bool:
+        """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
+        return self.norms[at] == "the" and any(chunk.type == "THERE" for chunk in self.chunks)
 
     def _order(self, at: int) -> Chunk | None:
         """Return the order *from left to right*, *from the front to the back*."""
@@ -1459,6 +1488,8 @@ _CAUSATIVES = {"let": False, "have": False, "make": False, "ask": True, "allow":
 _CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", ")", ""})
 _BEFORE_NOUNS = {("in", "two"), ("in", "half"), ("in", "first"), ("in", "last")}
 """Idioms, except before a noun: *in two bowls*."""
+_APPROACHING = word_set("go walk turn head move drive navigate proceed run come roll fly step")
+_LOOKING = word_set("look search check see watch")
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
 _TURNING = word_set("turn flip roll tip fold hand bend knock")

@@ -31,6 +31,7 @@ from deixis.grammar.english.confidence import Guess, is_doubtful
 from deixis.grammar.english.entities import Entity, Role, plain_noun
 from deixis.grammar.english.nouns import (
     GENERAL,
+    HEADED,
     HOLDERS,
     PARTS,
     REMOVABLE,
@@ -140,6 +141,7 @@ class Qualification:
     quantifier: str | None = None
     need_not_hold: bool = False  # of a choice: none of its alternatives need hold
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fact was read (confidence.py)
+    by_handle: bool = False  # a direction of the handle of a tool
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,6 +176,7 @@ class Discourse:
         self.references = References(surface, self._compare, text=text)
         self.order: str | None = None
         self.alternatives = 0
+        self.part = ""  # noun of the part that the present predicate is about: 'handle'
         self.shared: tuple[str, list[Entity]] | None = None  # relation and things of 'share'
         self.how = Qualification((0, 0), 0)
         self.asked: tuple[int, Entity] | None = None  # sentence and thing of the last question
@@ -732,6 +735,8 @@ class Discourse:
 
     def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
         relation = predicate.relation
+        part_said = predicate.subject_part.head if predicate.subject_part is not None else ""
+        self.part = last_word(subject.noun if subject.role is Role.PART else part_said)
         handler = getattr(self, f"_say_{relation}", None)
         if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
             self._found_elsewhere(subject.itself)
@@ -1327,9 +1332,15 @@ class Discourse:
             return
         if relation == "at":
             relation = "near"
-        if relation == "row" and value is None:
-            value = None
         how = how or self.how
+        if relation in ("pointing", "facing"):
+            turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None
+            if turned and value == "viewer":
+                value = "away"
+            elif turned and arguments:
+                how = replace(how, positive=not how.positive)
+            if value is not None and self.part == "handle" and all(last_word(s.noun) in HEADED for s in subjects):
+                how = replace(how, by_handle=True)
         start, end = self.how.span
         if any(start <= use.span[0] and use.span[1] <= end for use in self.references.doubtful[-3:]):
             how = replace(how, guesses=how.guesses | {Guess.PRONOUN})
@@ -1339,6 +1350,10 @@ class Discourse:
         if draft not in self.drafted:
             self.drafted.add(draft)
             self.drafts.append(draft)
+
+
+TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct)\w*\s+(?:\w+\s+)?away\s+from\b", re.IGNORECASE)
+"""Directions that are denied: *pointing away from the plate*."""
 
 
 def _is_moved(clause: Clause, subject: NounPhrase) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from deixis.grammar.english.nouns import SINGLE_PLURALS, last_word
+from deixis.grammar.english.nouns import SINGLE_PLURALS, SPECTACLES
 from deixis.grammar.english.tokens import LITERAL
 
 
@@ -26,13 +26,14 @@ class Role(StrEnum):
 class Entity:
     """An object of the discourse, or a group of them.
 
-    ``noun`` is in the singular. ``plural`` with no ``members`` is a group of unknown size, which is one object until a
-    number is known. ``pairs`` relates an entity of a quantified noun phrase to the ones that it goes with.
+    ``noun`` is in the singular. ``plural`` with no ``members`` is a group of unknown number, which is one object until
+    the number is known. ``pairs`` relates an entity of a quantified noun phrase to the ones that it goes with.
     """
 
     noun: str
     role: Role = Role.THING
     plural: bool = False
+    single: bool = False  # one thing in spite of its plural: 'the scissors'
     members: list[Entity] = field(default_factory=list)
     adjectives: set[tuple[str, str]] = field(default_factory=set)  # dimension and word
     mentions: list[str] = field(default_factory=list)
@@ -190,17 +191,28 @@ def plain_noun(noun: str) -> str:
     return noun.strip(LITERAL).replace("_", " ") if noun.startswith(LITERAL) else noun
 
 
-def is_one_thing(noun_as_written: str) -> bool:
-    """Return True for plurals such as *scissors* that name one thing.
+def is_one_thing(phrase: str) -> bool:
+    """Return True for a phrase with a plural such as *scissors* that names one thing.
+
+    *Glasses* are spectacles if they are someone's, a pair, or for reading, and drinking glasses otherwise.
 
     Parameters
     ----------
-    noun_as_written
-        Noun or compound in the plural.
+    phrase
+        Noun phrase as written, in lower case.
 
     Returns
     -------
     bool
-        True if the last word is such a plural.
+        True if a word of the phrase is such a plural.
+
+    Examples
+    --------
+    >>> is_one_thing("the kitchen scissors"), is_one_thing("my glasses"), is_one_thing("the wine glasses")
+    (True, True, False)
     """
-    return last_word(noun_as_written) in SINGLE_PLURALS
+    words = phrase.replace(",", " ").split()
+    return any(
+        word in SINGLE_PLURALS and (word != "glasses" or not SPECTACLES.isdisjoint(words[:place]))
+        for place, word in enumerate(words)
+    )

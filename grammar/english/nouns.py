@@ -280,6 +280,42 @@ SINGLE_PLURALS = frozenset(
     ]
 )
 """Plurals that name one thing, or things that lie together as one."""
+SPECTACLES = frozenset({"pair", "my", "your", "his", "her", "reading", "sun", "safety", "folded", "prescription"})
+"""Words before *glasses* that make them spectacles."""
+
+HEADED = frozenset(
+    [
+        "fork",
+        "knife",
+        "spoon",
+        "teaspoon",
+        "tablespoon",
+        "ladle",
+        "spatula",
+        "whisk",
+        "brush",
+        "toothbrush",
+        "paintbrush",
+        "hairbrush",
+        "hammer",
+        "mallet",
+        "screwdriver",
+        "chisel",
+        "axe",
+        "hatchet",
+        "broom",
+        "mop",
+        "racket",
+        "scoop",
+        "shovel",
+        "trowel",
+        "spreader",
+        "dipper",
+        "scraper",
+        "rake",
+    ]
+)
+"""Long tools with a head and a handle at opposite ends: they point where their head is."""
 
 SUBSTANCES = frozenset(
     [

@@ -203,7 +203,11 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         if built.shape == "said" and (segment.link == "and" or built.verbs):
             guesses.add(Guess.NO_SUBJECT)
         assembly.guesses = frozenset(guesses)
-        assembly.add(built, segment.link if i == 0 else ",", chunks[at].span[0], chunks[end - 1].span[1], hedge)
+        span = chunks[at].span[0], chunks[end - 1].span[1]
+        if span[1] <= span[0]:  # of an inversion, which was undone
+            places = [place for chunk in chunks[at:end] for place in chunk.span]
+            span = min(places), max(places)
+        assembly.add(built, segment.link if i == 0 else ",", *span, hedge)
     for chunk in skipped:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 

@@ -10,7 +10,7 @@ from deixis.deadline import Deadline
 from deixis.grammar.english.confidence import Guess, confidence, is_doubtful
 from deixis.grammar.english.discourse import Discourse
 from deixis.grammar.english.discourse import Draft as FactDraft
-from deixis.grammar.english.entities import Entity, Role, is_one_thing, names_of
+from deixis.grammar.english.entities import Entity, Role, names_of
 from deixis.grammar.english.paraphrase import paraphrase
 from deixis.grammar.english.parse import parse_english
 from deixis.grammar.english.tree import Misunderstood, Mood, Sentence
@@ -82,9 +82,7 @@ def read_english(
         mentions=writer.mentions(),
         absent=tuple(name for entity, name in writer.names.items() if entity.absent),
         surface=discourse.references.surface.noun.replace(" ", "_") if discourse.references.surface else None,
-        uncounted=tuple(
-            name for entity, name in writer.names.items() if entity.plural and not is_one_thing(name.replace("_", " "))
-        ),
+        uncounted=tuple(name for entity, name in writer.names.items() if entity.plural and not entity.single),
         doubtful_pronouns=tuple(writer.doubtful_pronouns()),
     )
     if not stated and not any(s.clauses and s.clauses[0].mood is Mood.QUESTION for s in sentences):
@@ -169,6 +167,7 @@ class _Writer:
                 how.need_not_hold,
                 confidence(how.guesses),
                 tuple(sorted(guess.name for guess in how.guesses)),
+                how.by_handle,
             )
 
     def _binary(self, draft: FactDraft, subject: str, thing: str) -> Fact | Claim:
@@ -226,6 +225,9 @@ class _Writer:
         source = content.source or Source(self.file, 1, 1, 1, 1)
         modifiers = Modifiers(content.positive, content.optional, self._hedge(content.weight), content.weight)
         absent = set(reading.absent)
+        if stated.by_handle and isinstance(content, Claim) and content.value is not None:
+            words = (OPPOSITE_DIRECTIONS.get(word, word) for word in content.value.split())
+            content = replace(content, value=" ".join(words))
         if isinstance(content, Fact):
             if {content.subject, content.object}.isdisjoint(absent):
                 ends = self._mention(content.subject, source), self._mention(content.object, source)
@@ -265,6 +267,10 @@ class _Writer:
             note = f"{content}" + (f"  ({', '.join(marks)})" if marks else "")
             yield Comment(note, Source(source.file, source.line, source.column, source.line, source.column), True)
 
+
+OPPOSITE_DIRECTIONS = {"left": "right", "viewer": "away", "near": "far", "front": "back", "up": "down"}
+OPPOSITE_DIRECTIONS |= {second: first for first, second in OPPOSITE_DIRECTIONS.items()}
+"""Direction in which the head of a tool points, by that of its handle."""
 
 _OVER_ALL = frozenset(
     {"between", "closer", "farther", "nearest", "farthest", "largest", "smallest", "tallest", "shortest"}

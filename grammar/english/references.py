@@ -234,7 +234,7 @@ class References:
         if amount and not phrase.plural:  # 'a drop of water', and later 'the drop'
             entity.aliases.add(amount[0])
             self.renamed.append(entity)
-        lump = next((word for word in words if word in SINGLE_PLURALS), None)
+        lump = next((word for word in words if word in SINGLE_PLURALS and is_one_thing(written)), None)
         if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
             count = 2
         if phrase.of is not None and phrase.of.plural and stem in GROUPS:
@@ -245,7 +245,7 @@ class References:
         if count is not None and 1 < count <= MAX_COUNTED:
             entity.split(count)
         elif phrase.plural:
-            entity.plural = True
+            entity.plural, entity.single = True, lump is not None
             plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
             if plural is not None:
                 entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
@@ -649,7 +649,7 @@ class References:
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue
-                if entity.itself.plural and not is_one_thing(entity.written):
+                if entity.itself.plural and not entity.itself.single:
                     several = several or entity
                     continue
                 return entity

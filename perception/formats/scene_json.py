@@ -21,7 +21,7 @@ from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco
 from deixis.perception.formats.labelme import is_labelme, labelme_scene
-from deixis.perception.scene import PLACED_VIEWER, OrientedBox, PerceivedObject, Scene
+from deixis.perception.scene import PLACED_VIEWER, Heading, OrientedBox, PerceivedObject, Scene
 
 Reader = Callable[[Mapping[str, Any], str, str | int | None], Scene]
 """Function from parsed JSON, the name of the file and the chosen image (or None) to a scene; raises SceneError."""
@@ -57,7 +57,20 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 
 MAX_BYTES = 256 * 2**20
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows", "speaker", "addressee"}
-_OBJECT_KEYS = {"id", "min", "max", "label", "confidence", "cloud", "colour", "oriented", "candidates", "front"}
+_OBJECT_KEYS = {
+    "id",
+    "min",
+    "max",
+    "label",
+    "confidence",
+    "cloud",
+    "colour",
+    "oriented",
+    "candidates",
+    "front",
+    "heading",
+}
+_HEADING_KEYS = {"part", "direction", "probability"}
 _ORIENTED_KEYS = {"centre", "yaw", "extents"}
 
 
@@ -186,6 +199,17 @@ def _object(data: Any, where: str, scale: float) -> PerceivedObject:
         oriented=None if oriented is None else _oriented(oriented, f"{where}: 'oriented'", scale),
         candidates=_candidates(entry.get("candidates"), f"{where}: 'candidates'"),
         front=None if front is None else _direction(front, f"{where}: 'front'"),
+        heading=None if entry.get("heading") is None else _heading(entry["heading"], f"{where}: 'heading'"),
+    )
+
+
+def _heading(data: Any, where: str) -> Heading:
+    entry = _mapping(data, where, _HEADING_KEYS)
+    _require_keys(entry, ("part", "direction"), where)
+    return Heading(
+        text(entry["part"], f"{where}: 'part'"),
+        _direction(entry["direction"], f"{where}: 'direction'"),
+        number(entry.get("probability", 1.0), f"{where}: 'probability'"),
     )
 
 
@@ -298,6 +322,13 @@ def scene_to_dict(scene: Scene) -> dict[str, Any]:
             entry["oriented"] = {"centre": list(box.centre), "yaw": box.yaw, "extents": list(box.extents)}
         if thing.front is not None:
             entry["front"] = list(thing.front)
+        if thing.heading is not None:
+            found = thing.heading
+            entry["heading"] = {
+                "part": found.part,
+                "direction": list(found.direction),
+                "probability": found.probability,
+            }
         objects.append(entry)
     people = {"speaker": scene.speaker, "addressee": scene.addressee}
     placed = {person: list(place) for person, place in people.items() if place is not None}

@@ -205,6 +205,7 @@ def check_table(
         evidence.meaning.models or shipped_models(),
         evidence.metric,
         evidence.surface,
+        evidence.scene.poses,
     )
     others = {thing: label for thing, label in labels.items() if thing != evidence.surface}
     extra = _extra(others, grounding, sure)

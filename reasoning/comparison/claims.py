@@ -2,8 +2,8 @@
 
 The degree of a claim is that of grounding (:mod:`deixis.reasoning.grounding.evidence.claims`): 1 at the prototype, one
 half at the border. A claim holds above one half, so that the second tallest of several is not the tallest, and a denied
-claim holds otherwise. What boxes do not show (contents, materials, directions, what is not among the objects) is
-undecidable.
+claim holds otherwise. What boxes do not show (contents, materials, what is not among the objects) is undecidable.
+Directions are decided for things whose front, head or handle is known, and for long things that lie across them.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relation import Relations
+from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses
 from deixis.reasoning.grounding.evidence.claims import (
     EACH_OTHER,
     MAX_THINGS,
@@ -43,6 +44,13 @@ OFF_LINE = ((0.06, 0.15, 0.5), (0.0, BORDER, EXTREME))
 
 UNEVEN = ((0.15, 0.3, 0.6), (0.0, BORDER, EXTREME))
 """Log degree of a circle by the spread of the distances from its middle, as a share of their mean."""
+
+
+OFF_DIRECTION = ((np.pi / 6, np.pi / 4, np.pi / 2), (0.0, BORDER, EXTREME))
+"""Log degree of pointing in a direction by the angle from it, in radians."""
+
+DIRECTIONS = {**TOWARDS, "away": (1, 1), "viewer": (1, -1), "you": (1, -1), "me": (1, -1)}
+"""Axis and sign of the words for directions in the plane."""
 
 
 class ClaimVerdict(StrEnum):
@@ -82,6 +90,7 @@ def check_claims(
     models: RelationModels,
     metric: bool = True,
     surface: str | None = None,
+    poses: Poses | None = None,
 ) -> tuple[ClaimOutcome, ...]:
     """Return the outcome of each claim.
 
@@ -101,6 +110,8 @@ def check_claims(
         Whether the boxes are in metres.
     surface
         Name of the thing that is the surface of the layout; None if it is not among the things.
+    poses
+        Fronts, heads and long axes of the n things; None where they are unknown.
 
     Returns
     -------
@@ -112,7 +123,7 @@ def check_claims(
         role = {thing: name for name, thing in filled.items()}
         called = [role.get(thing, thing) for thing in things]
         on = None if surface is None else place[surface]
-        measures = _Measures(np.asarray(boxes, dtype=np.float64), called, vocabulary, models, metric, on)
+        measures = _Measures(np.asarray(boxes, dtype=np.float64), called, vocabulary, models, metric, on, poses)
     outcomes = []
     for claim in claims:
         names = (*claim.subjects, *claim.arguments)
@@ -152,8 +163,10 @@ class _Measures:
         models: RelationModels,
         metric: bool,
         surface: int | None,
+        poses: Poses | None,
     ) -> None:
         self.boxes, self.things, self.vocabulary, self.metric = boxes, things, vocabulary, metric
+        self.poses = poses
         self.degrees = ClaimDegrees(boxes, vocabulary, models, metric, surface)
         self.on_surface = [i for i in range(len(boxes)) if i != surface]
 
@@ -207,7 +220,30 @@ class _Measures:
                 return float(degree[subject]), shown.get(term, self._where(subject))
         if term == "empty":
             return self._none("inside", [subject])
+        if term in ("pointing", "facing") and value is not None and not others:
+            return self._aimed(term, value, subject)
         return None, _undecidable(claim)
+
+    def _aimed(self, term: str, value: str, subject: int) -> Measured:
+        """Measure the angle between a thing's direction and a stated one, by its long axis if its end is unknown."""
+        sides = [DIRECTIONS[word] for word in value.replace("_", " ").split() if word in DIRECTIONS]
+        if self.poses is None or not sides or len({axis for axis, _ in sides}) < len(sides):
+            return None, "boxes have no direction"
+        stated = np.zeros(2)
+        for axis, sign in sides:
+            stated[axis] = sign / np.sqrt(len(sides))
+        way = (self.poses.pointing if term == "pointing" else self.poses.fronts)[subject]
+        if np.isnan(way).any():
+            if term == "facing" or self.poses.stretch[subject] < MIN_STRETCH:
+                return None, "its direction is not known"
+            angle = float(np.arccos(min(abs(float(self.poses.axes[subject] @ stated)), 1.0)))
+            if angle < np.pi / 4:
+                return None, "which of its ends points there is not known"
+            return float(np.exp(np.interp(angle, *OFF_DIRECTION))), f"it lies {np.degrees(angle):.0f}° across '{value}'"
+        angle = float(np.arccos(np.clip(way @ stated, -1.0, 1.0)))
+        return float(
+            np.exp(np.interp(angle, *OFF_DIRECTION))
+        ), f"it points {np.degrees(angle):.0f}° away from '{value}'"
 
     def _stands(self, subject: int) -> str:
         low, surface = self.boxes[:, 0, -1], self.degrees.surface

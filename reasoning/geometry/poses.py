@@ -29,12 +29,15 @@ class Poses:
         (a - b) / (a + b) of the long side a and the short side b, shape (n,); 0 for squares and disks, without an axis.
     middle
         Middle of the scene, shape (2,).
+    heads
+        Unit vectors from the handles of long things to their heads, shape (n, 2); NaN where unknown. None for none.
     """
 
     fronts: Array
     axes: Array
     stretch: Array
     middle: Array
+    heads: Array | None = None
 
     @classmethod
     def of_boxes(cls, boxes: Array, fronts: Array | None = None) -> Poses:
@@ -91,7 +94,8 @@ class Poses:
 
     def __getitem__(self, some: Any) -> Poses:
         """Return the poses of some things, by a slice or an array of positions."""
-        return replace(self, fronts=self.fronts[some], axes=self.axes[some], stretch=self.stretch[some])
+        heads = None if self.heads is None else self.heads[some]
+        return replace(self, fronts=self.fronts[some], axes=self.axes[some], stretch=self.stretch[some], heads=heads)
 
     def turned(self, angle: float, mirrored: bool = False) -> Poses:
         """Return the poses in a scene mirrored left to right, then turned counter-clockwise about the origin.
@@ -110,9 +114,16 @@ class Poses:
         """
         turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
         flip = np.diag([-1.0, 1.0]) if mirrored else np.eye(2)
-        return replace(
-            self, fronts=self.fronts @ flip @ turn, axes=self.axes @ flip @ turn, middle=self.middle @ flip @ turn
-        )
+        heads = None if self.heads is None else self.heads @ flip @ turn
+        fronts, axes, middle = (each @ flip @ turn for each in (self.fronts, self.axes, self.middle))
+        return replace(self, fronts=fronts, axes=axes, middle=middle, heads=heads)
+
+    @property
+    def pointing(self) -> Array:
+        """Unit vectors from the things to their fronts, or else to their heads, shape (n, 2); NaN where unknown."""
+        if self.heads is None:
+            return self.fronts
+        return np.where(self.fronted[:, None], self.fronts, self.heads)
 
     @property
     def fronted(self) -> NDArray[np.bool_]:

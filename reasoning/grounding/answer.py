@@ -87,6 +87,14 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class Member:
+    """A perceived thing that belongs to a group of unknown number, with the probability that it does."""
+
+    perceived: str
+    probability: float
+
+
+@dataclass(frozen=True, slots=True)
 class Pivotal:
     """A fact without which the answer would be different.
 
@@ -162,6 +170,9 @@ class Grounding(Answer):
         does not have it.
     scene
         The scene, for pictures; None where an engine was called directly.
+    members
+        Members of each group of unknown number (*the chairs*) by its name, the most probable first. The match of the
+        group is one of them.
     """
 
     engine: str
@@ -187,6 +198,7 @@ class Grounding(Answer):
     frames: tuple[FrameOfFact, ...] = ()
     scene: object | None = field(default=None, compare=False)
     surface: str | None = None
+    members: Mapping[str, tuple[Member, ...]] = field(default_factory=dict)
 
     @property
     def object_matches(self) -> Mapping[str, Match]:

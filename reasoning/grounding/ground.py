@@ -23,6 +23,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.pair_features import HEADINGS
 from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.members import with_members
 from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.reference.answer import Frame
 from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
@@ -84,7 +85,7 @@ def ground(
     names = evidence.description.nodes
     posterior, verdict = alignment.posterior, alignment.verdict
     pivotal = _pivotal(in_order, alignment, matches, deadline.within(sensitivity_seconds))
-    return Grounding(
+    found = Grounding(
         engine=alignment.engine,
         matches=MappingProxyType({name: matches[name] for name in names if name in matches}),
         unmatched_objects=left_out_objects(in_order, alignment, names),
@@ -105,6 +106,7 @@ def ground(
         sides=() if verdict is None else tuple((one.side, one.probability) for one in verdict.sides),
         seconds=time.perf_counter() - started,
     )
+    return with_members(found, in_order) if evidence.uncounted else found
 
 
 def _standing(posterior: Posterior | None) -> Standing:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.errors import SceneError
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.formats.scene_json import read_scene, scene_text
+from deixis.perception.scene import Heading, PerceivedObject, Scene
 
 R = default_ontology().relations
 
@@ -137,3 +139,31 @@ def test_a_placed_viewer_turns_boxes_fronts_and_people() -> None:
 def test_a_viewer_in_the_middle_of_the_scene_is_refused() -> None:
     with pytest.raises(SceneError, match="beside the middle"):
         Scene((PerceivedObject("cup", (0.0, 0.0), (1.0, 1.0)),), viewer=(0.5, 0.5))
+
+
+def heading(part: str, probability: float = 0.97) -> Scene:
+    known = Heading(part, (0.0, 2.0), probability)
+    return Scene((PerceivedObject("cup", (0.0, 0.0), (0.1, 0.1), heading=known),))
+
+
+def test_measured_handle_is_the_front_of_a_thing_without_one() -> None:
+    assert heading("handle").fronts.tolist() == [[0.0, 1.0]]
+    assert np.isnan(heading("handle", 0.6).fronts).all()
+    assert np.isnan(heading("head").fronts).all()
+    assert heading("head").heads.tolist() == [[0.0, 1.0]]
+
+
+def test_headings_turn_with_the_scene_and_are_written(tmp_path: Path) -> None:
+    turned = heading("head").turned(np.pi / 2).objects[0].heading
+    assert turned is not None and turned.direction == pytest.approx((-2.0, 0.0), abs=1e-9)
+    file = tmp_path / "cup.scene.json"
+    file.write_text(scene_text(heading("head")), encoding="utf-8")
+    assert read_scene(file).objects == heading("head").objects
+
+
+@pytest.mark.parametrize(
+    "known", [Heading("foot", (1.0, 0.0)), Heading("head", (0.0, 0.0)), Heading("head", (1.0, 0.0), 2.0)]
+)
+def test_wrong_heading_is_refused(known: Heading) -> None:
+    with pytest.raises(SceneError, match="heading"):
+        Scene((PerceivedObject("cup", (0.0, 0.0), (0.1, 0.1), heading=known),))

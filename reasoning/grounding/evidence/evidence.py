@@ -191,6 +191,8 @@ class Evidence:
     surface
         Name of the thing that is the surface which the objects stand on, so that no object is matched to it; None if
         the scene does not have it.
+    uncounted
+        Names of the objects that are groups of unknown number, each of which stands for all things that fit it.
     """
 
     description: RelationGraph
@@ -209,6 +211,7 @@ class Evidence:
     claims: tuple[Claim, ...] = ()
     metric: bool = True
     surface: str | None = None
+    uncounted: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         shape = (len(self.description.nodes), len(self.scene.nodes))
@@ -276,8 +279,10 @@ class Evidence:
 
     @property
     def absent(self) -> NDArray[np.float64]:
-        """Log-odds of each object's absence, shape (n1,)."""
-        return np.where(self.present, PRESENT_LOG_ODDS, absence(len(self.labels), len(self.things)))
+        """Log-odds of each object's absence, shape (n1,). A group is absent if two or more things are."""
+        single = absence(len(self.labels), len(self.things))
+        least = np.array([2.0 if name in self.uncounted else 1.0 for name in self.description.nodes])
+        return np.where(self.present, PRESENT_LOG_ODDS, single * least)
 
     @property
     def things(self) -> tuple[str, ...]:

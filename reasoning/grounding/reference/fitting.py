@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.colours import Colours
 from deixis.reasoning.grounding.reference.likelihood import Score, add_gradients
-from deixis.reasoning.grounding.reference.model import Model
+from deixis.reasoning.grounding.reference.model import DOUBTS, UNCALIBRATED, Model, calibrated
 from deixis.reasoning.grounding.reference.nouns import NOUN_FEATURES, NUMBER_FEATURES
 from deixis.reasoning.grounding.reference.properties import SIZES, property_features
 from deixis.reasoning.grounding.reference.query import Property, Query
@@ -91,6 +91,12 @@ def log_probability(model: Model, example: Example) -> Score | None:
     at = np.flatnonzero(model.candidates(example.query, example.room) == example.target)
     return model.scores(example.query, example.room)[int(at[0])] if len(at) else None
 
+
+FIRST_LOG_ODDS = -4.0
+"""Log odds from which a fit of the calibration starts, that a description tells nothing."""
+
+DOUBT_PENALTY = 0.5
+"""Penalty in nats for a weight of the calibration that differs by 1 from its start."""
 
 LEAST_WEIGHT = 5e-4
 """Least magnitude of a weight that is written to a file."""
@@ -214,7 +220,7 @@ def weight_names(colours: Colours) -> dict[str, tuple[str, ...]]:
         Names of weights by the name of the block.
     """
     return feature_names(colours) | {
-        "calibration": ("power", "unread", "vain"),
+        "calibration": (*(f"power_{name}" for name in DOUBTS), *(f"vain_{name}" for name in DOUBTS)),
         "towards": ("towards",),
         "lifted": ("lifted",),
     }
@@ -256,27 +262,21 @@ def fit_calibration(held_out: Sequence[tuple[Model, Example]]) -> Array:
     Returns
     -------
     ndarray
-        The weights ``calibration``, shape (3,): power, its change by the share that was not used, and log odds.
+        The weights of :func:`~deixis.reasoning.grounding.reference.model.calibrated`, shape (2 d,).
     """
     from scipy.optimize import minimize
 
-    known = [(model, example) for model, example in held_out if log_probability(model, example) is not None]
     cases = []
-    for model, example in known:
-        among = model.candidates(example.query, example.room)
-        logs = model.scores(example.query, example.room).value
-        cases.append((logs, int(np.flatnonzero(among == example.target)[0]), model.unused(example.query, example.room)))
+    for model, example in held_out:
+        at = np.flatnonzero(model.candidates(example.query, example.room) == example.target)
+        if len(at):
+            logs = model.scores(example.query, example.room).value
+            cases.append((logs, model.doubts(example.query, example.room, logs), int(at[0])))
+    start = np.where(UNCALIBRATED < 0, FIRST_LOG_ODDS, UNCALIBRATED)
 
     def loss(values: Array) -> float:
-        power, unread, vain = values
-        noise = 1 / (1 + np.exp(-vain))
-        total = 0.0
-        for logs, target, missed in cases:
-            scaled = logs * np.exp(power + unread * missed)
-            share = np.exp(scaled[target] - np.logaddexp.reduce(scaled))
-            total -= float(np.log((1 - noise) * share + noise / len(logs)))
-        return total
+        total = sum(float(np.log(calibrated(logs, doubts, values)[target])) for logs, doubts, target in cases)
+        return DOUBT_PENALTY * float((values - start) @ (values - start)) - total
 
-    found = minimize(loss, np.array([-0.2, -0.3, -4.0]), method="Nelder-Mead", options={"maxiter": 200})
-    result: Array = found.x
+    result: Array = minimize(loss, start, method="L-BFGS-B", options={"maxiter": 30}).x
     return result

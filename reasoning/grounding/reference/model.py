@@ -75,6 +75,18 @@ COUNTED_GAP = 0.4
 SIZE_TOLERANCE = 1.0
 """Sum of the logarithms by which the sides of an object without a label may lie outside the usual ones of a noun."""
 
+DOUBTS = ("always", "words", "rivals", "relations", "viewed", "unseen", "unread", "other_classes")
+"""Features of a description that tell how far its log probabilities can be trusted: a constant, the logarithm of its
+number of words over 10, that of the number of candidates with the label of the best one, the number of relations, and
+whether it depends on the view, mentions a landmark that the room does not have, is not all understood, and has
+candidates with other labels."""
+
+USUAL_WORDS = (3, 40)
+"""Range of the number of words; a longer or shorter description counts as one at its end."""
+
+UNCALIBRATED = np.concatenate([np.zeros(len(DOUBTS)), [-30.0], np.zeros(len(DOUBTS) - 1)])
+"""Weights of :func:`calibrated` that change nothing."""
+
 MAX_LANDMARKS = 12
 """Maximum number of objects that a landmark may be; the rest fit its noun less well."""
 
@@ -148,9 +160,6 @@ class Model:
     def probabilities(self, query: Query, room: Room) -> Array:
         """Return the calibrated probability of each object.
 
-        The weights ``calibration`` are the logarithm of the power of the probabilities, its change by the share of the
-        description that was not used, and the log odds that the description tells nothing.
-
         Parameters
         ----------
         query
@@ -163,17 +172,14 @@ class Model:
         ndarray
             Probabilities, shape (n,), which add up to 1.
         """
-        among = self.candidates(query, room)
-        power, unread, vain = self.weights.get("calibration", np.array([0.0, 0.0, -30.0]))
-        logs = self.scores(query, room).value * np.exp(power + unread * self.unused(query, room))
-        shares = np.exp(logs - np.logaddexp.reduce(logs))
-        noise = 1 / (1 + np.exp(-vain))
+        among, logs = self.candidates(query, room), self.scores(query, room).value
+        shares = calibrated(logs, self.doubts(query, room, logs), self.weights.get("calibration", UNCALIBRATED))
         found = np.full(len(room), MISNAMED / len(room))
-        found[among] += (1 - MISNAMED) * ((1 - noise) * shares + noise / len(among))
+        found[among] += (1 - MISNAMED) * shares
         return found
 
-    def unused(self, query: Query, room: Room) -> float:
-        """Return the share of a description that is not used: words not understood, landmarks not in the room.
+    def doubts(self, query: Query, room: Room, logs: Array) -> Array:
+        """Return features of a description that tell how far its log probabilities can be trusted.
 
         Parameters
         ----------
@@ -181,18 +187,34 @@ class Model:
             The query.
         room
             The scene of n objects.
+        logs
+            Log probabilities of the candidates, shape (x,).
 
         Returns
         -------
-        float
-            Share, at least 0; 0 where all of the description is used.
+        ndarray
+            Features in the order of :data:`DOUBTS`, shape (d,).
         """
-        relations = query.target.relations
-        unseen = sum(
-            any(self._unseen(one, room) for one in relation.arguments) and not places_of(relation)
-            for relation in relations
+        among, relations = self.candidates(query, room), query.target.relations
+        best = room.labels[among[int(logs.argmax())]]
+        rivals = sum(room.labels[i] == best for i in among)
+        viewed = any(RELATIONS.get(one.name, ANY_RELATION)[0] in VIEWED for one in relations)
+        unseen = any(
+            self._unseen(one, room) and not places_of(relation) for relation in relations for one in relation.arguments
         )
-        return 1 - query.understood + unseen / (1 + len(relations))
+        length = float(np.log(np.clip(query.words, *USUAL_WORDS) / 10))
+        labelled = not room.unlabelled.any()
+        known = {
+            "always": 1.0,
+            "words": length if labelled else max(length, 0.0),  # few words do not make up for missing labels
+            "rivals": np.log(rivals) if labelled else 0.0,
+            "relations": min(len(relations), 3),
+            "viewed": viewed or any(one.word in SIDES for one in query.target.properties),
+            "unseen": unseen,
+            "unread": 1 - query.understood,
+            "other_classes": labelled and rivals < len(among),
+        }
+        return np.array([float(known[name]) for name in DOUBTS])
 
     def _keep(self, said: object, what: str, compute: Callable[[], Kept]) -> Kept:
         """Return what does not depend on the weights, computed once for each part of a query while these are fitted."""
@@ -443,6 +465,33 @@ class Model:
         apart = goal - room.centres[landmarks, :2]
         apart /= np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
         return weighted((room.views @ apart.T)[:, :, None], "towards", self.weights)
+
+
+def calibrated(logs: Array, doubts: Array, weights: Array) -> Array:
+    """Return log probabilities as calibrated probabilities.
+
+    They are raised to a power and mixed with equal shares, which stand for descriptions that tell nothing. Both the
+    logarithm of the power and the log odds of the equal shares are linear in the doubts.
+
+    Parameters
+    ----------
+    logs
+        Log probabilities of x candidates, shape (x,).
+    doubts
+        Features of the description, shape (d,).
+    weights
+        Weights of the power and of the equal shares, shape (2 d,).
+
+    Returns
+    -------
+    ndarray
+        Probabilities, shape (x,), which add up to 1.
+    """
+    power, vain = weights.reshape(2, -1) @ doubts
+    scaled = logs * np.exp(np.clip(power, -3.0, 2.0))
+    noise = 1 / (1 + np.exp(-vain))
+    result: Array = (1 - noise) * np.exp(scaled - np.logaddexp.reduce(scaled)) + noise / len(logs)
+    return result
 
 
 def places_of(said: Relation) -> tuple[Property, ...]:

@@ -138,9 +138,10 @@ class Viewer:
 class Query:
     """A description of the object that is meant, and of the viewer if one is mentioned.
 
-    ``understood`` is the share of the words that the query expresses.
+    ``understood`` is the share of the words that the query expresses, ``words`` the number of words of the text.
     """
 
     target: Description
     viewer: Viewer | None = None
     understood: float = 1.0
+    words: int = 0

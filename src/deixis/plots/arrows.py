@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.perception.scene import PerceivedObject
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.figure import QUIET
 
 if TYPE_CHECKING:
@@ -179,3 +179,33 @@ def _off_centre(places: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _point(place: NDArray[np.float64]) -> Point:
     return float(place[0]), float(place[1])
+
+
+def draw_directions(axes: Axes, scene: Scene, colour: str) -> None:
+    """Draw a short arrow on each thing whose front, head or handle is known, from above.
+
+    Parameters
+    ----------
+    axes
+        Axes of a scene seen from above.
+    scene
+        The scene.
+    colour
+        Colour of the arrows.
+    """
+    from matplotlib.patches import FancyArrowPatch
+
+    poses = scene.poses
+    if poses is None:
+        return
+    known = [i for i, way in enumerate(poses.pointing) if not np.isnan(way).any()]
+    for i in known:
+        way, sides = poses.pointing[i], np.diff(scene.boxes[i, :, :2], axis=0)[0] / 2
+        middle = scene.boxes[i, :, :2].mean(axis=0)
+        reach = min(side / abs(part) for side, part in zip(sides, way, strict=True) if abs(part) > 1e-9)
+        ends = (tuple(middle + share * reach * way) for share in (0.35, 0.95))
+        arrow = FancyArrowPatch(
+            *ends, arrowstyle="-|>", mutation_scale=8, color=colour, linewidth=1.0, shrinkA=0, shrinkB=0, zorder=4
+        )
+        arrow.set_in_layout(False)
+        axes.add_patch(arrow)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.plots.arrows import Arrow, Ends, draw_arrows, drawing_order, points_along
+from deixis.plots.arrows import Arrow, Ends, draw_arrows, draw_directions, drawing_order, points_along
 from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
@@ -321,6 +321,7 @@ def _draw_boxes(
         PatchCollection(edges, match_original=True, zorder=2),
     ):
         axes.add_collection(boxes)
+    draw_directions(axes, scene, INK)
 
 
 def _rectangle(thing: PerceivedObject, **look: Any) -> Rectangle:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import PlaneSettings
+from deixis.plots.arrows import draw_directions
 from deixis.plots.camera import MARGIN, CameraPicture, camera_of, colours_of, draw_camera
 from deixis.plots.figure import INK, canvas, dress_table, new_figure, save
 from deixis.plots.grounding import scene_figure
@@ -124,6 +125,7 @@ def perceived_figure(scene: Scene) -> Figure:
     else:
         title = "One thing alone, from above" if scene.objects else "All points, as they stand"
     _dress(axes[0], scene, window, title)
+    draw_directions(axes[0], scene, INK)
     if not scene.objects:
         _say(axes[0], "; ".join(scene.detection.notes) or "nothing was found")
     if not level:

@@ -208,6 +208,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
         "engine": found.engine,
         "matches": [match_to_dict(match) for match in found.matches.values()],
         **({} if found.surface is None else {"surface": found.surface}),
+        **({"members": _members(found)} if found.members else {}),
         "unmatched_objects": [left.name for left in found.unmatched_objects],
         "unmatched_perceived": [left.name for left in found.unmatched_perceived],
         "might_be": {
@@ -240,6 +241,14 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
         "notes": list(found.notes),
         "seconds": round(found.seconds, 6),
         **_dialogue_and_viewpoints(found),
+    }
+
+
+def _members(found: Grounding) -> dict[str, Any]:
+    """Return the members of each group of unknown number, by its name."""
+    return {
+        name: [{"perceived": one.perceived, "probability": _rounded(one.probability)} for one in members]
+        for name, members in found.members.items()
     }
 
 

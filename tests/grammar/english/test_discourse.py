@@ -7,6 +7,7 @@ import pytest
 from deixis.grammar.english.reader import read_english
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.reading import Reading
+from deixis.ontology.claims import Claim
 
 
 def reading(text: str) -> Reading:
@@ -142,3 +143,19 @@ def test_ordinals_pick_members_in_their_order() -> None:
     said = asserted("There are three forks. The first fork from the right is on a napkin.")
     assert {"ordinal(fork_3, fork_1, fork_2, '1 from right')", "on(fork_3, napkin)"} <= said
     assert not any(one.startswith("on(fork_1") for one in said)
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "claims"),
+    [
+        ("The spoon's handle points to the right.", "right", ["pointing(spoon, 'left')"]),
+        ("The mug's handle points to the right.", "right", ["pointing(mug, 'right')"]),
+        ("The fork points away from the viewer.", "away", ["pointing(fork, 'away')"]),
+        ("The fork points to the viewer.", "viewer", ["pointing(fork, 'viewer')"]),
+    ],
+)
+def test_direction_of_a_tool_is_that_of_its_head(text: str, said: str, claims: list[str]) -> None:
+    script = read_english(text)
+    assert [str(claim) for claim in script.claims] == claims
+    assert script.reading is not None
+    assert [stated.content.value for stated in script.reading.stated if isinstance(stated.content, Claim)] == [said]

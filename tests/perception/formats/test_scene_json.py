@@ -184,7 +184,7 @@ def test_a_2d_box_cannot_have_an_oriented_one() -> None:
 
 
 SCENE_KEYS = "addressee, frame, objects, shows, speaker, unit, viewpoint"
-KEYS = "candidates, cloud, colour, confidence, front, id, label, max, min, oriented"
+KEYS = "candidates, cloud, colour, confidence, front, heading, id, label, max, min, oriented"
 
 CATALOGUE: list[tuple[Any, str]] = [
     ([], "the scene must be an object {…}, got a list"),

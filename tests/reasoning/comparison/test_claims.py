@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,6 +13,7 @@ from deixis.grammar.parser import parse_script
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims
+from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.grounding.evidence.meaning import shipped_models
 
 THINGS = {  # minimum and maximum in metres, on a table of 70 by 50 cm
@@ -101,3 +104,35 @@ def test_pictures_have_no_distances_and_no_boxes_decide_nothing() -> None:
     assert checked(claim, metric=False).measured == "the scene is not in metres"
     assert checked(claim, None).verdict is ClaimVerdict.UNDECIDABLE
     assert checked(Claim("tallest", ("cup",)), BOXES[:, :, :2]).measured == "the scene has no heights"
+
+
+def aimed(text: str, fronts: dict[str, tuple[float, float]], heads: dict[str, tuple[float, float]]) -> ClaimOutcome:
+    ways = [np.array([known.get(name, (np.nan, np.nan)) for name in NAMES]) for known in (fronts, heads)]
+    poses = replace(Poses.of_boxes(BOXES, ways[0]), heads=ways[1])
+    filled, words = {name: name for name in NAMES}, default_ontology().relations
+    (claim,) = parse_script(text).claims
+    return check_claims([claim], filled, NAMES, BOXES, words, shipped_models(), poses=poses)[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "head", "verdict", "measured"),
+    [
+        ("fork pointing away", (0.0, 1.0), "satisfied", "it points 0"),
+        ("fork pointing away", (0.0, -1.0), "violated", "it points 180"),
+        ("fork pointing left", (0.0, 1.0), "violated", "it points 90"),
+        ("fork pointing away", None, "undecidable", "which of its ends"),
+        ("fork pointing left", None, "violated", "it lies 90"),
+        ("fork facing left", (0.0, 1.0), "undecidable", "its direction is not known"),
+        ("plate pointing left", None, "undecidable", "its direction is not known"),
+    ],
+)
+def test_direction_of_a_long_thing_is_checked(
+    text: str, head: tuple[float, float] | None, verdict: str, measured: str
+) -> None:
+    found = aimed(text, {}, {} if head is None else {"fork": head})
+    assert found.verdict == verdict and measured in found.measured
+
+
+def test_front_of_a_cup_decides_what_it_faces() -> None:
+    assert aimed("cup facing left", {"cup": (-1.0, 0.2)}, {}).verdict == "satisfied"
+    assert aimed("cup facing left", {"cup": (1.0, 0.2)}, {}).verdict == "violated"

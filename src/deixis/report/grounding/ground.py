@@ -11,7 +11,7 @@ from deixis.report.marks import doubt, violation
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Pivotal
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Member, Pivotal
 
 MAX_LISTED = 12
 """Maximum number of names, and of pivotal facts, to list one by one."""
@@ -41,6 +41,7 @@ def grounding_lines(found: Grounding) -> list[str]:
 
     objects = found.object_matches
     lines = [line for match in objects.values() for line in match_lines(match)] or ["No object was found."]
+    lines += [line for name, members in found.members.items() for line in member_lines(name, members)]
     if found.surface is not None:
         thing = found.matches[found.surface].perceived
         lines.append(f"{found.surface:<24} {thing:<10} the surface that the objects stand on")
@@ -210,6 +211,25 @@ def match_lines(match: Match) -> list[str]:
         A single line: object, thing, probability and alternatives.
     """
     return [doubt(_match_line(match), not match.decided)]
+
+
+def member_lines(name: str, members: tuple[Member, ...]) -> list[str]:
+    """Return the line with the members of a group of unknown number.
+
+    Parameters
+    ----------
+    name
+        Name of the group.
+    members
+        Things that belong to it, the most probable first.
+
+    Returns
+    -------
+    list of str
+        A single line: the group, the number of its members, and these with their probabilities.
+    """
+    listed = at_most_many([f"{one.perceived} {_probability(one.probability).strip()}" for one in members])
+    return [f"{name:<24} all that fit ({len(members)}): {', '.join(listed)}"]
 
 
 def _match_line(match: Match) -> str:

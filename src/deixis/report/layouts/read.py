@@ -47,6 +47,8 @@ def reading_lines(script: Script) -> list[str]:
         lines += [doubt(f"    {problem.source}: {problem.message}") for problem in sentence.problems]
     if reading.absent:
         lines.append(f"Not there: {', '.join(reading.absent)}.")
+    if reading.uncounted:
+        lines.append(f"Groups of unknown number: {', '.join(reading.uncounted)}.")
     lines.append(f"Understood: {reading.understood:.0%} of the words.")
     return lines
 
@@ -84,6 +86,8 @@ def reading_to_dict(script: Script) -> dict[str, Any]:
     known = script_to_dict(script)
     for thing in known["objects"]:
         thing["mentions"] = list(reading.mentions.get(thing["id"], ()))
+        if thing["id"] in reading.uncounted:
+            thing["uncounted"] = True
     return known | {
         "facts": [stated_to_dict(fact, reading) for fact in reading.stated],
         "sentences": [_sentence_to_dict(sentence) for sentence in reading.sentences],

@@ -76,6 +76,9 @@ PARTS = frozenset(
 )
 """Nouns for a part of the object that the complement with *of* tells."""
 
+PLACES_AMONG = frozenset({"middle", "center", "centre", "front", "back", "rear", "top", "bottom", "left", "right"})
+"""Nouns of PARTS that choose from a group."""
+
 EMPTY = frozenset(
     {
         "thing",
@@ -193,7 +196,7 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
             relations=_distinct((*target.relations, *told.relations, *relations)),
         )
     target = replace(_with_own_noun(target, viewer), properties=_ordered(target.properties))
-    return Query(_with_nouns(target, viewer, context), viewer, understood)
+    return Query(_with_nouns(target, viewer, context), viewer, understood, words)
 
 
 def _ordered(properties: tuple[Property, ...]) -> tuple[Property, ...]:
@@ -381,6 +384,8 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     noun, plural = "" if head in EMPTY else head, phrase.plural
     if noun in SIDE_NOUNS and inner is None:
         noun, properties = "", [*properties, Property("position", noun)]
+    if inner is not None and noun in PLACES_AMONG and inner.plural:  # 'the middle of the three chairs'
+        properties = [*properties, Property("position", noun)]
     if inner is not None and (not noun or noun in GROUPS | PARTS):
         plural = inner.plural and noun in GROUPS - {"one"}
         noun, properties = inner.noun, [*properties, *inner.properties]
@@ -479,8 +484,10 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
                 relations.append(Relation(name, (told,), str(predicate.degree), positive))
             elif told.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (known := _surface(name, told.noun, positive)):
                 properties += known
+                relations += _on_surface(told, positive)
             elif told.noun in SURROUNDINGS:
                 properties += _place(replace(predicate, positive=positive))
+                relations += _on_surface(told, positive)
             else:
                 degree = str(predicate.degree)
                 if name == "with" and (upon := [one for one in told.properties if one.word in UPON]):
@@ -525,6 +532,11 @@ def _surface(relation: str, noun: str, positive: bool) -> list[Property]:
     if noun == "wall" and relation in {"against", "near", "next_to", "touching", "along", "on"}:
         return [Property("position", "wall", positive=positive)]
     return []
+
+
+def _on_surface(surface: Description, positive: bool) -> list[Relation]:
+    """Return what is said of a surface as relations of what is on it: *the shoes on the floor by the door*."""
+    return [one for one in surface.relations if one.positive and not one.inverted] if positive else []
 
 
 def _place(said: Predicate) -> list[Property]:

@@ -239,7 +239,7 @@ class GroundingRequest:
             known = shortlisted_evidence(
                 self.graph, scene, self.script.ontology, self.effective_meaning, self.memory_limit, self.due
             )
-            return replace(known, consistent=self._consistent)
+            return replace(known, consistent=self._consistent, uncounted=self.script.uncounted)
         memory_limited = self.memory_limited
         known = graph_evidence(
             self.graph,
@@ -253,7 +253,9 @@ class GroundingRequest:
             known = replace(known, sizes=known.sizes + attribute_ratios(self.graph.nodes, scene, self.attributes))
         if self.surface is not None and keep_surface_free:
             known = known.with_surface(self.surface[1])
-        return replace(known, memory_limited=memory_limited, consistent=self._consistent)
+        return replace(
+            known, memory_limited=memory_limited, consistent=self._consistent, uncounted=self.script.uncounted
+        )
 
     @cached_property
     def _consistent(self) -> bool:

@@ -36,7 +36,7 @@ CODES = {
     "H002": "A denied fact has a hedge such as 'rarely', which denies it again.",
     "E001": "A phrase of an English text is not understood.",
     "E002": "A pronoun could stand for several objects.",
-    "E003": "The size of a group is unknown, so the group is one object.",
+    "E003": "The number of a group is unknown, so the group stands for all things that fit it.",
     "L001": "A script uses left, right, above or below without a viewpoint.",
 }
 """Meanings of the codes of warnings: N for names, F for facts, H for hedges, E for English, L for the layout."""
@@ -153,7 +153,7 @@ def _english_findings(script: Script, reading: Reading) -> Iterator[Finding]:
         source = source_of_span(reading.text, pronoun.span, script.file)
         yield Finding("E002", source, message, "say the noun")
     for name in reading.uncounted:
-        message = f"the number of '{name}' is unknown, so they are one object"
+        message = f"the number of '{name}' is unknown, so they stand for all things that fit"
         yield Finding("E003", _written(name, script) or Source(script.file, 1, 1, 1, 1), message, "say how many")
 
 

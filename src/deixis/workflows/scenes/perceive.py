@@ -17,6 +17,7 @@ from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.detection.detect import DETECTION_STAGES, detect
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.errors import CloudError, SceneError
+from deixis.perception.features.orientation import with_headings
 from deixis.perception.formats.scene_json import scene_text
 from deixis.perception.scene import Scene
 
@@ -38,9 +39,9 @@ def perceive(
 ) -> Scene:
     """Find the table in a point cloud, and the objects on it.
 
-    Each object of the scene has its points, so that it can be taught, learned and recognised at once;
-    :func:`write_scene` keeps it. ``scene.detection`` has the cloud, the object of each of its points, and notes on what
-    is unusual.
+    Each object of the scene has its points, so that it can be taught, learned and recognised at once, and its
+    ``heading``, if its points show a head or a handle; :func:`write_scene` keeps it. ``scene.detection`` has the cloud,
+    the object of each of its points, and notes on what is unusual.
 
     Parameters
     ----------
@@ -76,12 +77,12 @@ def perceive(
     if not isinstance(viewpoint, str) or not viewpoint.strip() or not viewpoint.isprintable():
         raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
     if isinstance(cloud, PointCloud):
-        return detect(cloud, settings, stage).scene(viewpoint)
+        return with_headings(detect(cloud, settings, stage).scene(viewpoint))
     if stage is not None:
         stage(READING)
     seen = read_cloud(cloud, intrinsics)
     try:
-        return detect(seen, settings, stage).scene(viewpoint, str(cloud))
+        return with_headings(detect(seen, settings, stage).scene(viewpoint, str(cloud)))
     except CloudError as error:
         raise CloudError(f"{cloud}: {error}") from error
 
