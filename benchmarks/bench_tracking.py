@@ -13,22 +13,13 @@ rows and columns and compares all of them.
 
 The peer detects all things in a frame of the camera that stands still, and assigns them to the tracks by the Hungarian
 method, with a gate of 15 cm; a track that is not seen for two seconds ends. Detection takes longer than a tenth of a
-second, so that it gets every ``--peer-every``-th frame (5, two frames a second); 0 leaves it out.
-
-``--pcl PROGRAM`` adds the KLD-adaptive particle filter of the Point Cloud Library (Debian's ``libpcl-dev``), one for
-each thing, with the settings of its documentation. It has no detection: it is given the things that Deixis detects in
-the first frame as models, and of each frame the points more than 2 mm above the table. It is scored on the things that
-lie in view in the first frame::
-
-    g++ -O2 -std=c++14 benchmarks/pcl_tracker.cpp $(pkg-config --cflags --libs pcl_tracking) -o pcl_tracker
-    python benchmarks/bench_tracking.py --scale 0.5 --pcl ./pcl_tracker
+second, so that it gets every ``--peer-every``-th frame (5, two frames a second); 0 leaves it out. The tracker of the
+Point Cloud Library is not a peer here: it follows one given cloud at a time, and has neither detection nor identity.
 """
 
 from __future__ import annotations
 
 import argparse
-import struct
-import subprocess
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -50,9 +41,6 @@ THINGS = (1, 2, 4, 6, 9, 12)
 FIRST, NEAR, CLOSE = 0.04, 0.05, 0.01
 """Distances in metres: of a track from the thing that gets it, of a kept one, and of a right one."""
 
-ABOVE = 0.002
-"""Height in metres above the table from which a point is given to the Point Cloud Library."""
-
 SETTLING = 1.0
 """Time in seconds from which a thing that lies in view must be tracked."""
 
@@ -68,8 +56,6 @@ class Score:
     frames: int = 0
     errors: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
-    first_only: bool = False
-    """True to count only things that lie in view in the first frame."""
     _tracks: dict[str, str] = field(default_factory=dict)
     _since: dict[str, float] = field(default_factory=dict)
 
@@ -88,8 +74,6 @@ class Score:
                 near = [(float(np.linalg.norm(places[name] - thing.centre)), name) for name in free]
                 if near and min(near)[0] < FIRST:
                     self._tracks[thing.name] = min(near)[1]
-            if self.first_only and self._since.get(thing.name, np.inf) > 0:
-                continue
             if not thing.visible or frame.at < self._since.get(thing.name, np.inf) + SETTLING:
                 continue
             self.frames += 1
@@ -130,47 +114,6 @@ class Association:
         return {name: place for name, (place, _) in self._tracks.items()}
 
 
-class PointCloudLibrary:
-    """Trackers of the Point Cloud Library in a process of their own, one for each thing that the first frame shows."""
-
-    def __init__(self, program: str, cloud: PointCloud) -> None:
-        found = detect(cloud)
-        self._back = found.frame
-        self._program = subprocess.Popen(
-            [program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-        )
-        inverse = np.linalg.inv(found.frame)
-        self._middles = found.boxes.mean(axis=1) @ inverse[:3, :3].T + inverse[:3, 3]
-        for number in range(len(found.boxes)):
-            self._send(b"M", cloud, found.labels == number)
-
-    def _send(self, kind: bytes, cloud: PointCloud, chosen: NDArray[np.bool_]) -> None:
-        assert self._program.stdin is not None and cloud.colours is not None
-        points = np.zeros(int(chosen.sum()), [("place", np.float32, 3), ("colour", np.uint8, 3)])
-        points["place"], points["colour"] = cloud.points[chosen], cloud.colours[chosen]
-        self._program.stdin.write(kind + struct.pack("=I", len(points)) + points.tobytes())
-        self._program.stdin.flush()
-
-    def __call__(self, cloud: PointCloud) -> tuple[Tracks, float]:
-        """Return the tracks after a frame, and the processor time of the program in seconds."""
-        height = cloud.points @ self._back[2, :3] + self._back[2, 3]
-        self._send(b"F", cloud, np.nan_to_num(height, nan=0.0) > ABOVE)
-        assert self._program.stdout is not None
-        count = len(self._middles)
-        answer = np.frombuffer(self._program.stdout.read(4 * (16 * count + 1)), np.float32)
-        changes = answer[:-1].reshape(count, 4, 4)
-        return {
-            f"p{number}": change[:3, :3] @ middle + change[:3, 3]
-            for number, (change, middle) in enumerate(zip(changes, self._middles, strict=True))
-        }, float(answer[-1])
-
-    def close(self) -> None:
-        """End the program."""
-        assert self._program.stdin is not None
-        self._program.stdin.close()
-        self._program.wait(10)
-
-
 def ours(tracker: Tracker) -> Callable[[PointCloud, float], Tracks]:
     """Return the tracker as a function that returns tracks in the frame of the camera."""
 
@@ -193,15 +136,14 @@ def main() -> None:
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the rows and columns of the images")
     parser.add_argument("--cameras", nargs="+", choices=CAMERA_PATHS, default=CAMERA_PATHS, help="paths of the camera")
     parser.add_argument("--peer-every", type=int, default=5, help="frames of which the peer gets one; 0: no peer")
-    parser.add_argument("--pcl", metavar="PROGRAM", help="compiled pcl_tracker.cpp; without it, this peer is left out")
     with recorded(parser) as arguments:
-        peer, library = Score(), Score(first_only=True)
+        peer = Score()
         for camera in arguments.cameras:
             scores: dict[int, Score] = {}
             for number in range(arguments.films):
                 things, seed = THINGS[number % len(THINGS)], arguments.first + number
                 score = scores.setdefault(things, Score())
-                _run(camera, things, seed, arguments, score, peer, library)
+                _run(camera, things, seed, arguments, score, peer if camera == "still" else Score())
                 print(f"{camera}, film {seed}: {things} things: {_line(score)}", flush=True)
             for things, score in sorted(scores.items()):
                 print(f"{camera}, {things:>2} things: {_line(score)}")
@@ -224,22 +166,12 @@ def main() -> None:
                 figure("identity kept by detection and assignment", peer.kept / peer.frames, "share", peer="scipy")
                 times = float(np.mean(peer.seconds)) / float(np.mean(everything.seconds))
                 figure("time of a frame of detection and assignment", times, "times as long", peer="scipy")
-            if camera == "still" and library.frames:
-                print(f"peer, Point Cloud Library: {_line(library)}")
-                share(
-                    "identity kept by the Point Cloud Library, things of the first frame", library.kept, library.frames
-                )
-                times = float(np.mean(library.seconds)) / float(np.mean(everything.seconds))
-                figure("time of a frame of the Point Cloud Library", times, "times as long", peer="PCL")
 
 
-def _run(
-    camera: str, things: int, seed: int, arguments: argparse.Namespace, score: Score, peer: Score, library: Score
-) -> None:
-    """Track the things of one film, seen by a camera, and add what is found to a score; and the peers to their own."""
-    for each in (score, peer, library):
-        each.begin()
-    trackers: PointCloudLibrary | None = None
+def _run(camera: str, things: int, seed: int, arguments: argparse.Namespace, score: Score, peer: Score) -> None:
+    """Track the things of one film, seen by a camera, and add what is found to a score; and the peer to its own."""
+    score.begin()
+    peer.begin()
     association = Association()
     film = random_film(things, arguments.actions, seed, sure_pass=True, path=camera_path(camera, seed))
     every = arguments.peer_every if camera == "still" else 0
@@ -255,13 +187,6 @@ def _run(
                 tracks = association(frame.cloud, frame.at)
                 peer.seconds.append(time.process_time() - started)
                 peer.add(frame, tracks)
-            if arguments.pcl and camera == "still":
-                trackers = trackers or PointCloudLibrary(arguments.pcl, frame.cloud)
-                tracks, seconds = trackers(frame.cloud)
-                library.seconds.append(seconds)
-                library.add(frame, tracks)
-    if trackers is not None:
-        trackers.close()
 
 
 def _line(score: Score) -> str:

@@ -111,17 +111,19 @@ def remembered(  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def carried(depth, offset, turn, shift, gap):  # type: ignore[no-untyped-def]
+def carried(depth, offset, labels, turn, shift, gap):  # type: ignore[no-untyped-def]
     """Return the pixels (r, c) of one view that other pixels of an earlier view show, with their depths and offsets.
 
     Each pixel of the earlier view is a point with a depth and an ``offset`` (r, c, 2), in columns and rows, from the
     middle of the pixel. Of two points in one new pixel, the nearer one is taken. A gap between two pixels of one
-    surface is filled.
+    surface and of one label is filled.
 
     Parameters
     ----------
     depth, offset
         Points of the earlier view; 0 where there is none.
+    labels
+        Label (r, c) of each of them.
     turn, shift
         Change (3, 3) and (3,) of homogeneous pixel coordinates from the earlier view to the new one.
     gap
@@ -152,9 +154,11 @@ def carried(depth, offset, turn, shift, gap):  # type: ignore[no-untyped-def]
             if source[i, j] >= 0:
                 continue
             for m, n in ((i, j - 1), (i - 1, j)):
-                a, b = found[m, n], found[2 * i - m, 2 * j - n]
-                if a > 0 and b > 0 and abs(a - b) < gap and source[m, n] >= 0 and source[2 * i - m, 2 * j - n] >= 0:
-                    source[i, j], found[i, j] = source[m, n], (a + b) / 2
+                p, q = source[m, n], source[2 * i - m, 2 * j - n]
+                if p < 0 or q < 0 or labels[p // columns, p % columns] != labels[q // columns, q % columns]:
+                    continue
+                if abs(found[m, n] - found[2 * i - m, 2 * j - n]) < gap:
+                    source[i, j], found[i, j] = p, (found[m, n] + found[2 * i - m, 2 * j - n]) / 2
                     break
     return source, found, aside
 

@@ -68,14 +68,14 @@ class Reference:
 
         turn = now.matrix @ np.linalg.inv(before.matrix)
         shift = now.offset - turn @ before.offset
-        source, self.depth, self._offset = carried(self.depth, self._offset, turn, shift, gap)
+        source, self.depth, self._offset = carried(self.depth, self._offset, self.owner, turn, shift, gap)
         known = source >= 0
         self.colour = np.where(known[..., None], self.colour.reshape(-1, 3)[source], np.float32(0))
         self.owner = np.where(known, self.owner.ravel()[source], np.int16(UNKNOWN_OWNER))
         flat = (self.owner == TABLE) & (np.abs(self.depth - now.level) < 0.5 * gap)
         self.depth[flat] = now.level[flat]
         self._offset[flat] = 0
-        source, self._last, self._aside = carried(self._last, self._aside, turn, shift, gap)
+        source, self._last, self._aside = carried(self._last, self._aside, np.zeros_like(self.owner), turn, shift, gap)
         self.since = np.where(source >= 0, self.since.ravel()[source], np.inf)
 
     def compared(
