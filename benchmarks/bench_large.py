@@ -9,7 +9,8 @@ table were independent; then the mean and the greatest difference from the margi
 objects; and seconds by the clock and of the processor, beside the limit. ``--limit SECONDS`` is the time limit (default
 10).
 
-``--only TEXT`` measures the arms whose line of ARMS contains the text, ``--no-limits`` calibration only. ``--values``
+``--only TEXT`` measures the arms whose line of ARMS contains the text, ``--tables N`` at most N tables of each arm,
+``--no-limits`` calibration only. ``--values``
 prints instead how much more the best map that a search finds is worth than the true map, in nats, and the share of
 objects that it matches right: where it is worth much more, the model is wrong and not the search.
 
@@ -113,6 +114,7 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=10.0, help="time limit of a posterior, in seconds")
     parser.add_argument("--seeds", type=int, default=HELD_OUT, help="seed of the first table")
     parser.add_argument("--only", default="", help="only the arms whose line of ARMS contains this text")
+    parser.add_argument("--tables", type=int, default=1000, help="maximum number of tables of an arm")
     parser.add_argument("--no-limits", action="store_true", help="calibration only")
     parser.add_argument("--values", action="store_true", help="only the values of the best and of the true map")
     parser.add_argument("--quick", action="store_true", help="a few cases of each")
@@ -131,7 +133,7 @@ def main() -> None:
         print(f"layout    kinds  objects  facts  missing  {columns}   processor")
         for arm in QUICK_ARMS if quick else ARMS:
             if options.only in " ".join(map(str, arm)):
-                _calibration(*arm, limit, first)
+                _calibration(*arm[:-1], min(arm[-1], options.tables), limit, first)
         if options.no_limits:
             return
         print("\nobjects  unique labels         things  limit   clock   processor  memory  result")

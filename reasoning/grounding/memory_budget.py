@@ -21,6 +21,10 @@ BYTES_PER_MATCH, BYTES_OF_CHAINS, BYTES_PER_MESSAGE = 160, 140, 24
 """Bytes per object and thing for evidence, gains and beliefs; per object and thing for the guides and counts of chains,
 where they are run; per end of a fact and thing for messages."""
 
+BYTES_PER_PLACE_AND_TABLE, BYTES_PER_MESSAGE_OF_PLACES = 8, 16
+"""Bytes for the places of absent objects, where chains are run: per thing, place and table; per end of a fact and thing
+for the messages of the places."""
+
 FIXED_BYTES = 3e7
 """Bytes for the blocks of pairs in progress and the caches of compiled code."""
 
@@ -72,14 +76,20 @@ def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, ch
     >>> required_gigabytes(1000, 1000, 2500, 10) < 1 < required_gigabytes(20000, 20000, 50000, 10)
     True
     """
+    from deixis.reasoning.grounding.evidence.latent_places import MAX_PLACES, MIN_PLACES, PLACES_PER_THING
     from deixis.reasoning.grounding.matching.exact import MAX_PASS_CELLS, MAX_STACK_CELLS
 
     proved = 2 * facts * (things + 1) ** 2 <= MAX_PASS_CELLS  # by a search that keeps a stack
     level = 2 * (objects + facts) * (things + 1)
     stack = 8 * min((objects + 1) * level, max(MAX_STACK_CELLS, level)) if proved else 0
-    pairs = things**2 * (BYTES_PER_PAIR + BYTES_PER_PAIR_AND_TABLE * tables)
+    pairs: float = things**2 * (BYTES_PER_PAIR + BYTES_PER_PAIR_AND_TABLE * tables)
     per_match = BYTES_PER_MATCH + (BYTES_OF_CHAINS if chains else 0)
-    matches = things * (objects * per_match + 2 * facts * BYTES_PER_MESSAGE)
+    per_message = BYTES_PER_MESSAGE + (BYTES_PER_MESSAGE_OF_PLACES if chains else 0)
+    matches = things * (objects * per_match + 2 * facts * per_message)
+    if chains:
+        pairs += (
+            things * min(max(PLACES_PER_THING * things, MIN_PLACES), MAX_PLACES) * BYTES_PER_PLACE_AND_TABLE * tables
+        )
     return (pairs + matches + stack + FIXED_BYTES) / 1e9
 
 

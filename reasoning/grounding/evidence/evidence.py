@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from deixis.reasoning.grounding.evidence.colours import colour_evidence
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees, frame_shares, log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import FactEvidence, FactTables, hedged
 from deixis.reasoning.grounding.evidence.labels import Label, classes
+from deixis.reasoning.grounding.evidence.latent_places import place_ratios
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
 from deixis.reasoning.grounding.evidence.pair_features import OWN_WORDS
 from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
@@ -261,15 +262,22 @@ class Evidence:
         others = np.array([node != thing for node in self.scene.nodes])
         return replace(self, allowed=self.allowed & others[None, :], surface=thing)
 
-    def _with_claims(self, facts: FactTables) -> Problem:
-        """Return the matching problem of the tables of the facts, followed by those of the claims."""
+    def _with_claims(self, facts: FactTables, literal: float | None = None) -> Problem:
+        """Return the matching problem of the tables of the facts, followed by those of the claims.
+
+        With the share of literal facts, absent objects have places; a shortlist has none.
+        """
         ends, kinds, tables = facts.ends, facts.kinds, facts.tables
         if self._claimed is not None and len(self._claimed.ends):
             more = self._claimed
             ends = np.concatenate([ends, more.ends])
             kinds = np.concatenate([kinds, len(tables) + np.arange(len(more.ends), dtype=np.int64)])
             tables = np.concatenate([tables, more.tables])
-        return Problem(ends, kinds, tables, self.unary, self.absent, self.allowed)
+        places, boxes = None, self.scene.boxes
+        if literal is not None and boxes is not None and len(boxes) and self.whole is None:
+            said, of_claims = self._said().ratios.facts, len(tables) - len(facts.tables)
+            places = partial(place_ratios, said, boxes, literal, of_claims, self.scene.poses)
+        return Problem(ends, kinds, tables, self.unary, self.absent, self.allowed, places)
 
     @property
     def present(self) -> NDArray[np.bool_]:
@@ -334,7 +342,8 @@ class Evidence:
             ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
             return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
         spoken, unary = self._said(), self.unary
-        return self._with_claims(spoken.tables(spoken.literal(unary, absent, self.allowed)))
+        literal = spoken.literal(unary, absent, self.allowed)
+        return self._with_claims(spoken.tables(literal), literal)
 
     @cached_property
     def upper_problem(self) -> Problem:

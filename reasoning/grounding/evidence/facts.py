@@ -411,17 +411,26 @@ class SaidFacts:
         offset: NDArray[np.float32] = (weights * shares * self.literal[facts] + (1 - weights)).astype(np.float32)
         return offset
 
-    def mixed(self, fact: int, pairs: PairGeometry, names: NDArray[np.uint8], share: float) -> NDArray[np.float32]:
+    def mixed(
+        self,
+        fact: int,
+        degrees_of: WordDegrees,
+        names: NDArray[np.uint8],
+        spoken: NDArray[np.float32] | np.float32,
+        share: float,
+    ) -> NDArray[np.float32]:
         """Return the likelihood ratio of a fact for each pair of a block, if a share of the facts is literal.
 
         Parameters
         ----------
         fact
             Position of the fact among the k different ones.
-        pairs
-            Geometry of the pairs of the block, with n subjects and m objects.
+        degrees_of
+            Degrees of the words for the pairs of the block.
         names
             Index of the exact relation of each pair, shape (n, m).
+        spoken
+            How readily people mention each pair, from :meth:`spoken`.
         share
             Share of literal facts, in [0, 1].
 
@@ -430,7 +439,7 @@ class SaidFacts:
         ndarray
             Likelihood ratios, shape (n, m).
         """
-        ratio = self.ratio(fact, WordDegrees(pairs, self.models), names, self.spoken(pairs))
+        ratio = self.ratio(fact, degrees_of, names, spoken)
         ratio *= np.float32(self.said[fact][2] * (1 - share * float(self.literally[fact, 0])))
         ratio += self.offset(fact, share)[names]
         return ratio

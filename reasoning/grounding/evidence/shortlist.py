@@ -29,7 +29,7 @@ from deixis.ontology.relation import Reading
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import SPREAD, Surroundings
 from deixis.reasoning.geometry.rectangle import cross_relations
-from deixis.reasoning.grounding.evidence.degrees import log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
 from deixis.reasoning.grounding.evidence.facts import SaidFacts, compared_facts, literal_degree
 from deixis.reasoning.grounding.evidence.literalness import LITERAL, LITERAL_PRIOR
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, Meaning, shipped_models
@@ -271,7 +271,8 @@ class _Weighing:
         _, names = cross_relations(here, there, (self.ranks[rows], self.ranks[columns]), self.vocabulary)
         if self.graded:
             pairs = near.block_with(some, far, others)
-            return self.facts.mixed(kind, pairs, names.astype(np.uint8), LITERAL * LITERAL_PRIOR)
+            degrees, spoken = WordDegrees(pairs, self.facts.models), self.facts.spoken(pairs)
+            return self.facts.mixed(kind, degrees, names.astype(np.uint8), spoken, LITERAL * LITERAL_PRIOR)
         relations, positive, weight = self.facts.said[kind]
         by_name = literal_degree(relations, positive, np.arange(len(self.vocabulary)), self.vocabulary)
         ratio = np.exp(log_likelihood_ratio(by_name, OUTLIERS, float(by_name[self.exact].mean())))

@@ -34,6 +34,10 @@ DAMPING = 0.3  # share of the old message that is kept
 MIN_LOG_MESSAGE = -69.0  # minimum log message; products of messages stay within single precision
 RULED_OUT = -1e4  # log-likelihood of a match that is not allowed, and of one thing for two objects
 STEPS, SETTLED = 30, 1e-2  # without cooling: maximum number of steps, and change of beliefs at convergence
+GROWING_STEPS, GROWING_SHARE, FIRST_POWER = 20, 0.6, 0.3
+# rounds in which the evidence grows, fewer where they would take more than that share of the time; its power at first
+PLACINGS = 5  # number of times that absent objects get places
+CERTAINLY_PRESENT = -20.0  # log-odds of absence up to which an object is certainly present
 TIE_NOISE = 1e-3  # amplitude of random numbers that break ties between equal things
 
 Messages = NDArray[np.float32]
@@ -42,6 +46,8 @@ Messages = NDArray[np.float32]
 class _Wiring(NamedTuple):
     """Slots (see ``compiled.py``) sorted by the table that they read."""
 
+    slot: NDArray[np.int64]  # (2m,): the slot of the problem
+    owner: NDArray[np.int64]  # (2m,): the object of the slot
     other: NDArray[np.int64]  # (2m,): the object at the other end
     twin: NDArray[np.int64]  # (2m,): the same fact's slot there
     runs: list[tuple[int, int, int]]  # table, first slot, end: all slots that read it
@@ -89,7 +95,7 @@ def propagate(
         known = wiring.adder @ facts + np.float32(coldness) * unary + field
         _update_demand(demand, known)
         belief = _normalised(known + demand)
-        _update_facts(facts, belief, weights, wiring)
+        _update_facts(facts, _said(facts, belief, wiring), weights, wiring)
         before, now = now, time.perf_counter()
         left = deadline.left
         if left <= MIN_LEVELS * (now - before) * (1.0 - done):
@@ -119,21 +125,129 @@ def beliefs(problem: Compiled, deadline: Deadline = Deadline.never(), *, steps: 
     ndarray
         Probability of each match, shape (n1, n2 + 1); the last column is that of being left out.
     """
-    wiring, weights = _wire(problem), _costs(problem)
-    np.exp(weights, out=weights)
+    return beliefs_with_places(problem, None, deadline, steps=steps)[0]
+
+
+def beliefs_with_places(
+    problem: Compiled,
+    places: NDArray[np.float32] | None,
+    deadline: Deadline = Deadline.never(),
+    *,
+    steps: int = STEPS,
+) -> tuple[Messages, Compiled]:
+    """Return the marginals of belief propagation, and the problem with a place for each object if it is absent.
+
+    The evidence is weak in the first rounds, so that the whole scene is aligned before its parts are: otherwise, a part
+    whose neighbourhoods repeat (a row of alike places) often settles one place beside its own. The places are chosen by
+    the messages, several times while the evidence grows (:func:`located`).
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops.
+    places
+        Likelihood ratios of the facts at g places, shape (2k, g, n2); see
+        :class:`deixis.reasoning.grounding.matching.problem.Problem`. None where absent objects have no places.
+    deadline
+        End of the time limit. Where the time is short, the evidence grows faster.
+    steps
+        Maximum number of rounds of messages after the evidence has grown.
+
+    Returns
+    -------
+    tuple
+        Probability of each match, shape (n1, n2 + 1); the last column is that of absence. Then the problem with the
+        evidence of absent objects.
+    """
+    wiring, costs, start = _wire(problem), _costs(problem), problem
     unary = np.where(problem.allowed, np.maximum(problem.unary, RULED_OUT), RULED_OUT).astype(np.float32)
     facts, demand = np.zeros((len(problem.kind), unary.shape[1]), np.float32), np.zeros_like(unary)
     before = found = np.zeros_like(unary)
-    for _ in range(steps):
-        known = wiring.adder @ facts + unary
+    weights, away, placed = np.empty_like(costs), None, 0
+    until = deadline.share(GROWING_SHARE)
+    whole, way, full = until.left, 0.0, False
+    for _ in range(GROWING_STEPS + steps):
+        if not full:
+            full = way >= 1.0
+            cold = np.float32(FIRST_POWER + (1.0 - FIRST_POWER) * way)
+            np.exp(np.multiply(costs, cold, out=weights), out=weights)
+            evidence = unary.copy()
+            evidence[:, :-1] *= cold
+        known = wiring.adder @ facts + evidence
         _update_demand(demand, known)
         belief = _normalised(known + demand)
         before, found = found, np.exp(belief)
         found /= found.sum(axis=1, keepdims=True)
-        if deadline.passed or np.abs(found - before).sum(axis=1).max(initial=0.0) <= SETTLED:
+        if deadline.passed or (full and np.abs(found - before).sum(axis=1).max(initial=0.0) <= SETTLED):
             break
-        _update_facts(facts, belief, weights, wiring)
-    return found
+        said = _said(facts, belief, wiring)
+        if places is not None and int(way * PLACINGS) > placed:
+            placed = int(way * PLACINGS)
+            problem = located(start, places, said, found, wiring)
+            unary[:, -1] = evidence[:, -1] = problem.unary[:, -1]
+        if places is not None and placed:
+            away = _away_weights(problem, wiring, cold)
+        _update_facts(facts, said, weights, wiring, away)
+        elapsed = 1.0 - until.left / whole if 0.0 < whole < math.inf else 0.0
+        way = min(1.0, max(way + 1.0 / GROWING_STEPS, elapsed))
+    return found, problem
+
+
+def located(
+    problem: Compiled,
+    places: NDArray[np.float32],
+    said: Messages,
+    belief: Messages,
+    wiring: _Wiring,
+) -> Compiled:
+    """Return the problem with a place for each object, at which it is if it is absent.
+
+    An object that is absent is somewhere, and its facts are about that place. Each object gets the place with the
+    largest product of its facts' likelihoods, given the messages about the others. Its absence gets the mean of that
+    product over all places, relative to this place: the likelihood that the facts fit some place by chance is the mean
+    over the places. The prior odds of absence are by the expected number of absent objects (empirical Bayes): the
+    number of things that are not described grows with it.
+
+    Parameters
+    ----------
+    problem
+        The problem in the layout of compiled loops, with the prior odds of absence.
+    places
+        Likelihood ratios of the facts at g places, shape (2k, g, n2).
+    said
+        Messages to the facts about the other object of each slot, in the order of ``wiring``, shape (2m, n2 + 1).
+    belief
+        Probability of each match, shape (n1, n2 + 1).
+    wiring
+        Slots in the order of their tables.
+
+    Returns
+    -------
+    Compiled
+        Copy with values of absence and of the facts about absent objects.
+    """
+    slots, (n1, width) = len(problem.kind), problem.unary.shape
+    chances = said / said.sum(axis=1, keepdims=True)
+    fitting = np.empty((slots, places.shape[1]), np.float32)
+    for table, first, end in wiring.runs:
+        np.matmul(chances[first:end, :-1], places[table].T, out=fitting[first:end])
+    fitting += chances[:, -1:]
+    fit = wiring.adder @ np.log(fitting, out=fitting)
+    chosen = fit.argmax(axis=1)
+    spread = np.log(np.exp(fit - fit.max(axis=1, keepdims=True)).mean(axis=1))
+    away = np.zeros((slots, width), np.float32)
+    for table, first, end in wiring.runs:
+        away[wiring.slot[first:end], :-1] = np.log(places[table][chosen[wiring.owner[first:end]]])
+    unary = problem.unary.copy()
+    expected = min(float(belief[:, -1].sum()), n1 / 2)
+    more = _log_odds_of_absence(expected, n1, width - 1) - _log_odds_of_absence(max(0, n1 - width + 1), n1, width - 1)
+    unary[:, -1] += np.where(unary[:, -1] > CERTAINLY_PRESENT, max(0.0, more) + spread, 0.0)
+    return problem._replace(unary=unary, away=away)
+
+
+def _log_odds_of_absence(absent: float, objects: int, things: int) -> float:
+    """Return the log-odds of an object's absence, against being one given thing, if a number of objects are absent."""
+    return math.log((absent + 0.5) / (objects - absent + 0.5) * (max(0.0, things - objects + absent) + 0.5))
 
 
 def belief_seconds(problem: Compiled) -> float:
@@ -164,6 +278,8 @@ def _wire(problem: Compiled) -> _Wiring:
     ends = np.append(first, slots)[1:]
     owner = np.repeat(np.arange(n1), np.diff(problem.first))[order]
     return _Wiring(
+        order,
+        owner,
         problem.other[order],
         position[problem.twin[order]],
         [(int(table), int(a), int(b)) for table, a, b in zip(tables, first, ends, strict=True)],
@@ -196,15 +312,42 @@ def _update_demand(demand: Messages, known: Messages) -> None:
     demand[:, :-1] -= np.float32(1.0 - DAMPING) * told
 
 
-def _update_facts(facts: Messages, belief: Messages, weights: Messages, wiring: _Wiring) -> None:
-    """Update in place the log messages (2m, n2 + 1) of each fact to the object of each slot."""
+def _said(facts: Messages, belief: Messages, wiring: _Wiring) -> Messages:
+    """Return the messages (2m, n2 + 1) about the other object of each slot, by all evidence but the slot's fact."""
     said = belief[wiring.other]
-    said -= facts[wiring.twin]  # what the other object is by all but the fact itself
+    said -= facts[wiring.twin]
     np.exp(said, out=said)
+    return said
+
+
+def _away_weights(problem: Compiled, wiring: _Wiring, power: np.float32) -> Messages:
+    """Return powers of the likelihoods of facts about absent objects, (2m, n2 + 1), in the scale of ``_costs``."""
+    tables = problem.tables[: len(problem.tables) // 2]
+    largest = tables.max(axis=(1, 2))[problem.kind[wiring.slot] % max(len(tables), 1)]
+    weights = problem.away[wiring.slot]
+    weights -= largest[:, None]
+    weights *= power
+    return np.exp(weights, out=weights)
+
+
+def _update_facts(
+    facts: Messages, said: Messages, weights: Messages, wiring: _Wiring, away: Messages | None = None
+) -> None:
+    """Update in place the log messages (2m, n2 + 1) of each fact to the object of each slot.
+
+    ``said`` holds the messages about the other objects, ``away`` the likelihoods of facts about absent objects, where
+    these have places; shape (2m, n2 + 1) each.
+    """
     told = np.empty_like(facts)
     for table, first, end in wiring.runs:
         matrix = weights[table].T if table < len(weights) else weights[table - len(weights)]
-        np.matmul(said[first:end], matrix, out=told[first:end])
+        if away is None:
+            np.matmul(said[first:end], matrix, out=told[first:end])
+        else:
+            np.matmul(said[first:end, :-1], matrix[:-1], out=told[first:end])
+    if away is not None:
+        told += said[:, -1:] * away[wiring.twin]
+        told[:, -1] = np.einsum("sq,sq->s", said, away)
     np.log(np.maximum(told, math.exp(MIN_LOG_MESSAGE), out=told), out=told)
     told = np.maximum(_normalised(told), MIN_LOG_MESSAGE, out=told)
     facts *= np.float32(DAMPING)

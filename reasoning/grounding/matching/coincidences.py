@@ -175,7 +175,8 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     Returns
     -------
     Posterior
-        Copy with new marginals; ``found`` itself where there are no facts, objects or things.
+        Copy with new marginals; ``found`` itself where there are no facts, objects or things, or where absent objects
+        have places.
 
     Examples
     --------
@@ -185,7 +186,7 @@ def discounted(problem: Problem, found: Posterior) -> Posterior:
     >>> discounted(problem, sure).marginals[:, 2].round(3).tolist()  # the probabilities of absence
     [0.01, 0.01]
     """
-    if not problem.unary.size or not len(problem.ends):
+    if found.placed or not problem.unary.size or not len(problem.ends):
         return found
     remaining = coincidences(problem, found.marginals).remaining()
     marginals = found.marginals * remaining[:, None]

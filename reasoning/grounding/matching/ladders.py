@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.belief_propagation import beliefs
+from deixis.reasoning.grounding.matching.belief_propagation import beliefs_with_places
 from deixis.reasoning.grounding.matching.exchangeable import averaged
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem
 from deixis.reasoning.grounding.matching.sampling import (
@@ -73,7 +73,11 @@ EVIDENCE_TOLERANCE = 0.2
 
 
 def sampled_marginals(
-    problem: Compiled, groups: tuple[tuple[int, ...], ...], deadline: Deadline, seed: int
+    problem: Compiled,
+    groups: tuple[tuple[int, ...], ...],
+    deadline: Deadline,
+    seed: int,
+    places: NDArray[np.float32] | None = None,
 ) -> tuple[Array, Array]:
     """Estimate the marginals by sampling, and the error of each object's marginals.
 
@@ -91,6 +95,8 @@ def sampled_marginals(
         End of the time limit.
     seed
         Seed of the random numbers.
+    places
+        Likelihood ratios of the facts at the places of absent objects, shape (2k, g, n2); None where they have none.
 
     Returns
     -------
@@ -101,7 +107,7 @@ def sampled_marginals(
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
     rungs = max(int(min(steps, MAX_CHAIN_OBJECTS / n1)), MIN_RUNGS)
     coldness = 1.0 - (1.0 - MIN_COLDNESS) * np.arange(rungs) / (steps - 1)
-    run, known = _begun(problem, np.maximum(coldness, MIN_COLDNESS), deadline, seed)
+    run, known = _begun(problem, np.maximum(coldness, MIN_COLDNESS), deadline, seed, places)
     known = averaged(known, groups)
     marginals, errors = known, np.full(n1, math.inf)
     left = min(PROPOSALS, MAX_PROPOSALS / n1) / (LADDERS * rungs)
@@ -167,7 +173,9 @@ def warm() -> None:
     next(_begun(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
 
 
-def believed_marginals(problem: Compiled, deadline: Deadline) -> Array:
+def believed_marginals(
+    problem: Compiled, deadline: Deadline, places: NDArray[np.float32] | None = None
+) -> tuple[Array, Compiled]:
     """Return the marginals of belief propagation until the deadline, computed in one thread.
 
     Parameters
@@ -176,14 +184,18 @@ def believed_marginals(problem: Compiled, deadline: Deadline) -> Array:
         The problem in the layout of compiled loops.
     deadline
         End of the time limit.
+    places
+        Likelihood ratios of the facts at the places of absent objects, shape (2k, g, n2); None where they have none.
 
     Returns
     -------
-    ndarray
-        Probability of each match, shape (n1, n2 + 1); the last column is that of being left out.
+    tuple
+        Probability of each match, shape (n1, n2 + 1), the last column being that of absence; and the problem with the
+        places of absent objects.
     """
     with threadpool_limits(1, "blas"):
-        return beliefs(problem, deadline).astype(np.float64)
+        known, placed = beliefs_with_places(problem, places, deadline)
+    return known.astype(np.float64), placed
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,11 +281,13 @@ class _Run:
         return _Part(done, counts, values)
 
 
-def _begun(problem: Compiled, coldness: Array, deadline: Deadline, seed: int) -> tuple[_Run, Array]:
+def _begun(
+    problem: Compiled, coldness: Array, deadline: Deadline, seed: int, places: NDArray[np.float32] | None = None
+) -> tuple[_Run, Array]:
     """Return a run at those temperatures (K,), and the beliefs (n1, n2 + 1) that guide it."""
-    known = believed_marginals(problem, deadline.share(GUIDE_SHARE))
+    known, placed = believed_marginals(problem, deadline.share(GUIDE_SHARE), places)
     ladders = tuple(new_chains(problem, coldness) for _ in range(LADDERS))
-    return _Run(problem, guide_by(known, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), known
+    return _Run(placed, guide_by(known, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), known
 
 
 def _agreement(parts: list[_Part], known: Array) -> tuple[Array, Array]:

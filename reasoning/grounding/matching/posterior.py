@@ -30,6 +30,14 @@ NODE_GROWTH, ERROR_FALL = 5.0, 15.0  # approximate factors of nodes and error fr
 SMALL_SEARCH_RATIO = 100  # a search with fewer nodes than the maximum over this ratio is not extrapolated
 SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # maximum work of sums, and cells of facts; beyond, maps are sampled
 
+SECONDS_PER_PLACED_THING, MAX_PLACED_THINGS, PLACES_SHARE = 1e-6, 300, 0.3
+"""Approximate seconds for the evidence of the places of absent objects, per table and pair of things; number of things
+beyond which their number does not grow; and share of the time that they may take, without which they are left out."""
+
+MAX_SETTLED_OBJECTS = 150
+"""Maximum number of objects whose absence the places alone decide: in larger scenes, belief propagation may settle a
+part one place beside its own, so that matches are discounted for coincidences too."""
+
 START_EFFORT = 0.1  # effort of the search for a first map
 
 BOUND_CELLS, BOUND_WORK = 4e5, 1e6  # maximum cells of facts, and work per share, of a bound of the sum
@@ -57,6 +65,8 @@ class Posterior:
         Whether the marginals are from belief propagation alone, so that their error is unknown.
     log_total
         Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
+    placed
+        Whether absence needs no discount for coincidences, because absent objects had places.
     """
 
     marginals: Marginals
@@ -65,6 +75,7 @@ class Posterior:
     errors: NDArray[np.float64] = field(default_factory=lambda: np.array(math.nan))
     believed: bool = False
     log_total: float = math.nan
+    placed: bool = False
 
     def __post_init__(self) -> None:
         if self.errors.ndim == 0:
@@ -133,10 +144,16 @@ def posterior(
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     if not chains:
-        return Posterior(believed_marginals(problem.compiled, deadline), False, math.inf, believed=True)
-    marginals, errors = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed)
+        return Posterior(believed_marginals(problem.compiled, deadline)[0], False, math.inf, believed=True)
+    places = None
+    if problem.places is not None and len(problem.ends):
+        needed = SECONDS_PER_PLACED_THING * len(problem.tables) * n2 * min(n2, MAX_PLACED_THINGS)
+        places = problem.places() if needed < PLACES_SHARE * deadline.left else None
+    marginals, errors = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
     error = float(errors.max(initial=0.0))
-    return Posterior(marginals, False, error, errors, believed=not math.isfinite(error))
+    believed = not math.isfinite(error)
+    placed = places is not None and n1 <= MAX_SETTLED_OBJECTS
+    return Posterior(marginals, False, error, errors, believed=believed, placed=placed)
 
 
 def exact_posterior(

@@ -9,6 +9,7 @@ posterior, up to a constant.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -44,6 +45,10 @@ class Problem:
         Value of leaving each object out, shape (n1,), finite, usually negative.
     allowed
         Matches that a map may make, shape (n1, n2), or one value for all; by default, all.
+    places
+        Function that computes the likelihood ratios of a fact with one end at each of g places and the other at each
+        thing, shape (2k, g, n2): the subject at the place, then the object. Absent objects are at such places when
+        marginals are sampled. None where the facts about absent objects count as by chance.
 
     Raises
     ------
@@ -57,6 +62,7 @@ class Problem:
     unary: NDArray[np.float64]
     absent: NDArray[np.float64]
     allowed: NDArray[np.bool_] = field(default_factory=lambda: np.array(True))
+    places: Callable[[], NDArray[np.float32]] | None = None
 
     def __post_init__(self) -> None:
         if self.allowed.ndim == 0:  # one value for all matches
@@ -178,6 +184,8 @@ class Compiled(NamedTuple):
     other: NDArray[np.int64]  # (2m,): the object at the other end
     kind: NDArray[np.int64]  # (2m,): the table, whose rows are the things of the slot's object
     twin: NDArray[np.int64]  # (2m,): the same fact's slot at the other end
+    away: NDArray[np.float32]  # (2m, n2 + 1): evidence of the fact if the slot's object is absent, by the other's thing
+    # of (0, n2 + 1) if facts about absent objects count 0; only sampling reads it
 
 
 def compile_problem(problem: Problem) -> Compiled:
@@ -216,6 +224,7 @@ def compile_problem(problem: Problem) -> Compiled:
         other=problem.ends[:, ::-1].T.ravel()[order].astype(np.int64),
         kind=np.concatenate([problem.kinds, problem.kinds + k])[order].astype(np.int64),
         twin=position[(order + m) % max(2 * m, 1)],
+        away=np.zeros((0, n2 + 1), dtype=np.float32),
     )
 
 

@@ -175,8 +175,19 @@ def _worth(labels, problem):  # type: ignore[no-untyped-def]
             total += problem.unary[i, labels[i]]
         for slot in range(problem.first[i], problem.first[i + 1]):
             if problem.other[slot] > i:
-                total += problem.tables[problem.kind[slot], labels[i], labels[problem.other[slot]]]
+                total += _of_fact(problem, slot, labels[i], labels[problem.other[slot]])
     return total
+
+
+@njit(cache=True)
+def _of_fact(problem, slot, p, q):  # type: ignore[no-untyped-def]
+    """Return the evidence of a slot's fact if its object is p and the other one is q."""
+    out = problem.unary.shape[1] - 1
+    if len(problem.away) and p == out:
+        return problem.away[slot, q]
+    if len(problem.away) and q == out:
+        return problem.away[problem.twin[slot], p]
+    return problem.tables[problem.kind[slot], p, q]
 
 
 @njit(cache=True, nogil=True)
@@ -306,12 +317,12 @@ def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
     else:
         gained -= problem.unary[i, old]
     for slot in range(problem.first[i], problem.first[i + 1]):
-        kind, other = problem.kind[slot], problem.other[slot]
+        other = problem.other[slot]
         q = labels[other]
         if other == j:
-            gained += problem.tables[kind, p, old] - problem.tables[kind, old, p]
+            gained += _of_fact(problem, slot, p, old) - _of_fact(problem, slot, old, p)
         else:
-            gained += problem.tables[kind, p, q] - problem.tables[kind, old, q]
+            gained += _of_fact(problem, slot, p, q) - _of_fact(problem, slot, old, q)
     if j < 0:
         return gained, paid
     if old == out:
@@ -321,6 +332,6 @@ def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
     gained -= problem.unary[j, p]
     for slot in range(problem.first[j], problem.first[j + 1]):
         if problem.other[slot] != i:
-            kind, q = problem.kind[slot], labels[problem.other[slot]]
-            gained += problem.tables[kind, old, q] - problem.tables[kind, p, q]
+            q = labels[problem.other[slot]]
+            gained += _of_fact(problem, slot, old, q) - _of_fact(problem, slot, p, q)
     return gained, paid

@@ -58,3 +58,25 @@ def test_the_alias_tables_give_back_the_probabilities(problem: Problem, seed: in
     np.testing.assert_allclose(drawn / (n2 + 1), expected, atol=1e-5)
     assert not expected[~problem.compiled.allowed].any()
     assert guide.weight.sum() == pytest.approx(1.0, abs=1e-4)
+
+
+@settings(max_examples=40, deadline=None)
+@given(problems(), st.integers(0, 2**20))
+def test_facts_about_absent_objects_are_in_the_values(problem: Problem, seed: int) -> None:
+    n1, n2 = problem.unary.shape
+    if not n1 or not n2:
+        return
+    known, rng = problem.compiled, np.random.default_rng(seed)
+    away = rng.normal(0.0, 2.0, (len(known.kind), n2 + 1)).astype(np.float32)
+    away[:, -1] = 0.0
+    known = known._replace(away=away)
+    guide = guide_by(beliefs(problem, seed), known.allowed)
+    chains = new_chains(known, np.array([1.0, 0.3]))
+    begin(chains, known, guide, seed)
+    sample(chains, np.zeros((n1, n2 + 1), np.float32), np.zeros(2), known, guide, 9, seed)
+    owner = np.repeat(np.arange(n1), np.diff(known.first))
+    for labels, value in zip(chains.labels, chains.values, strict=True):
+        mine, theirs = labels[owner], labels[known.other]
+        about = away[mine == n2, theirs[mine == n2]].sum()
+        paid = problem.absent[labels == n2].sum()
+        assert value == pytest.approx(problem.value(to_assignment(labels, n2)) - paid + about, abs=1e-3)
