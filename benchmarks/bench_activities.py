@@ -117,8 +117,8 @@ def main() -> None:
                     right["relation graphs"] += answer.name == str(number)
                     right["longest common subsequence"] += nearest(words, examples, common) == number
                     right["edit distance"] += nearest(words, examples, edits) == number
-                    told = Activity.in_order("told", [[Step(word) for word in group] for group in way])
-                    swapped = {(a.thing, b.thing) for a, b in ground_activity(told, seen).swapped}
+                    activity = Activity.in_order("told", [[Step(word) for word in group] for group in way])
+                    swapped = {(a.thing, b.thing) for a, b in ground_activity(activity, seen).swapped}
                     told_wrong += len(swapped)
                     true_wrong += len(wrong)
                     found_wrong += len(swapped & wrong)

@@ -144,18 +144,18 @@ def main() -> None:
             pool = random_things(random)
             for _ in range(arguments.words):
                 word = random_word(random, pool[0])
-                heard = [singled_out(random, word, pool) for _ in range(max(SENTENCES))]
+                sentences = [singled_out(random, word, pool) for _ in range(max(SENTENCES))]
                 tests = [singled_out(random, word, pool) for _ in range(TESTS)]
                 tested += 1
-                swapped = random.random(len(heard)) < arguments.swapped
-                heard = [
+                swapped = random.random(len(sentences)) < arguments.swapped
+                sentences = [
                     (m, labels, int(random.integers(len(m)))) if wrong else (m, labels, place)
-                    for (m, labels, place), wrong in zip(heard, swapped, strict=True)
+                    for (m, labels, place), wrong in zip(sentences, swapped, strict=True)
                 ]
                 for count in SENTENCES:
                     examples = [
                         Example(measures[i], labels[i], i == place)
-                        for measures, labels, place in heard[:count]
+                        for measures, labels, place in sentences[:count]
                         for i in range(len(measures))
                     ]
                     ours = Attribute("blick", tuple(examples))

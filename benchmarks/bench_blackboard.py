@@ -299,8 +299,8 @@ def kills(number: int) -> int:
     with tempfile.TemporaryDirectory() as scratch, forks_of(WRITER) as writers:
         memory = Path(scratch) / "m"
         for seed in range(number):
-            said = writers.kill_after(memory, seed, rng.randrange(12), rng.uniform(0, 0.05))
-            acknowledged = int(said[-1].split()[1]) if said else acknowledged
+            output = writers.kill_after(memory, seed, rng.randrange(12), rng.uniform(0, 0.05))
+            acknowledged = int(output[-1].split()[1]) if output else acknowledged
             problem = _problem(memory, acknowledged)
             if problem:
                 wrong += 1

@@ -41,21 +41,21 @@ def measure() -> None:
     if folder is None:
         return
     tables = json.loads((folder / "scenes.json").read_text(encoding="utf-8"))
-    told = json.loads((folder / "instructions.json").read_text(encoding="utf-8"))
+    instructions = json.loads((folder / "instructions.json").read_text(encoding="utf-8"))
     scenes = {
         (name, side): scene_of(table["blocks"], side) for name, table in tables.items() for side in (*SIDES, "unknown")
     }
-    people = np.array([one["human_accuracy"] for one in told])
-    found = np.array([one["perspective"] for one in told])
+    people = np.array([one["human_accuracy"] for one in instructions])
+    found = np.array([one["perspective"] for one in instructions])
     figure("people", float(people.mean()), "share")
-    print(f"{len(told)} instructions; people picked the right block in a share of {people.mean():.3f}")
+    print(f"{len(instructions)} instructions; people picked the right block in a share of {people.mean():.3f}")
     for name, given in (("perspective unknown", False), ("perspective given", True)):
-        right, understood = np.zeros((2, len(told)))
-        for place, one in enumerate(told):
+        right, understood = np.zeros((2, len(instructions)))
+        for place, one in enumerate(instructions):
             side = one["perspective"] if given and one["perspective"] in SIDES else "unknown"
             right[place], understood[place] = answer(one, scenes[one["configuration"], side])
         whole = understood == 1
-        share(f"{name}: right", int(right.sum()), len(told))
+        share(f"{name}: right", int(right.sum()), len(instructions))
         share(f"{name}, understood: right", int(right[whole].sum()), int(whole.sum()))
         kinds = ", ".join(f"{kind} {right[found == kind].mean():.3f}" for kind in ("neither", "ambiguous", *SIDES))
         print(

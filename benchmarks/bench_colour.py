@@ -52,7 +52,7 @@ WAYS: dict[str, Comparison] = {
 Views = list[tuple[str, str, PointCloud]]
 
 
-def seen(folder: Path) -> Views:
+def views_of_tables(folder: Path) -> Views:
     """Return the object, table and cloud of every view, in the frame of its table."""
     places = sorted((place.split(":"), thing) for thing, listed in SAME.items() for place in listed)
     found: Views = []
@@ -121,15 +121,15 @@ def answers(views: Views, way: Comparison) -> Iterator[tuple[float, ...]]:
             )
 
 
-def report(said: str, rows: Sequence[tuple[float, ...]]) -> None:
+def report(title: str, rows: Sequence[tuple[float, ...]]) -> None:
     nearest, named, least, others, sure, right, alone, unknown, weight = np.array(rows, np.float64).T
     error = expected_calibration_error(np.concatenate([sure, alone]), np.concatenate([right, unknown]) > 0)
-    share(f"{said}: nearest category right", int(nearest.sum()), len(nearest))
-    share(f"{said}: named right", int(named.sum()), len(named))
-    figure(f"{said}: AUROC of the unknown", auroc(least, others), "share")
-    figure(f"{said}: calibration error", error, "share")
+    share(f"{title}: nearest category right", int(nearest.sum()), len(nearest))
+    share(f"{title}: named right", int(named.sum()), len(named))
+    figure(f"{title}: AUROC of the unknown", auroc(least, others), "share")
+    figure(f"{title}: calibration error", error, "share")
     print(
-        f"{said:22}  {nearest.mean():7.3f}  {named.mean():5.3f}  {auroc(least, others):5.3f}  {error:17.3f}"
+        f"{title:22}  {nearest.mean():7.3f}  {named.mean():5.3f}  {auroc(least, others):5.3f}  {error:17.3f}"
         f"  {np.median(weight):.2f}",
         flush=True,
     )
@@ -141,11 +141,11 @@ def main() -> None:
         folder = data_folder(FOLDER)
         if folder is None:
             return
-        views = seen(folder)
+        views = views_of_tables(folder)
         print(f"{len(views)} views of {len(SAME)} things on {len({table for _, table, _ in views})} tables")
         print("way                     nearest  named  AUROC  calibration error  weight of the last")
-        for said, way in WAYS.items():
-            report(said, list(answers(views, way)))
+        for title, way in WAYS.items():
+            report(title, list(answers(views, way)))
 
 
 if __name__ == "__main__":

@@ -94,12 +94,12 @@ ENGINES: dict[str, Callable[[str], int]] = {
 def measure(what: str, name: str, job: Callable[[], object]) -> None:
     started = time.perf_counter()
     try:
-        told = f"{job():9,} triples"
+        result = f"{job():9,} triples"
     except LimitError:
-        told = "undecided"
+        result = "undecided"
     taken = time.perf_counter() - started
     seconds(f"{what}: {name}", taken)
-    print(f"  {name:42} {taken:9.3f} s  {told}", flush=True)
+    print(f"  {name:42} {taken:9.3f} s  {result}", flush=True)
 
 
 def grown(what: str, text: str, stated: list[Triple]) -> None:
@@ -135,8 +135,8 @@ def main() -> None:
         # ---- the row of the spatial calculus goes here: measure("deixis calculus", …)
         print("justifications")
         spork = Triple("<urn:Spork>", SUB_CLASS_OF, NOTHING)
-        said = [Triple("<urn:Spork>", SUB_CLASS_OF, f"<{BASE}{name}>") for name in ("Fork", "Spoon")]
-        text = schema + write_ntriples([Triple("<urn:Spork>", TYPE, term("owl:Class")), *said])
+        triples = [Triple("<urn:Spork>", SUB_CLASS_OF, f"<{BASE}{name}>") for name in ("Fork", "Spoon")]
+        text = schema + write_ntriples([Triple("<urn:Spork>", TYPE, term("owl:Class")), *triples])
         measure("justification", "an impossible class (axioms)", lambda: len(justify(text, spork).axioms))
 
 

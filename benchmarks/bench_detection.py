@@ -248,7 +248,7 @@ def single_things(views: int, seed: int) -> None:
         print_verdicts("other makers'", [(name, mesh) for _, name, mesh in listed_meshes(folder)], views, seed)
 
 
-def print_verdicts(said: str, things: list[tuple[str, Mesh]], views: int, seed: int) -> None:
+def print_verdicts(kind: str, things: list[tuple[str, Mesh]], views: int, seed: int) -> None:
     """Print how many views of things are taken as one object, as a table or as something else, and of which things."""
     taken: Counter[str] = Counter()
     wrong: dict[str, Counter[str]] = {}
@@ -260,10 +260,10 @@ def print_verdicts(said: str, things: list[tuple[str, Mesh]], views: int, seed: 
             if verdict != Shows.OBJECT:
                 wrong.setdefault(name, Counter())[verdict] += 1
     total = taken.total()
-    print(f"{total} views of {len(things)} {said} things, taken as: {dict(taken.most_common())}", flush=True)
+    print(f"{total} views of {len(things)} {kind} things, taken as: {dict(taken.most_common())}", flush=True)
     for name, verdicts in wrong.items():
         print(f"    {name}: {dict(verdicts)}")
-    share(f"views of {said} single things taken as one object", taken[Shows.OBJECT], total)
+    share(f"views of {kind} single things taken as one object", taken[Shows.OBJECT], total)
 
 
 def _truth(cloud: PointCloud) -> Labels:

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from bench_naming import Views, distances, left_out, seen, split
+from bench_naming import Views, distances, left_out, split, views_of_meshes
 from bench_recognition import TABLES, found_on_table
 from common import data_folder
 from numpy.typing import NDArray
@@ -239,10 +239,10 @@ def named(scores: Array, views: Views, count: int, splits: int) -> tuple[float, 
             [scores[np.ix_(asked, taught[views.categories[taught] == name])].min(axis=1) for name in names], axis=1
         )
         truth = np.searchsorted(names, views.categories[asked])
-        told = auroc(least.min(axis=1), left_out(least, truth).min(axis=1))
-        results.append(((least.argmin(axis=1) == truth).mean(), told))
-    right, told = np.mean(results, axis=0).tolist()
-    return right, told
+        area = auroc(least.min(axis=1), left_out(least, truth).min(axis=1))
+        results.append(((least.argmin(axis=1) == truth).mean(), area))
+    right, area = np.mean(results, axis=0).tolist()
+    return right, area
 
 
 SIGNALS = {
@@ -284,11 +284,11 @@ def tell_unknown(held: Views, meshes: Views | None) -> None:
     if meshes is not None:
         sets |= {f"meshes, {count} views": signals(meshes, count, range(10)) for count in (3, 24)}
     scale = rows.std(axis=0)
-    for said, chosen in SIGNALS.items():
+    for signal, chosen in SIGNALS.items():
         fit = LogisticRegression(max_iter=500).fit(rows[:, chosen] / scale[chosen], unknown)
         for what, (asked, truth) in sets.items():
             score = fit.decision_function(asked[:, chosen] / scale[chosen])
-            print(f"{said:15}  {what:16}  AUROC {auroc(score[~truth], score[truth]):.3f}", flush=True)
+            print(f"{signal:15}  {what:16}  AUROC {auroc(score[~truth], score[truth]):.3f}", flush=True)
 
 
 def main() -> None:
@@ -301,7 +301,7 @@ def main() -> None:
         folder = data_folder(FOLDER)
         kinds = options.kinds
         ridge = options.ridge
-        meshes = None if folder is None else seen(folder, False, 12)
+        meshes = None if folder is None else views_of_meshes(folder, False, 12)
         held = procedural(2 * kinds // 3, kinds)
         if options.unknown:
             tell_unknown(held, meshes)
@@ -324,19 +324,19 @@ def main() -> None:
         if options.write:
             middle, kept = maps[DIMENSIONS[1]]
             np.savez(options.write, mean=middle.astype(np.float32), map=kept.astype(np.float32))
-        for said, (views, count, splits) in sets.items():
+        for title, (views, count, splits) in sets.items():
             parts = [logarithms(distances(views.described[way.name])) for way in (UPRIGHT, FORM)]
             together = np.tensordot(SHIPPED_JOINT.weights, parts, axes=1)
-            print(f"{said:24}  upright and form     {'{:.3f}, {:.3f}'.format(*named(together, views, count, splits))}")
+            print(f"{title:24}  upright and form     {'{:.3f}, {:.3f}'.format(*named(together, views, count, splits))}")
             for size, (middle, turn) in maps.items():
                 embedded = (vectors(views) - middle) @ turn
                 apart = logarithms(cdist(embedded, embedded))
                 for how, scores in (("alone", apart), ("beside", (1 - SHARE) * together + SHARE * apart)):
-                    right, told = named(scores, views, count, splits)
-                    figure(f"{said}, {size} numbers, {how}: named right", right, "share")
-                    figure(f"{said}, {size} numbers, {how}: AUROC of the unknown", told, "share")
-                    result = f"{right:.3f}, {told:.3f}"
-                    print(f"{said:24}  {size} numbers, {how:8} {result}", flush=True)
+                    right, area = named(scores, views, count, splits)
+                    figure(f"{title}, {size} numbers, {how}: named right", right, "share")
+                    figure(f"{title}, {size} numbers, {how}: AUROC of the unknown", area, "share")
+                    result = f"{right:.3f}, {area:.3f}"
+                    print(f"{title:24}  {size} numbers, {how:8} {result}", flush=True)
 
 
 if __name__ == "__main__":

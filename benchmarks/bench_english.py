@@ -69,19 +69,21 @@ class Names:
     """Correspondence between the names of a truth and the objects that were read."""
 
     def __init__(self, read: Fact) -> None:
-        self.said = {
+        self.wordings = {
             thing["id"]: {words(phrase) for phrase in (thing["id"], *thing["mentions"])} for thing in read["objects"]
         }
         if read.get("surface"):
-            self.said.setdefault(read["surface"], {words(read["surface"])})
+            self.wordings.setdefault(read["surface"], {words(read["surface"])})
 
     def of(self, name: str) -> set[str]:
         """Return our objects for a name of the truth."""
         meant = words(name)
-        exact = {ours for ours, said in self.said.items() if meant in said}
+        exact = {ours for ours, wordings in self.wordings.items() if meant in wordings}
         if exact or not meant:
             return exact
-        return {ours for ours, said in self.said.items() if any(one and one[-1] == meant[-1] for one in said)}
+        return {
+            ours for ours, wordings in self.wordings.items() if any(one and one[-1] == meant[-1] for one in wordings)
+        }
 
 
 FACT = re.compile(r"(?P<mark>~?)(?P<no>not )?(?P<relation>\w+)(?::(?P<part>[^(]+))?\((?P<names>[^)]*)\)")
@@ -245,9 +247,9 @@ def print_guesses(folder: Path) -> None:
                     right = any(agree(fact, other, names) for other in possible)
                     for name in stated.guesses or ("NONE",):
                         score = shares.setdefault(name, Score())
-                        score.right, score.told = score.right + right, score.told + 1
+                        score.right, score.read_facts = score.right + right, score.read_facts + 1
     for name, score in shares.items():
-        print(f"{name:12s} {score.right / score.told:.3f} of {score.told}")
+        print(f"{name:12s} {score.right / score.read_facts:.3f} of {score.read_facts}")
 
 
 def written_traps(file: Path) -> Iterator[tuple[str, str]]:
@@ -271,7 +273,7 @@ class Score:
     found: int = 0
     stated: int = 0
     right: int = 0
-    told: int = 0
+    read_facts: int = 0
 
     def add(self, text: Text, verbose: bool = False) -> None:
         """Read a text and compare its facts; print what is missing or wrong if ``verbose``."""
@@ -293,7 +295,7 @@ class Score:
             if ours["relation"] in ("contents", "kind"):
                 continue
             hit = any(agree(ours, {**fact, "part": None}, names) for fact in possible)
-            self.right, self.told = self.right + hit, self.told + 1
+            self.right, self.read_facts = self.right + hit, self.read_facts + 1
             if verbose and not hit:
                 ends = [ours["object"]] if ours["object"] else ours["arguments"]
                 print(f"{text.name}: not in the truth {ours['relation']}({ours['subjects']}, {ends})")
@@ -340,15 +342,15 @@ def main() -> None:
         if options.texts is not None:
             score, wrong = measure_texts(options.texts, options.verbose)
             share("stated facts of texts found", score.found, score.stated)
-            share("facts of texts read that they state", score.right, score.told)
-            found, right = score.found / score.stated, score.right / score.told
-            print(f"facts found {found:.3f} of {score.stated}; of our {score.told} facts {right:.3f} are stated")
+            share("facts of texts read that they state", score.right, score.read_facts)
+            found, right = score.found / score.stated, score.right / score.read_facts
+            print(f"facts found {found:.3f} of {score.stated}; of our {score.read_facts} facts {right:.3f} are stated")
             print(f"traps that become false facts: {len(wrong)}", *(f"\n    {text}: {fact}" for text, fact in wrong))
             return
         folder = data_folder("english")
         if folder is None:
             return
-        found = stated = right = told = placed = mentioned = 0
+        found = stated = right = read_facts = placed = mentioned = 0
         for case in sorted(path for path in folder.iterdir() if path.is_dir()):
             read = reading_to_dict(read_english((case / "text.txt").read_text(encoding="utf-8"), case.name))
             names, truth = Names(read), json.loads((case / "facts.json").read_text(encoding="utf-8"))
@@ -360,7 +362,7 @@ def main() -> None:
                     print(f"{case.name}: missing {fact}")
             for ours in filter(counted, read["facts"]):
                 hit = any(agree(ours, fact, names) for fact in truth)
-                right, told = right + hit, told + 1
+                right, read_facts = right + hit, read_facts + 1
                 if options.verbose and not hit:
                     print(f"{case.name}: not in the truth {ours['relation']}({ours['subjects']}, {ours['arguments']})")
             if options.ground:
@@ -370,17 +372,20 @@ def main() -> None:
                     print(f"{case.name}: {one} of {of} objects")
         wrong = list(traps(folder))
         answer = {
-            "facts": stated, "recall": round(found / stated, 3), "precision": round(right / told, 3),
+            "facts": stated, "recall": round(found / stated, 3), "precision": round(right / read_facts, 3),
             "traps_wrong": len(wrong), "objects_right": round(placed / mentioned, 3) if mentioned else None,
         }  # fmt: skip
         share("stated facts found", found, stated)
-        share("facts read that are in the truth", right, told)
+        share("facts read that are in the truth", right, read_facts)
         count("traps that become false facts", len(wrong))
         share("mentioned objects grounded right", placed, mentioned)
         if options.json:
             print(json.dumps(answer))
             return
-        print(f"facts found {answer['recall']} of {stated}; of our {told} facts {answer['precision']} are in the truth")
+        print(
+            f"facts found {answer['recall']} of {stated}; "
+            f"of our {read_facts} facts {answer['precision']} are in the truth"
+        )
         print(f"traps that become false facts: {len(wrong)}", *(f"\n    {text}: {fact}" for text, fact in wrong))
         if mentioned:
             print(f"objects grounded right: {answer['objects_right']} of {mentioned}")

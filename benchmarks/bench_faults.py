@@ -149,19 +149,19 @@ def interval(right: int, decided: int) -> str:
     """Return the right of the decided matches, with the 95 per cent interval of their share."""
     if not decided:
         return "none decided"
-    told = binomtest(right, decided).proportion_ci(method="wilson")
-    return f"{right} of {decided}, {told.low:.3f}-{told.high:.3f}"
+    bounds = binomtest(right, decided).proportion_ci(method="wilson")
+    return f"{right} of {decided}, {bounds.low:.3f}-{bounds.high:.3f}"
 
 
 def print_costs(seed: int, repeats: int = 5) -> None:
     """Print the processor time of a grounding in a warm process, with all sides and with one."""
     ontology = default_ontology()
-    for objects, facts, told in ((7, 12, "labels"), (7, 12, "kinds"), (12, 24, "labels"), (12, 24, "kinds")):
+    for objects, facts, known in ((7, 12, "labels"), (7, 12, "kinds"), (12, 24, "labels"), (12, 24, "kinds")):
         taken = np.zeros((repeats, 2))
         for number in range(-1, repeats):  # the first one warms up
             table = generate(objects, facts / objects, 0.0, seed=1000 * seed + number + 1)
             labels: list[Label | None] = [None] * len(table.boxes)
-            for i, p in enumerate(table.truth.tolist() if told == "labels" else []):
+            for i, p in enumerate(table.truth.tolist() if known == "labels" else []):
                 labels[p] = Label(f"d{i:04}")
             description, scene = table.description(kinds=True), table.scene()
             for place, sides in enumerate((STATED_SIDES, AS_IT_STANDS)):
@@ -170,7 +170,7 @@ def print_costs(seed: int, repeats: int = 5) -> None:
                 ground(evidence, engine_named("exact", sides=sides), Deadline.after(30.0))
                 taken[max(number, 0), place] = time.process_time() - started
         all_sides, one = 1000 * np.median(taken, axis=0)
-        print(f"{objects} objects, {facts} facts, {told}: {all_sides:.0f} processor ms, {one:.0f} with one side")
+        print(f"{objects} objects, {facts} facts, {known}: {all_sides:.0f} processor ms, {one:.0f} with one side")
 
 
 def main() -> None:
@@ -185,7 +185,7 @@ def main() -> None:
         print(f"{options.tables} tables of {OBJECTS} objects, {FACTS} facts: right of decided matches")
         print(f"{'fault':<40}{'kinds':<44}words alone")
         for name, fault in FAULTS.items():
-            told = []
+            columns = []
             for kinds in (True, False):
                 counts = np.zeros(2, dtype=int)
                 for number in range(options.tables):
@@ -198,8 +198,8 @@ def main() -> None:
                 what = f"{name}, {'kinds known' if kinds else 'words alone'}"
                 share(f"{what}: decided matches that are right", int(counts[1]), int(counts[0]))
                 share(f"{what}: objects decided", int(counts[0]), OBJECTS * options.tables)
-                told.append(f"{interval(int(counts[1]), int(counts[0]))} ({decided:.2f} decided)")
-            print(f"{name:<40}{told[0]:<44}{told[1]}", flush=True)
+                columns.append(f"{interval(int(counts[1]), int(counts[0]))} ({decided:.2f} decided)")
+            print(f"{name:<40}{columns[0]:<44}{columns[1]}", flush=True)
 
 
 if __name__ == "__main__":

@@ -89,10 +89,10 @@ def table_pairs(count: int, seed: int) -> Iterator[tuple[FitEvidence, bool]]:
                         drawn = [seed, objects, round(10 * facts_each), round(10 * off), changed, number]
                         first, second = np.random.SeedSequence(drawn).generate_state(2).tolist()
                         table = generate(objects, facts_each, off, changed, changed, seed=first)
-                        said = table.description(kinds=True)
+                        description = table.description(kinds=True)
                         moved = displaced(table, np.random.default_rng(second))
-                        yield verdict(said, table.boxes).evidence, True
-                        yield verdict(said, moved).evidence, False
+                        yield verdict(description, table.boxes).evidence, True
+                        yield verdict(description, moved).evidence, False
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,9 +137,9 @@ def decided_things(found: Verdict) -> dict[int, int]:
 
 def curve(right: NDArray[np.float64], wrong: NDArray[np.float64]) -> str:
     """Return the share of wrong descriptions noticed at each rate of false alarms, and the area under the curve."""
-    told = [f"{(wrong < np.quantile(right, share)).mean():.2f} at {share:g}" for share in ACCUSED]
+    rates = [f"{(wrong < np.quantile(right, share)).mean():.2f} at {share:g}" for share in ACCUSED]
     area = (right[:, None] > wrong).mean() + (right[:, None] == wrong).mean() / 2
-    return f"{', '.join(told)}; area {area:.3f}"
+    return f"{', '.join(rates)}; area {area:.3f}"
 
 
 def main() -> None:
@@ -159,17 +159,17 @@ def main() -> None:
 def _print_powers(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
     """Print the shipped and the fitted powers; pairs of a table are resampled together."""
     print(f"shipped: FACTS_POWER {FACTS_POWER}, CHANCE_SHARE {CHANCE_SHARE}, KINDS_POWER {KINDS_POWER}")
-    told, right = [one for one, _ in tables], np.array([right for _, right in tables])
-    print(f"likeliest powers on tables alone: {_listed(likeliest_powers(told, right))}")
+    evidence, right = [one for one, _ in tables], np.array([right for _, right in tables])
+    print(f"likeliest powers on tables alone: {_listed(likeliest_powers(evidence, right))}")
     if not images:
         return
     shown, own = [one for pair in images for one in pair.evidence], np.tile([True, False], len(images))
     print(f"likeliest powers on photographs alone: {_listed(likeliest_powers(shown, own))}")
-    print(f"fitted: {_listed(fit_powers(told, right, shown, own))}")
+    print(f"fitted: {_listed(fit_powers(evidence, right, shown, own))}")
     rng, drawn = np.random.default_rng(seed), []
     for _ in range(RESAMPLES):
-        some, few = (2 * rng.integers(n, size=n)[:, None] + np.arange(2) for n in (len(told) // 2, len(images)))
-        again = [[pairs[i] for i in places.ravel()] for pairs, places in ((told, some), (shown, few))]
+        some, few = (2 * rng.integers(n, size=n)[:, None] + np.arange(2) for n in (len(evidence) // 2, len(images)))
+        again = [[pairs[i] for i in places.ravel()] for pairs, places in ((evidence, some), (shown, few))]
         drawn.append(fit_powers(again[0], right[some.ravel()], again[1], own[few.ravel()]))
     low, high = np.quantile(drawn, (0.025, 0.975), axis=0)
     print(f"of {RESAMPLES} resamples 95 per cent are between {_listed(low)} and {_listed(high)}", flush=True)
@@ -180,7 +180,7 @@ def _listed(powers: NDArray[np.float64]) -> str:
 
 
 def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[PhotographPair], seed: int) -> None:
-    odds = np.array([told.log_odds for told, _ in tables])
+    odds = np.array([evidence.log_odds for evidence, _ in tables])
     own = np.array([right for _, right in tables])
     print(f"other generated tables, wrong ones noticed: {curve(odds[own], odds[~own])}")
     least = math.log(ANOTHER_PRIOR / (1 - ANOTHER_PRIOR))
@@ -193,8 +193,8 @@ def _print_curves(tables: list[tuple[FitEvidence, bool]], images: list[Photograp
     scores = np.zeros((len(images), 2))
     for test in folds(len(images), NUMBER_OF_FOLDS, seed):
         learned = [images[i].evidence for i in np.setdiff1d(np.arange(len(images)), test)]
-        told = [one for pair in learned for one in pair]
-        powers = likeliest_powers(told, np.tile([True, False], len(learned)))
+        evidence = [one for pair in learned for one in pair]
+        powers = likeliest_powers(evidence, np.tile([True, False], len(learned)))
         for i in test.tolist():
             scores[i] = [powers @ (one.facts, -one.chance, one.kinds) for one in images[i].evidence]
     print(f"photographs, cross-validated: {curve(scores[:, 0], scores[:, 1])}")
@@ -238,11 +238,11 @@ def _print_rates(count: int, seed: int) -> None:
             table = generate(12, facts / 12, 0.0, seed=5000 * seed + number)
             moved = shuffled(table, np.random.default_rng([seed, number])).boxes
             rates[2] += verdict(table.description(kinds=True), moved, sides=STATED_SIDES).fits < 0.5
-        told = ", ".join(
+        shares_unfit = ", ".join(
             f"{name} {rate:.3f}"
             for name, rate in zip(("right", "one fact in five wrong", "shuffled places"), rates / count, strict=True)
         )
-        print(f"{facts} facts: {told}, {count} tables each", flush=True)
+        print(f"{facts} facts: {shares_unfit}, {count} tables each", flush=True)
 
 
 if __name__ == "__main__":

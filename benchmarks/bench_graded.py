@@ -66,10 +66,12 @@ def graded_shares(
 ) -> NDArray[np.float64]:
     """Return the share named right in each image, each with its own meaning."""
     rng, sizes, shares = np.random.default_rng(1), default_ontology().sizes, []
-    for (said, boxes), meaning in zip(images, meanings, strict=True):
-        alone = meaning.weights.sizes * size_evidence(classes(said), boxes, sizes, meaning.sizes, metric=False)
+    for (description, boxes), meaning in zip(images, meanings, strict=True):
+        alone = meaning.weights.sizes * size_evidence(classes(description), boxes, sizes, meaning.sizes, metric=False)
         away = np.full(len(boxes), -1e3)
-        facts = fact_tables(said, boxes, meaning.models, saying=saying, literal=literal, unary=alone, absent=away)
+        facts = fact_tables(
+            description, boxes, meaning.models, saying=saying, literal=literal, unary=alone, absent=away
+        )
         shares.append(share_right(facts, alone, len(boxes), rng, orders))
     return np.array(shares)
 
@@ -77,10 +79,10 @@ def graded_shares(
 def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float64]:
     """Return the shares with degrees 1, 0.5 and 0, the crisp special case."""
     rng, shares = np.random.default_rng(1), []
-    for said, boxes in images:
-        names = scene_relations([f"o{i:03}" for i in range(len(boxes))], boxes, said.vocabulary).names
+    for description, boxes in images:
+        names = scene_relations([f"o{i:03}" for i in range(len(boxes))], boxes, description.vocabulary).names
         nothing = np.zeros((len(boxes), len(boxes)))
-        shares.append(share_right(crisp_tables(said, names), nothing, len(boxes), rng, orders))
+        shares.append(share_right(crisp_tables(description, names), nothing, len(boxes), rng, orders))
     return np.array(shares)
 
 
@@ -103,8 +105,8 @@ def on_tables(count: int, first: int) -> None:
         right, probability, hits, limits = [], [], [], []
         for seed in range(first, first + count):
             table = generate(12, facts, off, seed=seed)
-            said = fact_tables(table.description(), table.boxes)
-            problem = Problem(said.ends, said.kinds, said.tables, np.zeros((12, 12)), np.full(12, -1e3))
+            evidence = fact_tables(table.description(), table.boxes)
+            problem = Problem(evidence.ends, evidence.kinds, evidence.tables, np.zeros((12, 12)), np.full(12, -1e3))
             right.append(np.mean(exact(problem).assignment == table.truth))
             probability.append(posterior(problem).marginals[:, :12])
             hits.append(table.truth[:, None] == np.arange(12))

@@ -72,9 +72,9 @@ def measure(session: Session, first: int, runs: int) -> Times:
         script, scene = generated(number)
         grounding: Times = defaultdict(list)
 
-        def grounded(*told: object, **more: object) -> object:
+        def grounded(*arguments: object, **more: object) -> object:
             with timed(grounding, "ground"):  # noqa: B023
-                return answer(*told, **more)  # type: ignore[arg-type]
+                return answer(*arguments, **more)  # type: ignore[arg-type]
 
         learning.answer = grounded  # type: ignore[attr-defined, assignment]
         try:
@@ -111,7 +111,7 @@ def measure_words(session: Session, known: int, runs: int) -> Times:
     return times
 
 
-def told(lessons: int, times: Times, base: Times | None) -> str:
+def times_line(lessons: int, times: Times, base: Times | None) -> str:
     """Return one line: medians in milliseconds, and their ratios to those with the fewest lessons."""
     parts = []
     for what, taken in times.items():
@@ -137,7 +137,7 @@ def singly(path: Path, numbers: list[int], runs: int, words: bool) -> Times:
             times = measure(session, 1_000_000, runs)
             if words:
                 times |= measure_words(session, number, runs)
-            print(told(number, times, base), flush=True)
+            print(times_line(number, times, base), flush=True)
             base = base or times
     assert base is not None
     print(f"        on disk: {size(path) / 1e6:.1f} MB", flush=True)
@@ -149,9 +149,9 @@ def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
     examples = [generated(new) for new in range(number)]
     keep, kept = learning.keep_lessons, []  # type: ignore[attr-defined]
 
-    def timed_keep(*told: object) -> object:
+    def timed_keep(*arguments: object) -> object:
         started = time.perf_counter(), time.process_time()
-        taught = keep(*told)  # type: ignore[arg-type]
+        taught = keep(*arguments)  # type: ignore[arg-type]
         kept.append((time.perf_counter() - started[0], time.process_time() - started[1]))
         return taught
 
@@ -170,7 +170,7 @@ def as_batch(path: Path, number: int, runs: int, base: Times) -> None:
             f"grounding {behind:.1f} ms ({busy:.1f} ms of processor time); {most:.2f} GB of memory at the most",
             flush=True,
         )
-        print(told(number, measure(session, 1_000_000, runs), base), flush=True)
+        print(times_line(number, measure(session, 1_000_000, runs), base), flush=True)
     print(f"        on disk: {size(path) / 1e6:.1f} MB", flush=True)
 
 

@@ -148,8 +148,8 @@ def to_triples(n: int) -> None:
         found = classify(ontology, reasoner, properties=True).inferred.count(f"<{LEFT.iri}>")
         seconds_taken = time.perf_counter() - started
         ratio(f"a chain of {n} to triples", seconds_taken, taken, f"{reasoner.value} of owlready2")
-        told = f"{seconds_taken:.1f} s, {found:,} new: {seconds_taken / taken:.0f} times as long"
-        print(f"    {reasoner.value}, left only: {told}")
+        result = f"{seconds_taken:.1f} s, {found:,} new: {seconds_taken / taken:.0f} times as long"
+        print(f"    {reasoner.value}, left only: {result}")
 
 
 def axioms(n: int) -> str:

@@ -69,12 +69,12 @@ def borne(names: str, count: int, rng: np.random.Generator) -> list[Network]:
 def contradictory(nets: list[Network], rng: np.random.Generator) -> list[Network] | None:
     """Return the networks with an excluded relation on one pair; None if joint closure excludes nothing new."""
     closed = close_jointly(nets, links_between([net.calculus for net in nets]))
-    told = [{(c.first, c.second) for c in net.constraints} for net in nets]
+    stated_pairs = [{(c.first, c.second) for c in net.constraints} for net in nets]
     pairs = [
         (k, i, j)
         for k, net in enumerate(nets)
         for i, j in np.argwhere(np.triu(np.ones((net.size, net.size)), 1)).tolist()
-        if (i, j) not in told[k] and closed.relation(net.calculus.name, i, j) != net.calculus.universal
+        if (i, j) not in stated_pairs[k] and closed.relation(net.calculus.name, i, j) != net.calculus.universal
     ]
     if not pairs:
         return None

@@ -174,7 +174,7 @@ def case(
 def _calibration(
     layout: str, kinds: bool, objects: int, facts: float, missing: float, tables: int, limit: float, first: int
 ) -> None:
-    said, right, decided, there, clock, worked = [], [], [], [], [], []
+    probabilities, right, decided, there, clock, worked = [], [], [], [], [], []
     off: list[NDArray[np.float64]] = []
     for seed in range(first, first + tables):
         problem, truth = case(objects, facts, seed, layout, kinds, missing)
@@ -184,14 +184,14 @@ def _calibration(
         worked.append(time.process_time() - before)
         likeliest, probability = found.marginals.argmax(axis=1), found.marginals.max(axis=1)
         known = [bool(is_decided(p, float(e))) for p, e in zip(probability, found.errors, strict=True)]
-        said.append(probability)
+        probabilities.append(probability)
         right.append(likeliest == truth)
         there.append(truth < problem.unary.shape[1])
         decided.append(np.array(known) & (likeliest < problem.unary.shape[1]))
         if objects == REFERENCE_OBJECTS and layout == "seats":
             reference = discounted(problem, Posterior(_reference(problem), False, 0.0))
             off.append(np.abs(found.marginals - reference.marginals).max(axis=1))
-    p, r, d, t = (np.concatenate(known) for known in (said, right, decided, there))
+    p, r, d, t = (np.concatenate(known) for known in (probabilities, right, decided, there))
     far = np.concatenate(off) if off else None
     what = (
         f"{layout}, {'kinds' if kinds else 'words alone'}, {objects} objects, {facts:g} facts each, {missing:g} missing"
@@ -225,9 +225,9 @@ def _short(rare: int, things: int, seconds: float) -> None:
     with tempfile.TemporaryDirectory() as folder:
         script, scene = Path(folder) / "short.layout", Path(folder) / "short.scene.json"
         _write_short(rare, things, script, scene)
-        clock, worked, memory, said = _child(script, scene, seconds)
+        clock, worked, memory, result = _child(script, scene, seconds)
     known = f"{10:7}  {rare:23}  {things:6}"
-    print(f"{known}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {said[:150]}", flush=True)
+    print(f"{known}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {result[:150]}", flush=True)
 
 
 def _child(script: Path, scene: Path, seconds: float) -> list[str]:
@@ -246,13 +246,13 @@ def _write_short(rare: int, things: int, script: Path, scene: Path) -> None:
     for thing, label in zip(chosen[:rare].tolist(), RARE_LABELS, strict=False):
         labels[thing] = label
     names = [f"{labels[thing].replace(' ', '_')}_{number}" for number, thing in enumerate(chosen.tolist())]
-    said: dict[tuple[int, int], str] = {}
-    while len(said) < 30:
+    lines: dict[tuple[int, int], str] = {}
+    while len(lines) < 30:
         a, b = rng.choice(10, 2, replace=False).tolist()
-        if (b, a) not in said:
+        if (b, a) not in lines:
             exact = int(box_relations(boxes[[chosen[a], chosen[b]]], relations).names[0, 1])
-            said[a, b] = f"{names[a]} {relations.wide(list(relations.values())[exact]).phrase} {names[b]}\n"
-    script.write_text("".join(said.values()), encoding="utf-8")
+            lines[a, b] = f"{names[a]} {relations.wide(list(relations.values())[exact]).phrase} {names[b]}\n"
+    script.write_text("".join(lines.values()), encoding="utf-8")
     objects = [
         {"id": f"o{p:05}", "min": low.tolist(), "max": high.tolist(), "label": labels[p]}
         for p, (low, high) in enumerate(boxes)
@@ -264,8 +264,8 @@ def _limits(things: int, seconds: float) -> None:
     with tempfile.TemporaryDirectory() as folder:
         script, scene = Path(folder) / "large.layout", Path(folder) / "large.scene.json"
         _write(things, script, scene)
-        clock, worked, memory, said = _child(script, scene, seconds)
-    print(f"{things:6}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {said[:150]}", flush=True)
+        clock, worked, memory, result = _child(script, scene, seconds)
+    print(f"{things:6}  {seconds:5g} s  {clock:>6}  {worked:>9}  {memory:>4} MB  {result[:150]}", flush=True)
 
 
 def _write(things: int, script: Path, scene: Path) -> None:
@@ -275,15 +275,15 @@ def _write(things: int, script: Path, scene: Path) -> None:
     rng, relations = np.random.default_rng(0), default_ontology().relations
     boxes, _ = lay_boxes(things, rng)
     near = cKDTree(boxes.mean(axis=1)).query(boxes.mean(axis=1), 7)[1][:, 1:]
-    said: dict[tuple[int, int], str] = {}
-    while len(said) < 2.5 * things:
+    lines: dict[tuple[int, int], str] = {}
+    while len(lines) < 2.5 * things:
         subject = int(rng.integers(things))
         other = int(rng.choice(near[subject])) if rng.random() < 0.5 else int(rng.integers(things))
-        if subject != other and (other, subject) not in said:
+        if subject != other and (other, subject) not in lines:
             name = int(box_relations(boxes[[subject, other]], relations).names[0, 1])
             word = relations.wide(list(relations.values())[name]).phrase
-            said[subject, other] = f"d{subject:05} {word} d{other:05}\n"
-    script.write_text("".join(said.values()), encoding="utf-8")
+            lines[subject, other] = f"d{subject:05} {word} d{other:05}\n"
+    script.write_text("".join(lines.values()), encoding="utf-8")
     objects = [
         {"id": f"o{p:05}", "min": boxes[p, 0].tolist(), "max": boxes[p, 1].tolist()} for p in rng.permutation(things)
     ]

@@ -116,12 +116,14 @@ def measure(wordnet: Path | None) -> None:
     figure("reading of the words", read_ms, "ms")
     lexicon = ontology.lexicon
     if (folder := data_folder("tidybot")) is not None:
-        told = yaml.safe_load((folder / "scenarios.yml").read_text(encoding="utf-8"))
-        things = Counter(thing for each in told for key in ("seen_objects", "unseen_objects") for thing in each[key])
+        scenarios = yaml.safe_load((folder / "scenarios.yml").read_text(encoding="utf-8"))
+        things = Counter(
+            thing for each in scenarios for key in ("seen_objects", "unseen_objects") for thing in each[key]
+        )
         report("tidybot things", Counter(re.sub(r" \d+$", "", thing) for thing in things), lexicon, ontology.kinds)
         report(
             "tidybot places",
-            Counter(place for each in told for place in each["receptacles"]),
+            Counter(place for each in scenarios for place in each["receptacles"]),
             lexicon,
             ontology.kinds,
         )

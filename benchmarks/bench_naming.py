@@ -91,7 +91,7 @@ def meshes(folder: Path, everything: bool) -> Iterator[tuple[str, str, Mesh]]:
 WAYS_TO_DESCRIBE = {way.name: way.describe for way in (SPIN_IMAGE_ROOTS, UPRIGHT, FORM)}
 
 
-def kept(cache: Path | None, key: tuple[object, ...], make: Callable[[], Arrays]) -> Arrays:
+def cached(cache: Path | None, key: tuple[object, ...], make: Callable[[], Arrays]) -> Arrays:
     """Return the arrays of a file of the cache, or make and keep them; the key includes the code of perception."""
     if cache is None:
         return make()
@@ -119,14 +119,14 @@ def code_digest() -> str:
     return sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
-def seen(folder: Path, everything: bool, each: int, cache: Path | None = None) -> Views:
+def views_of_meshes(folder: Path, everything: bool, each: int, cache: Path | None = None) -> Views:
     """Return ``each`` views of each thing, described in every way; views without a descriptor are left out."""
     described: dict[str, list[NDArray[np.float32]]] = {name: [] for name in WAYS_TO_DESCRIBE}
     rows = []
     for number, (category, name, mesh) in enumerate(meshes(folder, everything)):
         vertices, faces = sha256(mesh.vertices.tobytes()), sha256(mesh.faces.tobytes())
         key = ("views", vertices.hexdigest(), faces.hexdigest(), number, each)
-        found = kept(cache, key, functools.partial(describe_views, mesh, number, each))
+        found = cached(cache, key, functools.partial(describe_views, mesh, number, each))
         for view in range(each):
             arrays = {way: found[f"{way} {view}"] for way in WAYS_TO_DESCRIBE}
             if all(map(len, arrays.values())):
@@ -154,7 +154,7 @@ def distances(arrays: Sequence[NDArray[np.float32]], cache: Path | None = None) 
         return {"distances": np.stack([view_distances(Target.of(rows), packed) for rows in arrays]).astype(np.float32)}
 
     digest = sha256(b"".join(array.tobytes() for array in arrays)).hexdigest()
-    return kept(cache, ("distances", digest), make)["distances"]
+    return cached(cache, ("distances", digest), make)["distances"]
 
 
 def split(views: Views, count: int, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -297,7 +297,7 @@ def compare(views: Views, matrices: dict[str, NDArray[np.float32]], splits: int,
     """Print a line for each method and number of views."""
     print("views  way                          right  top 3  AUROC  calibration error  right with none  not named")
     for count in TAUGHT_VIEWS:
-        for said, name in WAYS.items():
+        for title, name in WAYS.items():
             if name is forest and not forests:
                 continue
             found = [name(views, matrices, *split(views, count, seed)) for seed in range(splits)]
@@ -306,14 +306,14 @@ def compare(views: Views, matrices: dict[str, NDArray[np.float32]], splits: int,
             third = [
                 float((top == one.truth[:, None]).any(axis=1).mean()) for top, one in zip(order, found, strict=True)
             ]
-            told = [auroc(one.known.min(axis=1), one.unknown.min(axis=1)) for one in found]
-            mean(f"{said}, {count} views: named right", right)
-            mean(f"{said}, {count} views: AUROC of the unknown", told)
-            line = f"{count:5}  {said:27}  {np.mean(right):.3f}  {np.mean(third):.3f}  {np.mean(told):.3f}"
-            print(line + calibrated(f"{said}, {count} views", found), flush=True)
+            areas = [auroc(one.known.min(axis=1), one.unknown.min(axis=1)) for one in found]
+            mean(f"{title}, {count} views: named right", right)
+            mean(f"{title}, {count} views: AUROC of the unknown", areas)
+            line = f"{count:5}  {title:27}  {np.mean(right):.3f}  {np.mean(third):.3f}  {np.mean(areas):.3f}"
+            print(line + calibrated(f"{title}, {count} views", found), flush=True)
 
 
-def calibrated(said: str, found: Sequence[Answers]) -> str:
+def calibrated(title: str, found: Sequence[Answers]) -> str:
     """Return the calibration error of all answers, the share right, and the share of known views left unnamed."""
     given = [one for one in found if one.probabilities is not None]
     if not given:
@@ -324,7 +324,7 @@ def calibrated(said: str, found: Sequence[Answers]) -> str:
     sure = np.concatenate([each.max(axis=1) for each in shares])
     named = np.concatenate([each[: len(each) // 2, :-1].max(axis=1) >= MIN_LABEL_PROBABILITY for each in shares])
     error = expected_calibration_error(sure, right)
-    figure(f"{said}: calibration error", error, "share")
+    figure(f"{title}: calibration error", error, "share")
     return f"  {error:17.3f}  {right.mean():15.3f}  {1 - named.mean():12.3f}"
 
 
@@ -428,8 +428,8 @@ def words(views: Views, tables: int, facts: int) -> None:
         rights = [float(np.mean(looks)), *(named(script, each, names) for each in (bare, things))]
         totals += rights
         print(f"table {table}: by looks {rights[0]:.2f}; by words alone {rights[1]:.2f}; by both {rights[2]:.2f}")
-    looked, said, both = totals / tables
-    print(f"mean of {tables} tables: by looks {looked:.3f}; by words alone {said:.3f}; by both {both:.3f}")
+    looked, by_words, both = totals / tables
+    print(f"mean of {tables} tables: by looks {looked:.3f}; by words alone {by_words:.3f}; by both {both:.3f}")
 
 
 def describe(names: Sequence[str], things: Sequence[dict[str, object]], facts: int, rng: np.random.Generator) -> str:
@@ -439,10 +439,10 @@ def describe(names: Sequence[str], things: Sequence[dict[str, object]], facts: i
     exact = list(relations.values())
     found = scene.relations(relations).names
     pairs = [(i, j) for i in range(len(names)) for j in range(i)]
-    said = [pairs[k] for k in rng.choice(len(pairs), facts, replace=False)]
-    missing = set(range(len(names))) - {i for pair in said for i in pair}
-    said += [(i, (i + 1) % len(names)) for i in missing]
-    return "; ".join(f"{names[i]} {relations.wide(exact[int(found[i, j])]).word} {names[j]}" for i, j in said)
+    pairs_stated = [pairs[k] for k in rng.choice(len(pairs), facts, replace=False)]
+    missing = set(range(len(names))) - {i for pair in pairs_stated for i in pair}
+    pairs_stated += [(i, (i + 1) % len(names)) for i in missing]
+    return "; ".join(f"{names[i]} {relations.wide(exact[int(found[i, j])]).word} {names[j]}" for i, j in pairs_stated)
 
 
 def named(script: str, things: Sequence[dict[str, object]], names: Sequence[str]) -> float:
@@ -477,7 +477,7 @@ def main() -> None:
         ):
             for name, why in () if everything else entries.items():
                 print(f"{what}: {name}: {why}")
-        views = seen(folder, everything, 4 if quick else 12, options.cache)
+        views = views_of_meshes(folder, everything, 4 if quick else 12, options.cache)
         counted = len(np.unique(views.things)), len(np.unique(views.categories))
         print(f"{len(views.clouds)} views of {counted[0]} things of {counted[1]} categories")
         if options.words:

@@ -32,8 +32,8 @@ def main() -> None:
         ontology, engine = default_ontology(), engine_named("exact")
         found, probable = [], []
         for one in json.loads((folder / "direction_pairs.json").read_text(encoding="utf-8")):
-            said = Fact("target", (ontology.relations[one["word"]],), "landmark")
-            description = RelationGraph.from_facts(ontology.relations, ["target", "landmark"], [said])
+            fact = Fact("target", (ontology.relations[one["word"]],), "landmark")
+            description = RelationGraph.from_facts(ontology.relations, ["target", "landmark"], [fact])
             dots = np.array([(dot["x"], dot["y"], dot["radius"]) for dot in one["dots"]])
             boxes = np.stack([dots[:, :2] - dots[:, 2:], dots[:, :2] + dots[:, 2:]], axis=1)
             labels = [Label("landmark") if p == one["landmark"] else None for p in range(len(boxes))]

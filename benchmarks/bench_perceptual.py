@@ -42,9 +42,9 @@ def make_views(number: int, sparse: bool) -> list[View]:
         spin = rng.random((100, 153), np.float32)
         if sparse:
             spin *= rng.random(spin.shape) < 1 / 3
-        said = {"scene": f"scene{place // 10}", "object": f"o{place % 10}", "teacher": "Ada", "source": "scene.pcd"}
+        metadata = {"scene": f"scene{place // 10}", "object": f"o{place % 10}", "teacher": "Ada", "source": "scene.pcd"}
         category, when = f"category{place % 7}", start + timedelta(seconds=place)
-        views.append(View(f"view{place:06}", category, when, {"spin": spin}, metadata=said))
+        views.append(View(f"view{place:06}", category, when, {"spin": spin}, metadata=metadata))
     return views
 
 

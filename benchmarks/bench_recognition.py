@@ -211,7 +211,7 @@ def constants() -> None:
     forms = [form_parts(view) for kind in KINDS for seed in range(4) for view in views_of_thing(kind, seed, 2)]
     for name in PARTS:
         print(f"PARTS: {name} {np.median(pdist([form[name] for form in forms if form is not None])):.4g}", flush=True)
-    for said, comparison in (("SHIPPED", (recognising.UPRIGHT,)), ("SHIPPED_JOINT", SHAPES)):
+    for title, comparison in (("SHIPPED", (recognising.UPRIGHT,)), ("SHIPPED_JOINT", SHAPES)):
         kinds = [taught(6, 3, descriptor.describe) for descriptor in comparison]
         folds = [[kind for place, kind in enumerate(KINDS) if place % 4 != fold] for fold in range(4)]
         found = [
@@ -221,7 +221,7 @@ def constants() -> None:
         for name in ("threshold", "even", "doubt", "choice", "slips", "weights"):
             values = np.array([getattr(each.calibration, name) for each in found])
             least, most = values.min(axis=0), values.max(axis=0)
-            print(f"{said}: {name} {np.round(values.mean(axis=0), 3)}, from {least.round(3)} to {most.round(3)}")
+            print(f"{title}: {name} {np.round(values.mean(axis=0), 3)}, from {least.round(3)} to {most.round(3)}")
 
 
 def calibration(things: int = 6, each: int = 3) -> None:
@@ -239,13 +239,13 @@ def calibration(things: int = 6, each: int = 3) -> None:
         by_things = [taught(things, each, descriptor.describe) for descriptor in comparison]
         by_views = [{kind: replace(known, things={}) for kind, known in kinds.items()} for kinds in by_things]
         seen = [(kind, [descriptor.describe(view) for descriptor in comparison]) for kind, view in fresh]
-        for said, kinds in (("views held out", by_views), ("things held out", by_things)):
+        for title, kinds in (("views held out", by_views), ("things held out", by_things)):
             rows = [row for fold in range(4) for row in _answers(comparison, kinds, seen, fold)]
             confidence, right, unknown, nd = (np.array(column) for column in zip(*rows, strict=True))
-            error, told = expected_calibration_error(confidence, right), auroc(nd[~unknown], nd[unknown])
+            error, area = expected_calibration_error(confidence, right), auroc(nd[~unknown], nd[unknown])
             print(
-                f"{way}, {said:16} expected calibration error {error:.3f}; answers right {right.mean():.3f}, mean"
-                f" confidence {confidence.mean():.3f}; unknown told from known: AUROC {told:.3f}",
+                f"{way}, {title:16} expected calibration error {error:.3f}; answers right {right.mean():.3f}, mean"
+                f" confidence {confidence.mean():.3f}; unknown told from known: AUROC {area:.3f}",
                 flush=True,
             )
 
@@ -296,7 +296,7 @@ def tables() -> None:
         ("by default", (*SHAPES, recognising.COLOUR), DEFAULT),
     )
     print("taught  way               nearest  named  wrong name  unknown said  AUROC  calibration error")
-    for said, comparison, settings in ways:
+    for title, comparison, settings in ways:
         described = [
             [[(name, [each.describe(cloud) for each in comparison]) for name, cloud in table] for table in own]
             for own in found
@@ -309,13 +309,13 @@ def tables() -> None:
             columns = OnTable(*(np.array(column) for column in zip(*answers, strict=True)))
             sure = np.concatenate([columns.known_sure, columns.unknown_sure])
             right = np.concatenate([columns.known_right, columns.unknown_right])
-            what = f"{said}, {count} tables taught"
+            what = f"{title}, {count} tables taught"
             share(f"{what}: nearest category right", int(columns.nearest.sum()), len(columns.nearest))
             share(f"{what}: named right", int(columns.named.sum()), len(columns.named))
             share(f"{what}: never taught, called unknown", int(columns.unknown.sum()), len(columns.unknown))
             figure(f"{what}: calibration error", expected_calibration_error(sure, right), "share")
             print(
-                f"{count:6}  {said:16}  {columns.nearest.mean():7.3f}  {columns.named.mean():5.3f}"
+                f"{count:6}  {title:16}  {columns.nearest.mean():7.3f}  {columns.named.mean():5.3f}"
                 f"  {columns.wrong.mean():10.3f}  {columns.unknown.mean():12.3f}"
                 f"  {auroc(columns.least, columns.others):5.3f}  {expected_calibration_error(sure, right):17.3f}",
                 flush=True,
@@ -402,9 +402,9 @@ def main() -> None:
             for each in (100,) if quick else (100, 1_000):
                 random(each)
             return
-        for said, describe in (("spin images", SPIN_IMAGES), ("upright", recognising.UPRIGHT.describe)):
+        for title, describe in (("spin images", SPIN_IMAGES), ("upright", recognising.UPRIGHT.describe)):
             for things in (8,) if quick else (8, 79):
-                print(f"\n{said}", end="")
+                print(f"\n{title}", end="")
                 simulated(things, describe)
         calibration()
 

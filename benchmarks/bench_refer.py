@@ -54,8 +54,8 @@ def measure() -> None:
     for name, those in sets.items():
         if not those:
             continue
-        told = [(one, shipped_model()) for one in those]
-        print(f"{name}: {figures(name, told)}")
+        described = [(one, shipped_model()) for one in those]
+        print(f"{name}: {figures(name, described)}")
         blind = [(replace(one, scene=bare[id(one.scene)]), shipped_model()) for one in those]
         chance = np.mean([1 / len(one.scene.objects) for one in those])
         unnamed = f"{name}, class names hidden"
@@ -81,11 +81,11 @@ def without_some_labels(scene: Scene, seed: int) -> Scene:
     return replace(scene, objects=tuple(things))
 
 
-def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
+def figures(name: str, described: Sequence[tuple[Described, Model]]) -> str:
     """Record the figures of a set of sentences, each answered by its model, and return them as one line."""
-    right, certain, bits = np.zeros((3, len(told)))
-    asked, settled = np.zeros((2, 2, len(told)))
-    for place, (one, model) in enumerate(told):
+    right, certain, bits = np.zeros((3, len(described)))
+    asked, settled = np.zeros((2, 2, len(described)))
+    for place, (one, model) in enumerate(described):
         room = one.scene.room
         try:
             probabilities = model.probabilities(read_description(one.text), room)
@@ -97,26 +97,26 @@ def figures(name: str, told: Sequence[tuple[Described, Model]]) -> str:
         for row, enough in enumerate((DECIDED, ENOUGH)):
             asked[row, place], settled[row, place] = dialogue(probabilities, one, enough)
     decided = certain >= DECIDED
-    hard = np.array([one.hard for one, _ in told])
-    viewed = np.array([one.view_dependent for one, _ in told])
+    hard = np.array([one.hard for one, _ in described])
+    viewed = np.array([one.view_dependent for one, _ in described])
     kinds = {"easy": ~hard, "hard": hard, "view-dependent": viewed, "view-independent": ~viewed}
     parts = [f"{kind} {right[mask].mean():.3f}" for kind, mask in kinds.items() if mask.any()]
-    third = np.argsort(-certain, kind="stable")[: max(len(told) // 3, 1)]
+    third = np.argsort(-certain, kind="stable")[: max(len(described) // 3, 1)]
     bins = np.minimum((certain * BINS).astype(int), BINS - 1)
-    error = sum(abs((certain - right)[bins == k].sum()) for k in range(BINS)) / len(told)
-    share(f"{name}: right", int(right.sum()), len(told))
+    error = sum(abs((certain - right)[bins == k].sum()) for k in range(BINS)) / len(described)
+    share(f"{name}: right", int(right.sum()), len(described))
     for kind, mask in kinds.items():
         share(f"{name}, {kind}: right", int(right[mask].sum()), int(mask.sum()))
     share(f"{name}: right in the most probable third", int(right[third].sum()), len(third))
     figure(f"{name}: calibration error", error, "share")
-    share(f"{name}: decided", int(decided.sum()), len(told))
+    share(f"{name}: decided", int(decided.sum()), len(described))
     share(f"{name}: right if decided", int(right[decided].sum()), int(decided.sum()))
     figure(f"{name}: entropy of the answers", bits.mean(), "bits")
     for row, ending in enumerate(("", f" until {ENOUGH:g}")):
-        share(f"{name}: right after questions{ending}", int(settled[row].sum()), len(told))
+        share(f"{name}: right after questions{ending}", int(settled[row].sum()), len(described))
         figure(f"{name}: questions per sentence{ending}", asked[row].mean(), "questions")
     return (
-        f"{len(told)} sentences, right {right.mean():.3f} ({', '.join(parts)}); most probable third"
+        f"{len(described)} sentences, right {right.mean():.3f} ({', '.join(parts)}); most probable third"
         f" {right[third].mean():.3f}, calibration error {error:.3f}; decided {decided.mean():.3f}, of these right"
         f" {right[decided].sum() / max(decided.sum(), 1):.3f}; with {asked[0].mean():.2f} questions a"
         f" sentence {settled[0].mean():.3f}, with {asked[1].mean():.2f} (until {ENOUGH:g}) {settled[1].mean():.3f};"

@@ -19,7 +19,7 @@ from records import command_line, mean, recorded
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.comparison.likeness import Comparison, Described, Seen, seen
+from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, compared_scene
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes
 from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 
@@ -89,7 +89,7 @@ def described(name: str, layout: Laid, rng: np.random.Generator) -> Described:
     return Described(name, RelationGraph.from_facts(RELATIONS, objects, facts, kinds=[iri(k) for k in layout.kinds]))
 
 
-def scene(name: str, layout: Laid, labelled: float, rng: np.random.Generator) -> Seen:
+def scene(name: str, layout: Laid, labelled: float, rng: np.random.Generator) -> ComparedScene:
     kept = rng.random(len(layout.kinds)) >= MISSING
     kinds = [kind for kind, keep in zip(layout.kinds, kept, strict=True) if keep]
     centres, sizes = layout.boxes[kept].mean(axis=1), np.diff(layout.boxes[kept], axis=1)[:, 0]
@@ -100,7 +100,7 @@ def scene(name: str, layout: Laid, labelled: float, rng: np.random.Generator) ->
     seen_kinds = [iri(kind) if rng.random() < labelled else None for kind in (*kinds, *more)]
     order = rng.permutation(len(boxes))
     ids = [f"o{k}" for k in range(len(boxes))]
-    return seen(name, scene_relations(ids, boxes[order], RELATIONS, [seen_kinds[k] for k in order]))
+    return compared_scene(name, scene_relations(ids, boxes[order], RELATIONS, [seen_kinds[k] for k in order]))
 
 
 def iri(word: str) -> str:
@@ -109,13 +109,13 @@ def iri(word: str) -> str:
     return kind.iri
 
 
-def bag(layout: Described, one: Seen) -> float:
+def bag(layout: Described, one: ComparedScene) -> float:
     """Return Dice's coefficient of kinds, without unlabelled things in the intersection."""
     common = Counter(layout.graph.kinds) & Counter(kind for kind in one.kinds if kind is not None)
     return 2 * sum(common.values()) / (len(layout.graph.nodes) + len(one.kinds))
 
 
-def by_bag(scenes: list[Seen], layouts: list[Described], backwards: bool) -> list[list[str]]:
+def by_bag(scenes: list[ComparedScene], layouts: list[Described], backwards: bool) -> list[list[str]]:
     """Rank by the bag of kinds: layouts for each scene or, ``backwards``, scenes for each layout."""
     scores = np.array([[bag(layout, one) for layout in layouts] for one in scenes])
     names = [one.name for one in (scenes if backwards else layouts)]
@@ -154,13 +154,13 @@ def measure(labelled: float, seed: int) -> None:
     by_layout = [[found.scene for found in rank_scenes(one, scenes, comparison, TOP)] for one in layouts]
     ended = time.perf_counter()
     print(f"{labelled:.0%} of the things labelled, seed {seed}: {LAYOUTS} layouts, {len(scenes)} scenes")
-    told = f"{labelled:.0%} labelled"
+    setting = f"{labelled:.0%} labelled"
     wanted, kinds = [one.name[:3] for one in scenes], by_bag(scenes, layouts, backwards=False)
-    print(f"  scene to layouts  similarity    {figures(f'{told}, scene to layouts, similarity', by_scene, wanted)}")
-    print(f"                    bag of kinds  {figures(f'{told}, scene to layouts, bag of kinds', kinds, wanted)}")
+    print(f"  scene to layouts  similarity    {figures(f'{setting}, scene to layouts, similarity', by_scene, wanted)}")
+    print(f"                    bag of kinds  {figures(f'{setting}, scene to layouts, bag of kinds', kinds, wanted)}")
     wanted, kinds = [one.name for one in layouts], by_bag(scenes, layouts, backwards=True)
-    print(f"  layout to scenes  similarity    {figures(f'{told}, layout to scenes, similarity', by_layout, wanted)}")
-    print(f"                    bag of kinds  {figures(f'{told}, layout to scenes, bag of kinds', kinds, wanted)}")
+    print(f"  layout to scenes  similarity    {figures(f'{setting}, layout to scenes, similarity', by_layout, wanted)}")
+    print(f"                    bag of kinds  {figures(f'{setting}, layout to scenes, bag of kinds', kinds, wanted)}")
     print(f"  {middle - started:.1f} s for {len(scenes)} scenes, {ended - middle:.1f} s for {LAYOUTS} layouts")
 
 

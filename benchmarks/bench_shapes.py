@@ -77,11 +77,15 @@ def shapes(rng: np.random.Generator) -> str:
         target = f"sh:target{(*targets, f'Node :n{rng.integers(NODES)}')[rng.integers(4)]}"
         properties = []
         for _ in range(rng.integers(1, 4)):
-            said = {constraint(rng, 1)} | {f"sh:minCount {rng.integers(3)}"} | {f"sh:maxCount {rng.integers(1, 3)}"}
+            constraints = (
+                {constraint(rng, 1)} | {f"sh:minCount {rng.integers(3)}"} | {f"sh:maxCount {rng.integers(1, 3)}"}
+            )
             way = path(rng)
             if way.startswith(":") and rng.random() < 0.3:
-                said |= {("sh:equals :p1", "sh:disjoint :p2", "sh:lessThan :p3", "sh:uniqueLang true")[rng.integers(4)]}
-            properties.append(f"sh:property [ sh:path {way} ; {' ; '.join(sorted(said))} ]")
+                constraints |= {
+                    ("sh:equals :p1", "sh:disjoint :p2", "sh:lessThan :p3", "sh:uniqueLang true")[rng.integers(4)]
+                }
+            properties.append(f"sh:property [ sh:path {way} ; {' ; '.join(sorted(constraints))} ]")
         text.append(f":S{k} a sh:NodeShape ; {target} ; {' ; '.join(properties)} .")
     return PREFIXES + "\n".join(text)
 

@@ -111,7 +111,7 @@ def main() -> None:
         for file in sorted(folder.glob("*/qa*_valid.txt")):
             every = stories(file)
             drawn = random.Random(0).sample(every, min(options.sample, len(every)))
-            hits = [answer(story, first, second) == said for story, first, second, said in drawn]
+            hits = [answer(story, first, second) == right_answer for story, first, second, right_answer in drawn]
             if options.verbose:
                 for sentence in {s for story, *_ in drawn for s in story if len(steps(s)) != 1}:
                     print("no step:", sentence)

@@ -79,14 +79,15 @@ def main() -> None:
 
 def report_facts(name: str, scripts: Iterator[deixis.Script]) -> None:
     """Print the share of facts that are read again, and the words per fact, with all facts and without the implied."""
-    facts = read = words = told = left_out = 0
+    facts = read = words = stated = left_out = 0
     for script in scripts:
         every, few = deixis.tell(script, all_facts=True), deixis.tell(script)
         facts, read = facts + len(every.facts), read + len(every.facts) - len(every.misread)
-        words, told, left_out = words + len(few.text.split()), told + len(few.facts), left_out + len(few.left_out)
+        words, stated, left_out = words + len(few.text.split()), stated + len(few.facts), left_out + len(few.left_out)
     share(f"facts read again, {name}", read, facts)
     print(
-        f"{name}: {read / facts:.3f} of {facts} facts read again; {words / told:.1f} words a fact, {left_out} left out"
+        f"{name}: {read / facts:.3f} of {facts} facts read again; "
+        f"{words / stated:.1f} words a fact, {left_out} left out"
     )
 
 
@@ -94,11 +95,11 @@ def report_objects(name: str, scenes: Iterator[deixis.Scene]) -> None:
     """Print the share of objects that the text finds, and that a description of their own singles out."""
     objects = found = described = words = 0
     for scene in scenes:
-        told = deixis.tell(scene)
-        objects += len(told.objects)
-        found += sum(thing.found is True for thing in told.objects)
-        described += sum(thing.description is not None for thing in told.objects)
-        words += len(told.text.split())
+        telling = deixis.tell(scene)
+        objects += len(telling.objects)
+        found += sum(thing.found is True for thing in telling.objects)
+        described += sum(thing.description is not None for thing in telling.objects)
+        words += len(telling.text.split())
     share(f"objects found by the text, {name}", found, objects)
     share(f"objects with a description, {name}", described, objects)
     print(

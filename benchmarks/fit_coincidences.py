@@ -80,8 +80,8 @@ def print_effect(title: str, settings: list[list[JudgedTable]]) -> None:
     """Print decided matches and calibration errors of each setting, without and with the shipped weights."""
     print(f"{title}\nobjects  facts  kinds  missing  without coincidences; with the shipped weights")
     for (objects, facts, kinds, share, _), tables in zip(SETTINGS, settings, strict=True):
-        said = "; ".join(effect(tables, weights) for weights in (NO_COINCIDENCES, SHIPPED_WEIGHTS))
-        print(f"{objects:7}  {facts:5}  {'yes' if kinds else 'no':5}  {share:7}  {said}", flush=True)
+        effects = "; ".join(effect(tables, weights) for weights in (NO_COINCIDENCES, SHIPPED_WEIGHTS))
+        print(f"{objects:7}  {facts:5}  {'yes' if kinds else 'no':5}  {share:7}  {effects}", flush=True)
 
 
 def effect(tables: list[JudgedTable], weights: CoincidenceWeights) -> str:

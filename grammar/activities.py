@@ -167,9 +167,9 @@ def _activity(entry: dict[str, Any]) -> Activity:
     present = np.array(entry["present"], dtype=np.float64)
     if present.shape != (n,) or (counts < 0).any() or not int(entry["examples"]) > 0:
         raise ValueError("its numbers do not fit its steps")
-    told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+    stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
     layings = tuple(tuple(_laid(*thing) for thing in laying) for laying in entry.get("layings", ()))
-    return Activity(str(entry["name"]), steps, told, present, counts, int(entry["examples"]), layings)
+    return Activity(str(entry["name"]), steps, stated, present, counts, int(entry["examples"]), layings)
 
 
 def _laid(kind: str, place: list[float] | None) -> LaidThing:

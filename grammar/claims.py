@@ -204,7 +204,7 @@ def meaning(phrase: str) -> Phrase:
     if text == "upside down":
         return Phrase("upside_down")
     if words[-2:] == ["each", "other"]:
-        return Phrase(next(t for t, said in EACH_OTHER.items() if " ".join(words[:-2]) in said))
+        return Phrase(next(t for t, phrases in EACH_OTHER.items() if " ".join(words[:-2]) in phrases))
     if text in NEAREST:
         return Phrase(NEAREST[text])
     if " ".join(words[:2]) in CLOSER:
@@ -277,10 +277,10 @@ def phrase_of(claim: Claim) -> str | None:
     >>> phrase_of(Claim("distance_more", ("fork",), ("plate",), metres=0.025))
     'at least 2.5 cm from'
     """
-    said = Phrase(claim.relation, claim.value, claim.metres)
+    wanted = Phrase(claim.relation, claim.value, claim.metres)
     pattern = CLAIM_OF_PATTERN if claim.arguments and not _objects_are_of_than(claim) else CLAIM_PATTERN
     for phrase in _candidates(claim):
-        if re.fullmatch(pattern, phrase, re.IGNORECASE) and meaning(phrase) == said:
+        if re.fullmatch(pattern, phrase, re.IGNORECASE) and meaning(phrase) == wanted:
             return phrase
     return None
 

@@ -135,8 +135,8 @@ def _premature_end(tokens: list[Token], accepts: set[str], draft: Draft) -> Stat
                 near = draft.nearest(word, list(draft.phrases))
                 if near is not None:
                     meant = draft.phrases[near]
-                    said = " ".join(("_".join(words[:at]), meant, "_".join(words[at + 1 :])))
-                    whole = said if len(tokens) == 1 else None
+                    corrected = " ".join(("_".join(words[:at]), meant, "_".join(words[at + 1 :])))
+                    whole = corrected if len(tokens) == 1 else None
                     return StatementError(span_of(tokens), message, f"did you mean '{meant}' by '{word}'?", whole)
         return StatementError(span_of(tokens), message, RELATION_EXPECTED)
     if last.type == "IS":
@@ -166,8 +166,8 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
     if token.casefold() in DENIALS:
         return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", DENIAL_HINT)
     if "RELATION" in accepts and (meant := _nearest_relation(tokens, at, draft)) is not None:
-        said, where, phrase = meant
-        return StatementError(where, f"expected a relation, not '{said}'", f"did you mean '{phrase}'?", phrase)
+        words_given, where, phrase = meant
+        return StatementError(where, f"expected a relation, not '{words_given}'", f"did you mean '{phrase}'?", phrase)
     if token.type in NAMES:
         return _unexpected_token(tokens, at, accepts)
     if at and tokens[at - 1].type == "NAME":
@@ -198,13 +198,13 @@ def _nearest_relation(tokens: list[Token], at: int, draft: Draft) -> tuple[str, 
                 break
             if start == end and tokens[end].type == "FUNCTION":
                 continue  # "to" alone resembles too many phrases
-            said = " ".join([tokens[start].rpartition("_")[2], *tokens[start + 1 : end + 1]])
-            near = draft.nearest(plain_phrase(said), list(phrases))
+            words_given = " ".join([tokens[start].rpartition("_")[2], *tokens[start + 1 : end + 1]])
+            near = draft.nearest(plain_phrase(words_given), list(phrases))
             if near is None:
                 continue
-            ratio = SequenceMatcher(None, plain_phrase(said), near).ratio()
+            ratio = SequenceMatcher(None, plain_phrase(words_given), near).ratio()
             if ratio > best:
-                best, found = ratio, (said, _from_last_word(tokens[start], tokens[end]), phrases[near])
+                best, found = ratio, (words_given, _from_last_word(tokens[start], tokens[end]), phrases[near])
     return found
 
 

@@ -151,8 +151,8 @@ class StatementWriter:
             case RelationStatement(subjects, relations, objects, modifiers):
                 denied = "" if modifiers.positive else "not "
                 phrases = " or ".join(relation.phrase for relation in relations)
-                said = f"{denied}{phrases}"
-                return f"{_front(modifiers)}{self._list(subjects)} {said} {self._list(objects)}"
+                words = f"{denied}{phrases}"
+                return f"{_front(modifiers)}{self._list(subjects)} {words} {self._list(objects)}"
 
     def _claim(self, statement: ClaimStatement) -> str:
         """Return a statement of claims; a comment for a claim that the language cannot say."""

@@ -31,7 +31,7 @@ def is_english(path: str | Path) -> bool:
     return str(path) == STANDARD_INPUT or str(path).casefold().endswith(ENGLISH_ENDINGS)
 
 
-def read_script(
+def read_script_file(
     path: str | Path,
     ontology: Ontology | None = None,
     deadline: Deadline = Deadline.never(),

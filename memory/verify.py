@@ -156,13 +156,13 @@ def _disagreements(store: ox.Store, categories: Mapping[str, str], lessons: Mapp
             yield Finding(where, f"it taught the view '{view}' of '{category}', which is now of '{categories[view]}'")
         elif view not in lessons:
             yield Finding(where, f"it taught the view '{view}', which refers to no lesson")
-    said = {(link.lesson, link.view) for link in taught}
+    linked = {(link.lesson, link.view) for link in taught}
     for view, lesson in sorted(lessons.items()):
         if view not in categories:
             yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', but is missing")
         elif not ledger.knows(store, lesson):
             yield _lessonless(view, lesson)
-        elif (lesson, view) not in said:
+        elif (lesson, view) not in linked:
             yield Finding(f"view '{view}'", f"it belongs to the lesson '{lesson}', which does not list it")
 
 

@@ -51,9 +51,9 @@ class Claim:
     source: Source | None = None
 
     def __str__(self) -> str:
-        said = [*self.subjects, *self.arguments]
+        arguments = [*self.subjects, *self.arguments]
         if self.value is not None:
-            said.append(repr(self.value))
+            arguments.append(repr(self.value))
         if self.metres is not None:
-            said.append(f"{self.metres:g} m")
-        return f"{'' if self.positive else 'not '}{self.relation}({', '.join(said)})"
+            arguments.append(f"{self.metres:g} m")
+        return f"{'' if self.positive else 'not '}{self.relation}({', '.join(arguments)})"

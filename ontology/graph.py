@@ -30,6 +30,20 @@ class RelationGraph:
 
     An edge has a set of relations (several are a disjunction), a sign, an optional flag, a weight and a source. Each
     relation has its reading, so that wide and exact relations are never mixed up.
+
+    Examples
+    --------
+    >>> from deixis.ontology.facts import Fact
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> relations = default_ontology().relations
+    >>> facts = [Fact("fork", (relations["left"],), "plate"), Fact("napkin", (relations["on"],), "plate")]
+    >>> graph = RelationGraph.from_facts(relations, ["fork", "napkin", "plate"], facts)
+    >>> graph.index("plate"), graph.subjects.tolist(), graph.objects.tolist()
+    (2, [0, 1], [2, 2])
+    >>> [str(fact) for fact in graph.facts()]
+    ['left(fork, plate)', 'on(napkin, plate)']
+    >>> graph.subgraph(["fork", "plate"]).nodes
+    ('fork', 'plate')
     """
 
     vocabulary: Relations

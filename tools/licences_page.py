@@ -154,11 +154,11 @@ def licence(package: Distribution) -> str:
         return LICENCES_OF_FILES[name]
     if name in LICENCES_OF_SOURCES:
         return LICENCES_OF_SOURCES[name]
-    said = package.metadata.json
-    stated = str(said.get("license_expression") or said.get("license") or "").strip()
+    metadata = package.metadata.json
+    stated = str(metadata.get("license_expression") or metadata.get("license") or "").strip()
     classifiers = [
         line.split(" :: ")[-1]
-        for line in said.get("classifier", ())
+        for line in metadata.get("classifier", ())
         if line.startswith("License :: ") and line != "License :: OSI Approved"
     ]
     plain = stated if stated and "\n" not in stated and stated != "UNKNOWN" else ""

@@ -59,8 +59,8 @@ def _gradient(problem: Problem, x: NDArray[np.float64]) -> NDArray[np.float64]:
     gradient = np.zeros_like(x)
     for kind, table in enumerate(problem.tables):
         facts = problem.ends[problem.kinds == kind]
-        said = table.astype(np.float64)
-        np.fill_diagonal(said, 0.0)
-        np.add.at(gradient[:, :n2], facts[:, 0], x[facts[:, 1], :n2] @ said.T)
-        np.add.at(gradient[:, :n2], facts[:, 1], x[facts[:, 0], :n2] @ said)
+        weights = table.astype(np.float64)
+        np.fill_diagonal(weights, 0.0)
+        np.add.at(gradient[:, :n2], facts[:, 0], x[facts[:, 1], :n2] @ weights.T)
+        np.add.at(gradient[:, :n2], facts[:, 1], x[facts[:, 0], :n2] @ weights)
     return gradient

@@ -280,8 +280,8 @@ def bounds_to_json(bounds: Bounds) -> Any:
 
 
 def _fluent_to_dict(fluent: Fluent) -> dict[str, Any]:
-    said = fluent.statement
-    words = [said.subject, said.predicate, *([] if said.object is None else [said.object])]
+    statement = fluent.statement
+    words = [statement.subject, statement.predicate, *([] if statement.object is None else [statement.object])]
     ends = {"start": bounds_to_json(fluent.start), "finish": bounds_to_json(fluent.finish)}
     return {"id": fluent.id, "statement": words, **ends}
 

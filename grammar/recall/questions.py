@@ -180,8 +180,8 @@ def _plain(text: str) -> str:
 
 def _not_understood(text: str) -> RecallQuestionError:
     near = difflib.get_close_matches(_plain(text), [_plain(each) for each in WORDINGS], n=2, cutoff=0.0)
-    said = {_plain(each): each for each in WORDINGS}
-    examples = " or ".join(f"'{said[each]}'" for each in near)
+    wordings = {_plain(each): each for each in WORDINGS}
+    examples = " or ".join(f"'{wordings[each]}'" for each in near)
     return RecallQuestionError(
         f"the question '{' '.join(text.split())[:80]}' is not understood; say it as in {examples}"
     )

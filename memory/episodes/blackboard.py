@@ -58,6 +58,26 @@ class Blackboard(Closing):
 
     Writes are atomic and have sequence numbers; readers see all of a write or nothing of it. Times are seconds since
     ``origin``.
+
+    Examples
+    --------
+    >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+    >>> with Blackboard.transient() as board:
+    ...     fluent = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
+    ...     board.add(fluent, by="tracker")
+    ...     str(board.fluent("f1").fluent)
+    ...     board.update("f1", certainty=0.7, by="tracker")
+    ...     len(board.now())
+    ...     board.finish("f1", 5.0, by="tracker")
+    ...     [str(each.fluent) for each in board.holding(Pattern("cup"), 3.0, 4.0)]
+    ...     [(each.sequence, str(each.kind)) for each in board.changes()]
+    1
+    'f1: on(cup, table) from [2, 2] to (-∞, ∞)'
+    2
+    1
+    3
+    ['f1: on(cup, table) from [2, 2] to [5, 5]']
+    [(1, 'add'), (2, 'update'), (3, 'finish')]
     """
 
     def __init__(self, keys: Keys, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> None:
@@ -839,8 +859,8 @@ def has_episodes(memory: Path) -> bool:
 
 def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:
     ends = interval_keys(fluent.start.lower, fluent.finish.upper, ending)
-    said = fluent.statement
-    return *ends, _word_key(SUBJECT, said.subject, ending), _word_key(PREDICATE, said.predicate, ending)
+    statement = fluent.statement
+    return *ends, _word_key(SUBJECT, statement.subject, ending), _word_key(PREDICATE, statement.predicate, ending)
 
 
 def _word_key(kind: bytes, word: str, ending: bytes) -> bytes:

@@ -125,8 +125,8 @@ class Update:
         start = known.start if self.start is None else at(self.start)
         finish = known.finish if self.finish is None else at(self.finish)
         certainty = known.certainty if self.certainty is None else self.certainty
-        said = known if self.statement is None else _stating(known, self.statement)
-        return replace(_within(said, start, finish), certainty=certainty, source=self.source or known.source)
+        stated = known if self.statement is None else _stating(known, self.statement)
+        return replace(_within(stated, start, finish), certainty=certainty, source=self.source or known.source)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,10 +33,18 @@ def encode_fluent(fluent: EpisodicFluent) -> bytes:
     bytes
         A JSON array.
     """
-    said, source = fluent.fluent.statement, fluent.source
+    statement, source = fluent.fluent.statement, fluent.source
     ends = [_bounds(fluent.fluent.start), _bounds(fluent.fluent.finish)]
     where = [source.origin.value, source.by, source.event]
-    values = [fluent.fluent.id, said.subject, said.predicate, said.object, *ends, fluent.certainty, *where]
+    values = [
+        fluent.fluent.id,
+        statement.subject,
+        statement.predicate,
+        statement.object,
+        *ends,
+        fluent.certainty,
+        *where,
+    ]
     return _write(values).encode()
 
 

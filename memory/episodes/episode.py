@@ -64,11 +64,11 @@ class EpisodicFluent:
     def __post_init__(self) -> None:
         if not (isinstance(self.certainty, int | float) and 0 < self.certainty <= 1):
             raise EpisodeError(f"the certainty of '{self.id}' must be above 0 and at most 1, got {self.certainty}")
-        said = self.fluent.statement
-        for text, what in ((self.id, "id"), (said.subject, "subject"), (said.predicate, "predicate")):
+        statement = self.fluent.statement
+        for text, what in ((self.id, "id"), (statement.subject, "subject"), (statement.predicate, "predicate")):
             check_text(text, f"the {what} of a fluent")
-        if said.object is not None:
-            check_text(said.object, f"the object of '{self.id}'")
+        if statement.object is not None:
+            check_text(statement.object, f"the object of '{self.id}'")
 
     @property
     def id(self) -> str:

@@ -150,18 +150,18 @@ def fluent_values(fluent: EpisodicFluent) -> Values:
     dict
         Objects by predicate; an unknown bound of a time has none.
     """
-    said, source = fluent.statement, fluent.source
+    statement, source = fluent.statement, fluent.source
     found: Values = {
         TYPE: [_FLUENT, _OBSERVATION],
         _IDENTIFIER: [ox.Literal(fluent.id)],
-        _SUBJECT: [thing_iri(said.subject)],
-        _PREDICATE: [predicate_iri(said.predicate)],
+        _SUBJECT: [thing_iri(statement.subject)],
+        _PREDICATE: [predicate_iri(statement.predicate)],
         _CERTAINTY: [_double(fluent.certainty)],
         _ORIGIN: [_ORIGINS[source.origin]],
         _BY: [resource_iri("agent", source.by)],
     }
-    if said.object is not None:
-        value = _object(said.predicate, said.object)
+    if statement.object is not None:
+        value = _object(statement.predicate, statement.object)
         found[_TEXT if isinstance(value, ox.Literal) else _THING] = [value]
     start, finish = fluent.start, fluent.finish
     for predicate, time in zip(_ENDS, (start.lower, start.upper, finish.lower, finish.upper), strict=True):

@@ -140,11 +140,11 @@ class FluentSearch:
         return sorted(found, key=lambda each: (each.start.lower, each.id))
 
     def _matches(self, found: EpisodicFluent) -> bool:
-        said, source = found.statement, found.source
+        statement, source = found.statement, found.source
         return (
-            (self.subjects is None or said.subject in self.subjects)
-            and (self.predicates is None or said.predicate in self.predicates)
-            and (self.objects is None or said.object in self.objects)
+            (self.subjects is None or statement.subject in self.subjects)
+            and (self.predicates is None or statement.predicate in self.predicates)
+            and (self.objects is None or statement.object in self.objects)
             and (self.origins is None or source.origin in self.origins)
             and (self.by is None or source.by in self.by)
             and self._is_in_window(found)

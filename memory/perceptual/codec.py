@@ -186,18 +186,18 @@ def write_view(view: View) -> tuple[tuple[bytes, bytes], tuple[bytes, bytes]]:
     arrays = save(arrays_by_name(view.descriptors, view.points))
     key = keys.view_key(keys.VIEW, view.category, view.id, keys.microseconds(view.time))
     arrays_key = keys.ARRAYS + key[1:]
-    said = b"%b\0\0%b" % (checksum(arrays_key, arrays), json_text(view.metadata).encode())
-    return (key, seal(key, said)), (arrays_key, arrays)
+    metadata = b"%b\0\0%b" % (checksum(arrays_key, arrays), json_text(view.metadata).encode())
+    return (key, seal(key, metadata)), (arrays_key, arrays)
 
 
-def write_about(said: ViewHeader) -> tuple[bytes, bytes]:
+def write_about(header: ViewHeader) -> tuple[bytes, bytes]:
     """Return key and value of a view's header.
 
     The value holds the checksum of the arrays, their category if it is another one, and the metadata as JSON.
 
     Parameters
     ----------
-    said
+    header
         Header of the view.
 
     Returns
@@ -205,9 +205,9 @@ def write_about(said: ViewHeader) -> tuple[bytes, bytes]:
     tuple
         Key and sealed value.
     """
-    place = keys.split_view_key(said.arrays_key)[0]
-    ended = keys.ended("" if place == said.category else place)
-    return said.key, seal(said.key, said.sum + ended + said.metadata.encode())
+    place = keys.split_view_key(header.arrays_key)[0]
+    ended = keys.ended("" if place == header.category else place)
+    return header.key, seal(header.key, header.sum + ended + header.metadata.encode())
 
 
 def read_about(key: bytes, sealed: bytes) -> ViewHeader:
@@ -285,12 +285,12 @@ def named(key: bytes) -> str:
     return f"view '{view_id}' of '{category}'"
 
 
-def read_view(said: ViewHeader, arrays: bytes | None) -> View:
+def read_view(header: ViewHeader, arrays: bytes | None) -> View:
     """Return a view from its header and the value of its arrays.
 
     Parameters
     ----------
-    said
+    header
         Header of the view.
     arrays
         Value of its arrays; None if it is missing.
@@ -306,20 +306,20 @@ def read_view(said: ViewHeader, arrays: bytes | None) -> View:
         If the arrays are missing, or differ from what was written.
     """
     if arrays is None:
-        raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays are missing")
-    if checksum(said.arrays_key, arrays) != said.sum:
-        raise DamagedMemoryError(f"view '{said.id}' of '{said.category}': its arrays differ from what was written")
+        raise DamagedMemoryError(f"view '{header.id}' of '{header.category}': its arrays are missing")
+    if checksum(header.arrays_key, arrays) != header.sum:
+        raise DamagedMemoryError(f"view '{header.id}' of '{header.category}': its arrays differ from what was written")
     loaded = load(arrays)
     for array in loaded.values():
         array.flags.writeable = False
     descriptors, points = arrays_by_use(loaded)
     return View.stored(
-        id=said.id,
-        category=said.category,
-        time=keys.moment(said.time),
+        id=header.id,
+        category=header.category,
+        time=keys.moment(header.time),
         descriptors=MappingProxyType(descriptors),
         points=points,
-        metadata=JsonObject(said.metadata),
+        metadata=JsonObject(header.metadata),
     )
 
 

@@ -234,8 +234,8 @@ def view_file(view: View) -> bytes:
     bytes
         Content of the file; equal views give equal bytes.
     """
-    said = {"id": view.id, "category": view.category, "time": view.time.isoformat(), "metadata": dict(view.metadata)}
-    return pack(arrays_by_name(view.descriptors, view.points), json.dumps(said, sort_keys=True))
+    entry = {"id": view.id, "category": view.category, "time": view.time.isoformat(), "metadata": dict(view.metadata)}
+    return pack(arrays_by_name(view.descriptors, view.points), json.dumps(entry, sort_keys=True))
 
 
 def category_file(record: CategoryRecord) -> bytes:
@@ -251,8 +251,8 @@ def category_file(record: CategoryRecord) -> bytes:
     bytes
         Content of the file; equal records give equal bytes.
     """
-    said = {"name": record.name, "metadata": dict(record.metadata)}
-    return pack(record.state, json.dumps(said, sort_keys=True))
+    entry = {"name": record.name, "metadata": dict(record.metadata)}
+    return pack(record.state, json.dumps(entry, sort_keys=True))
 
 
 class Archive(Closing):
@@ -298,9 +298,9 @@ class Archive(Closing):
         ImportFormatError
             If an entry is malformed.
         """
-        for name, said, arrays in self._entries("categories/"):
+        for name, entry, arrays in self._entries("categories/"):
             with _EntryErrors(self.file, name):
-                yield CategoryRecord(said["name"], arrays, said["metadata"])
+                yield CategoryRecord(entry["name"], arrays, entry["metadata"])
 
     def views(self) -> Iterator[View]:
         """Iterate over the views.
@@ -315,10 +315,10 @@ class Archive(Closing):
         ImportFormatError
             If an entry is malformed.
         """
-        for name, said, arrays in self._entries("views/"):
+        for name, entry, arrays in self._entries("views/"):
             with _EntryErrors(self.file, name):
-                time = datetime.fromisoformat(said["time"])
-                yield View(said["id"], said["category"], time, *arrays_by_use(arrays), said["metadata"])
+                time = datetime.fromisoformat(entry["time"])
+                yield View(entry["id"], entry["category"], time, *arrays_by_use(arrays), entry["metadata"])
 
     def _check_head(self) -> None:
         if _HEAD not in self._zip.namelist():
@@ -343,8 +343,8 @@ class Archive(Closing):
         for name in sorted(name for name in self._zip.namelist() if name.startswith(folder)):
             with _EntryErrors(self.file, name):
                 arrays, note = unpack(self._read(name))
-                said = json.loads(note)
-            yield name, said, arrays
+                entry = json.loads(note)
+            yield name, entry, arrays
 
     def _read(self, name: str) -> bytes:
         info = self._zip.getinfo(name)

@@ -115,24 +115,24 @@ class WriteBatch:
         view
             View to write.
         """
-        said, arrays = write_view(view)
-        self.pairs += (said, arrays)
-        self.places[view.id] = said[0]
+        header, arrays = write_view(view)
+        self.pairs += (header, arrays)
+        self.places[view.id] = header[0]
         self.views += 1
 
-    def move(self, said: ViewHeader, category: str) -> None:
+    def move(self, header: ViewHeader, category: str) -> None:
         """Move an existing view to another category; its arrays stay where they are.
 
         Parameters
         ----------
-        said
+        header
             Header of the view.
         category
             Name of the new category.
         """
-        moved = write_about(said.moved(category))
-        self.pairs += ((said.key, None), moved)
-        self.places[said.id] = moved[0]
+        moved = write_about(header.moved(category))
+        self.pairs += ((header.key, None), moved)
+        self.places[header.id] = moved[0]
 
     def drop(self, view_id: str, key: bytes, arrays: Sequence[bytes]) -> None:
         """Drop an existing view, the keys of its arrays, and those of its lesson and its teachings.

@@ -210,8 +210,8 @@ def _check_seal(folder: Path, store: Path) -> None:
         return
     restore, open_rest = "restore the folder from a copy", f"or delete {SEAL} to open what is left"
     try:
-        said = json.loads(file.read_text(encoding="ascii"))
-        files, name = dict(said["files"]), said["store"]
+        seal = json.loads(file.read_text(encoding="ascii"))
+        files, name = dict(seal["files"]), seal["store"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DamagedMemoryError(
             f"the memory at {folder} is damaged: {SEAL} cannot be read; {restore}, {open_rest}"

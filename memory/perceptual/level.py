@@ -595,8 +595,8 @@ def _arrays_of(handle: Handle, view_id: str, key: bytes) -> list[bytes]:
     """Return the keys of a view's arrays, or all keys that can be its own where its header is damaged."""
     with Snapshot(handle) as now:
         try:
-            said = now.about_at(key)
-            return [] if said is None else [said.arrays_key]
+            header = now.about_at(key)
+            return [] if header is None else [header.arrays_key]
         except DamagedMemoryError:
             return [other for other in now.bare_keys(keys.ARRAYS) if keys.split_view_key(other)[1] == view_id]
 

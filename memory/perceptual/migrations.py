@@ -45,11 +45,11 @@ def reseal(old: plyvel.DB, new: plyvel.DB) -> None:
         elif kind == keys.COUNT and crc_fits:
             value = seal(key, value[:-4])
         elif kind == keys.VIEW and crc_fits:
-            said = parse_about(key, value[:-4])
-            arrays = old.get(said.arrays_key)
-            if arrays is not None and arrays[-8:] == said.sum and _nh_fits(said.arrays_key, arrays):
-                said = said._replace(sum=checksum(said.arrays_key, arrays[:-8]))
-            value = write_about(said)[1]
+            header = parse_about(key, value[:-4])
+            arrays = old.get(header.arrays_key)
+            if arrays is not None and arrays[-8:] == header.sum and _nh_fits(header.arrays_key, arrays):
+                header = header._replace(sum=checksum(header.arrays_key, arrays[:-8]))
+            value = write_about(header)[1]
         new.put(key, value)
 
 

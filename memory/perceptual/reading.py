@@ -172,11 +172,11 @@ class Snapshot(Closing):
             If the header is damaged.
         """
         place = self._handle.place_of(check_name("a view's id", view_id))
-        said = None if place is None else self.about_at(place)
-        if said is None:  # at the time of the snapshot it was elsewhere, or did not exist
+        header = None if place is None else self.about_at(place)
+        if header is None:  # at the time of the snapshot it was elsewhere, or did not exist
             place = self._places().get(view_id)
-            said = None if place is None else self.about_at(place)
-        return said
+            header = None if place is None else self.about_at(place)
+        return header
 
     def about_at(self, key: bytes) -> ViewHeader | None:
         """Return the header of the view with this key, or None.
@@ -228,17 +228,17 @@ class Snapshot(Closing):
         DamagedMemoryError
             If the view is damaged.
         """
-        said = self.about(id)
-        if said is None:
+        header = self.about(id)
+        if header is None:
             raise unknown_view(id)
-        return self.view_of(said)
+        return self.view_of(header)
 
-    def view_of(self, said: ViewHeader) -> View:
+    def view_of(self, header: ViewHeader) -> View:
         """Return a view from its header.
 
         Parameters
         ----------
-        said
+        header
             Header of the view.
 
         Returns
@@ -252,7 +252,7 @@ class Snapshot(Closing):
             If the arrays are missing or damaged.
         """
         with self._handle:
-            return stored_arrays(self._open, said)
+            return stored_arrays(self._open, header)
 
     def views(self, category: str | None = None) -> Iterator[View]:
         """Iterate over the views, reading them one by one.
@@ -286,13 +286,13 @@ class Snapshot(Closing):
 
     def _listed(self, walk: Any, pair: tuple[bytes, bytes]) -> View:
         """Return a view by its place in the order, near which its arrays usually are."""
-        said = read_about(*pair)
-        key = said.arrays_key
+        header = read_about(*pair)
+        key = header.arrays_key
         found, arrays = next(walk, (b"", None))
         if found != key:  # after renaming and merging
             walk.seek(key)
             found, arrays = next(walk, (b"", None))
-        return read_view(said, arrays if found == key else None)
+        return read_view(header, arrays if found == key else None)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
         """Iterate over category, id and time of views, without reading arrays.
@@ -313,7 +313,7 @@ class Snapshot(Closing):
             If the category is unknown.
         """
         found = (read_about(*pair) for pair in self.pairs(self._beginning(category)))
-        return (ViewKey(said.category, said.id, keys.moment(said.time)) for said in found)
+        return (ViewKey(header.category, header.id, keys.moment(header.time)) for header in found)
 
     def _beginning(self, category: str | None) -> bytes:
         if category is None:
@@ -505,13 +505,13 @@ def glance(db: Any, place: bytes) -> View | None:
     if sealed is None:
         return None
     try:
-        said = read_about(place, sealed)
-        return stored_arrays(db, said)
+        header = read_about(place, sealed)
+        return stored_arrays(db, header)
     except DamagedMemoryError:
         return None
 
 
-def stored_arrays(source: Any, said: ViewHeader) -> View:
+def stored_arrays(source: Any, header: ViewHeader) -> View:
     """Return a view from its header and a database or a snapshot.
 
     Only arrays are read without LevelDB's checksums: the checksum in the header is stronger and covers the key.
@@ -520,7 +520,7 @@ def stored_arrays(source: Any, said: ViewHeader) -> View:
     ----------
     source
         ``plyvel.DB``, or a snapshot of one.
-    said
+    header
         Header of the view.
 
     Returns
@@ -533,7 +533,7 @@ def stored_arrays(source: Any, said: ViewHeader) -> View:
     DamagedMemoryError
         If the arrays are missing or damaged.
     """
-    return read_view(said, source.get(said.arrays_key, fill_cache=False))
+    return read_view(header, source.get(header.arrays_key, fill_cache=False))
 
 
 def _same(item: Any) -> Any:
@@ -626,11 +626,11 @@ def _categories(now: Snapshot) -> Iterator[Finding]:
 def _view(now: Snapshot, key: bytes, sealed: bytes) -> Iterator[Finding]:
     where = named(key)
     try:
-        said = read_about(key, sealed)
-        found = now.about(said.id)
+        header = read_about(key, sealed)
+        found = now.about(header.id)
         if found is None or found.key != key:
             yield Finding(where, "there is another view with this id")
-        now.view_of(said)
+        now.view_of(header)
     except _WRONG as error:
         yield Finding(where, _line(error).removeprefix(f"{where}: "))
 
@@ -640,8 +640,8 @@ def _strays(now: Snapshot) -> Iterator[Finding]:
     try:
         for key in now.bare_keys(keys.ARRAYS):
             try:
-                said = now.about(keys.split_view_key(key)[1])
-                if said is not None and said.arrays_key == key:
+                header = now.about(keys.split_view_key(key)[1])
+                if header is not None and header.arrays_key == key:
                     continue
             except _WRONG:
                 continue  # reported with its view

@@ -41,21 +41,21 @@ class JsonObject(Mapping[str, Any]):
         self.text = text
 
     @cached_property
-    def _said(self) -> dict[str, Any]:
-        said: dict[str, Any] = json.loads(self.text)
-        return said
+    def _values(self) -> dict[str, Any]:
+        parsed: dict[str, Any] = json.loads(self.text)
+        return parsed
 
     def __getitem__(self, name: str) -> Any:
-        return self._said[name]
+        return self._values[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._said)
+        return iter(self._values)
 
     def __len__(self) -> int:
-        return len(self._said)
+        return len(self._values)
 
     def __repr__(self) -> str:
-        return repr(self._said)
+        return repr(self._values)
 
 
 @dataclass(frozen=True, eq=False)

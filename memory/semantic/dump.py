@@ -91,8 +91,8 @@ class Dump:
 
         def started(lesson: str) -> datetime:
             about = (ledger.lesson_node(lesson), ledger.STARTED)
-            said = self.lessons[lesson].get(GraphName.EPISODES, ())
-            return ledger.earliest(triple for triple in said if (triple.subject, triple.predicate) == about)
+            episodes = self.lessons[lesson].get(GraphName.EPISODES, ())
+            return ledger.earliest(triple for triple in episodes if (triple.subject, triple.predicate) == about)
 
         return sorted(self.lessons, key=lambda lesson: (started(lesson), lesson))
 
@@ -156,14 +156,14 @@ def read_dump(file: Path) -> Dump:
         if lesson in dump.lessons:
             raise ImportFormatError(f"{file}: it has a lesson '{lesson}' and triples without a graph; rename the file")
         about = iri(learned_iri("lesson", lesson))
-        told = [
+        episodes = [
             ox.Triple(about, iri(W3C.RDF_TYPE), iri(_ACTIVITY)),
             ox.Triple(about, iri(W3C.RDFS_LABEL), text(lesson)),
             ox.Triple(about, iri(PROV.STARTED_AT_TIME), typed(datetime.now(UTC))),
         ]
         key = content_key(lesson)
         dump.lessons[lesson][GraphName.ASSERTED].update(ledger.as_stored(named(key, plain)))
-        dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(told))
+        dump.lessons[lesson][GraphName.EPISODES].update(ledger.as_stored(episodes))
     return dump
 
 

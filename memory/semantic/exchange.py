@@ -169,10 +169,10 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
     operations: list[ledger.Operation] = []
     new_lessons: list[str] = []
     for lesson in dump.in_order():
-        said = {name: sorted(triples, key=str) for name, triples in dump.lessons[lesson].items() if triples}
+        contributions = {name: sorted(triples, key=str) for name, triples in dump.lessons[lesson].items() if triples}
         if lesson in known:
             if {name: set(triples) for name, triples in memory.contributions(lesson).items()} != {
-                name: set(triples) for name, triples in said.items()
+                name: set(triples) for name, triples in contributions.items()
             }:
                 raise RejectedWriteError(
                     f"{file}: its lesson '{lesson}' differs from the one in the memory at {memory.path}; forget that "
@@ -180,9 +180,9 @@ def _merged(memory: SemanticMemory, dump: Dump, file: Path) -> Change:
                 )
             continue
         new_lessons.append(lesson)
-        held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
-        operations += ledger.arrival(store, lesson, said, held)
-        for name, triples in said.items():
+        held = {name: ledger.stored_triples(store, graph_iri(name), triples) for name, triples in contributions.items()}
+        operations += ledger.arrival(store, lesson, contributions, held)
+        for name, triples in contributions.items():
             added[name].update(triples)
     operations += ledger.numbering(store, new_lessons)
     for name, graph, loose in _loose(store, dump):

@@ -341,10 +341,10 @@ class SemanticMemory(Closing):
         for lesson, contributions in lessons.items():
             if self.knows(lesson):
                 raise RejectedWriteError(f"there is already a lesson '{lesson}': forget it first, or choose another")
-            said = incoming(lesson, contributions)
-            if not any(said.values()):
+            contributions_of_lesson = incoming(lesson, contributions)
+            if not any(contributions_of_lesson.values()):
                 raise RejectedWriteError(f"lesson '{lesson}' has no triples: give at least one")
-            changes.append(arriving(self.store, lesson, said))
+            changes.append(arriving(self.store, lesson, contributions_of_lesson))
         return together(*changes, Change(operations=tuple(ledger.numbering(self.store, list(lessons)))))
 
     def departure(self, lesson: str) -> Change:

@@ -165,18 +165,20 @@ def lesson_records(learned: Iterable[ox.Triple], episodes: Iterable[ox.Triple]) 
     tuple of LessonRecord
         The lessons, by id.
     """
-    told, said = TripleIndex(episodes), TripleIndex(learned)
+    episode_index, learned_index = TripleIndex(episodes), TripleIndex(learned)
     records = []
-    for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):
-        script_text, scene_text = (told.value(lesson, predicate) for predicate in (DX.SCRIPT_TEXT, DX.SCENE_TEXT))
+    for lesson in episode_index.subjects(W3C.RDF_TYPE, DX.LESSON):
+        script_text, scene_text = (
+            episode_index.value(lesson, predicate) for predicate in (DX.SCRIPT_TEXT, DX.SCENE_TEXT)
+        )
         if script_text is None or scene_text is None:
             continue
         name = last_part(lesson)
-        parts = said.subjects(PROV.WAS_GENERATED_BY, lesson)
-        kept = [_match(part, said) for part in parts if DX.MATCH in said.values(part, W3C.RDF_TYPE)]
+        parts = learned_index.subjects(PROV.WAS_GENERATED_BY, lesson)
+        kept = [_match(part, learned_index) for part in parts if DX.MATCH in learned_index.values(part, W3C.RDF_TYPE)]
         matches = tuple(match for match in kept if match is not None)
-        words_only = DX.WORD_LESSON in told.values(lesson, W3C.RDF_TYPE)
-        script_file = told.value(lesson, DX.SCRIPT_FILE) or name
+        words_only = DX.WORD_LESSON in episode_index.values(lesson, W3C.RDF_TYPE)
+        script_file = episode_index.value(lesson, DX.SCRIPT_FILE) or name
         records.append(LessonRecord(name, script_file, script_text, scene_text, matches, words_only))
     return tuple(records)
 
@@ -211,39 +213,39 @@ def provenances(episodes: Iterable[ox.Triple]) -> tuple[Provenance, ...]:
         The provenance of each lesson that has a time, by id. A lesson of an earlier version has the teacher
         :data:`~deixis.ontology.lessons.types.ANONYMOUS` and no scene file.
     """
-    told = TripleIndex(episodes)
+    episode_index = TripleIndex(episodes)
     found = []
-    for lesson in told.subjects(W3C.RDF_TYPE, DX.LESSON):
-        started, teacher = told.value(lesson, PROV.STARTED_AT_TIME), told.value(lesson, DX.TAUGHT_BY)
+    for lesson in episode_index.subjects(W3C.RDF_TYPE, DX.LESSON):
+        started, teacher = episode_index.value(lesson, PROV.STARTED_AT_TIME), episode_index.value(lesson, DX.TAUGHT_BY)
         if started is None:
             continue
         found.append(
             Provenance(
                 lesson=last_part(lesson),
-                teacher=(told.value(teacher, W3C.RDFS_LABEL) if teacher else None) or ANONYMOUS,
+                teacher=(episode_index.value(teacher, W3C.RDFS_LABEL) if teacher else None) or ANONYMOUS,
                 started=datetime.fromisoformat(started),
-                scene_file=told.value(lesson, DX.SCENE_FILE) or "",
-                scene_text=told.value(lesson, DX.SCENE_TEXT) or "",
-                script_text=told.value(lesson, DX.SCRIPT_TEXT) or "",
-                told_text=told.value(lesson, DX.TOLD_TEXT),
+                scene_file=episode_index.value(lesson, DX.SCENE_FILE) or "",
+                scene_text=episode_index.value(lesson, DX.SCENE_TEXT) or "",
+                script_text=episode_index.value(lesson, DX.SCRIPT_TEXT) or "",
+                told_text=episode_index.value(lesson, DX.TOLD_TEXT),
             )
         )
     return tuple(found)
 
 
-def _match(part: str, said: TripleIndex) -> Match | None:
+def _match(part: str, index: TripleIndex) -> Match | None:
     """Return a stored match, or None if it names no scene object, as in lessons of the first format."""
-    taken = said.value(part, DX.PERCEIVED_AS) or said.value(part, DX.LIKELIEST)
+    taken = index.value(part, DX.PERCEIVED_AS) or index.value(part, DX.LIKELIEST)
     if taken is None:
         return None
-    probability = said.value(part, DX.PROBABILITY)
-    could_be = (last_part(thing) for thing in said.values(part, DX.COULD_BE))
+    probability = index.value(part, DX.PROBABILITY)
+    could_be = (last_part(thing) for thing in index.values(part, DX.COULD_BE))
     return Match(
-        object=last_part(said.value(part, DX.OF_ROLE) or ""),
+        object=last_part(index.value(part, DX.OF_ROLE) or ""),
         perceived=last_part(taken),
-        score=float(said.value(part, DX.SCORE) or 0),
+        score=float(index.value(part, DX.SCORE) or 0),
         similarity=math.nan,
-        decided=said.value(part, DX.DECIDED) == "true",
+        decided=index.value(part, DX.DECIDED) == "true",
         alternatives=tuple(Alternative(thing) for thing in could_be if thing != last_part(taken)),
         probability=None if probability is None else float(probability),
     )

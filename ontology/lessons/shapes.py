@@ -95,10 +95,10 @@ class _Shapes:
         shape.say(SH + "in", head)
         yield from shape
 
-    def _statement_shape(self, name: str, said: Fact | Claim) -> Description:
-        severity = "Info" if said.optional else "Violation" if said.weight >= 1 else "Warning"
-        line = f"line {said.source.line}: " if said.source else ""
-        return self._shape(name, severity, f"{line}{said} does not hold")
+    def _statement_shape(self, name: str, statement: Fact | Claim) -> Description:
+        severity = "Info" if statement.optional else "Violation" if statement.weight >= 1 else "Warning"
+        line = f"line {statement.source.line}: " if statement.source else ""
+        return self._shape(name, severity, f"{line}{statement} does not hold")
 
     def fact(self, position: int, fact: Fact) -> Iterator[ox.Triple]:
         shape = self._statement_shape(f"fact-{position}", fact)
@@ -208,30 +208,30 @@ def scene_data(
         A triple.
     """
     scene = learned_iri("checked", layout.lesson)
-    yield from _said(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))
+    yield from _triples(scene, (W3C.RDF_TYPE, iri(DX.SCENE)), (W3C.RDF_TYPE, iri(layout_iri(layout.lesson))))
     for thing in things:
         node = learned_iri("checked", layout.lesson, thing)
-        yield from _said(node, (W3C.RDF_TYPE, iri(DX.PERCEIVED_OBJECT)), (DX.IN_SCENE, iri(scene)))
-        yield from _said(node, (DX.IDENTIFIER, text(thing)))
+        yield from _triples(node, (W3C.RDF_TYPE, iri(DX.PERCEIVED_OBJECT)), (DX.IN_SCENE, iri(scene)))
+        yield from _triples(node, (DX.IDENTIFIER, text(thing)))
         if thing in fills:
-            yield from _said(node, (DX.FILLS, iri(role_iri(layout.lesson, fills[thing]))))
+            yield from _triples(node, (DX.FILLS, iri(role_iri(layout.lesson, fills[thing]))))
         if thing in coloured:
-            yield from _said(node, (DX.OF_COLOUR, iri(coloured[thing])))
+            yield from _triples(node, (DX.OF_COLOUR, iri(coloured[thing])))
     for subject, relation, other in related:
         ends = [iri(learned_iri("checked", layout.lesson, thing)) for thing in (subject, other)]
         yield ox.Triple(ends[0], iri(relation.iri), ends[1])
     for position, fact in enumerate(layout.facts, 1):
         node = fact_iri(layout.lesson, position)
         ends = [iri(role_iri(layout.lesson, role)) for role in (fact.subject, fact.object)]
-        yield from _said(node, (DX.SUBJECT, ends[0]), (DX.OBJECT, ends[1]))
+        yield from _triples(node, (DX.SUBJECT, ends[0]), (DX.OBJECT, ends[1]))
     for position, claim in enumerate(layout.claims, 1):
         node = claim_iri(layout.lesson, position)
-        yield from _said(node, (W3C.RDF_TYPE, iri(DX.CLAIM)), (DX.TERM, text(claim.relation)))
+        yield from _triples(node, (W3C.RDF_TYPE, iri(DX.CLAIM)), (DX.TERM, text(claim.relation)))
         if position in held:
-            yield from _said(node, (DX.HOLDS, typed(held[position])))
+            yield from _triples(node, (DX.HOLDS, typed(held[position])))
 
 
-def _said(subject: str, *statements: tuple[str, ox.NamedNode | ox.Literal]) -> Iterator[ox.Triple]:
+def _triples(subject: str, *statements: tuple[str, ox.NamedNode | ox.Literal]) -> Iterator[ox.Triple]:
     about = Description(subject)
     for predicate, value in statements:
         about.say(predicate, value)

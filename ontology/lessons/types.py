@@ -89,6 +89,16 @@ class Match(Answer):
     facts. ``similarity`` is the paper's, and NaN in a stored lesson, which does not keep it. ``probability`` is the
     posterior probability of the match, None if the engine gives none. ``decided`` is True if the probability is high
     enough (:func:`deixis.reasoning.grounding.options.is_decided`), or if no other object is as similar.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> script = deixis.read_script(text="fork left of plate")
+    >>> scene = deixis.read_scene({"objects": [
+    ...     {"id": "o1", "min": [0, 0], "max": [0.03, 0.2]}, {"id": "o2", "min": [0.1, 0], "max": [0.35, 0.25]}]})
+    >>> match = deixis.ground(script, scene).matches["fork"]
+    >>> match.perceived, match.decided, match.score
+    ('o1', True, 1.0)
     """
 
     object: str

@@ -417,17 +417,17 @@ def _escaped(name: str) -> str:
     return name.replace("%", "%25").replace(" ", "%20")
 
 
-def _qualify(about: Description, layout: LayoutConcept, said: Fact | Claim, position: int) -> None:
+def _qualify(about: Description, layout: LayoutConcept, statement: Fact | Claim, position: int) -> None:
     """Say how a statement is qualified, and where it comes from."""
-    about.say(DX.POSITIVE, typed(said.positive))
-    about.say(DX.OPTIONAL, typed(said.optional))
-    about.say(DX.WEIGHT, decimal(said.weight))
+    about.say(DX.POSITIVE, typed(statement.positive))
+    about.say(DX.OPTIONAL, typed(statement.optional))
+    about.say(DX.WEIGHT, decimal(statement.weight))
     about.say(PROV.WAS_GENERATED_BY, iri(lesson_iri(layout.lesson)))
     about.say(PROV.WAS_DERIVED_FROM, iri(script_iri(layout.lesson)))
     about.say(DX.POSITION, typed(position))
-    if said.source is not None:
-        about.say(DX.STATED_AT, text(str(said.source)))
-        about.say(DX.LINE, typed(said.source.line))
+    if statement.source is not None:
+        about.say(DX.STATED_AT, text(str(statement.source)))
+        about.say(DX.LINE, typed(statement.source.line))
 
 
 def _match(lesson: Lesson, match: Match) -> Iterator[ox.Triple]:

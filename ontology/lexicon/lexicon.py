@@ -267,10 +267,10 @@ class Lexicon:
         return self._compared(noun, label)[1]
 
     def _compared(self, noun: str, label: str) -> tuple[Relatedness, float]:
-        said, told = self._plain(noun), self._plain(label)
-        if said == told:
+        plain_noun, plain_label = self._plain(noun), self._plain(label)
+        if plain_noun == plain_label:
             return Relatedness.SAME, 1.0
-        ours, theirs = self._kinds.head_noun(said), self._kinds.head_noun(told)
+        ours, theirs = self._kinds.head_noun(plain_noun), self._kinds.head_noun(plain_label)
         pairs = (
             self._relation_of(first, self._narrowing(ours[1], first), second, self._narrowing(theirs[1], second))
             for first in ours[0]

@@ -331,11 +331,11 @@ def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detect
     box = upright_box(thing, settings.outlines)
     sides = " by ".join(f"{100 * side:.0f}" for side in (box[1] - box[0]).tolist())
     notes = [f"no table was found: the whole cloud, {sides} cm, was taken for a single object"]
-    told = pose.upwards is not None
-    if not told:
+    is_upright_known = pose.upwards is not None
+    if not is_upright_known:
         notes.append("its upright direction is unknown; give it with --up")
     oriented = (oriented_box(thing, settings.outlines),)
-    return Detection(cloud, None, frame, labels, box[None], oriented, tuple(notes), Shows.OBJECT, told)
+    return Detection(cloud, None, frame, labels, box[None], oriented, tuple(notes), Shows.OBJECT, is_upright_known)
 
 
 @dataclass(frozen=True, eq=False)

@@ -214,10 +214,10 @@ def likeliest_pose(
         The given pose, or an assumed one above the table.
     """
     limits = settings.viewpoint
-    few, told = sampled(points, settings), float(np.inf)
+    few, far_share = sampled(points, settings), float(np.inf)
     if pose.known and plane.heights(pose.eye[None])[0] > limits.min_eye_height:
-        told = 0.0 if pose.up is not None else apart(few, pose.eye, limits)
-        if told < limits.doubtful_far_share:
+        far_share = 0.0 if pose.up is not None else apart(few, pose.eye, limits)
+        if far_share < limits.doubtful_far_share:
             return pose
     on = few[np.abs(plane.heights(few)) < settings.plane.table_band]
     middle = (on if len(on) else few).mean(axis=0)
@@ -227,7 +227,7 @@ def likeliest_pose(
     places = [middle + limits.assumed_distance * direction for direction in (plane.normal, *aslant)]
     shares = [apart(few, place, limits) for place in places]
     eye = places[int(np.argmin(shares))]
-    if told < limits.max_far_share and min(shares) > told / 2:
+    if far_share < limits.max_far_share and min(shares) > far_share / 2:
         return pose
     return replace(pose, eye=eye, up=None, right=None, known=False)
 

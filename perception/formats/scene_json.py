@@ -250,17 +250,17 @@ def _colour(data: Any, where: str) -> Rgb:
         return round(parts[0]), round(parts[1]), round(parts[2])
     if not isinstance(data, str):
         raise SceneError(f"{where} must be a word such as red, #rrggbb, or [red, green, blue], got {json_type(data)}")
-    said = text(data, where)
-    if said.startswith("#"):
-        if (found := rgb_of_hex(said)) is None:
-            raise SceneError(f"{where}: '{shown(said)}' is not a colour; write #rrggbb in hexadecimal digits")
+    word = text(data, where)
+    if word.startswith("#"):
+        if (found := rgb_of_hex(word)) is None:
+            raise SceneError(f"{where}: '{shown(word)}' is not a colour; write #rrggbb in hexadecimal digits")
         return found
     colours = default_ontology().colours
-    if (colour := colours.of_word(said)) is not None:
+    if (colour := colours.of_word(word)) is not None:
         return colour.prototype
-    near = nearest(said.casefold(), list(colours.words)) if len(said) <= MAX_SHOWN else None
-    told = f"did you mean '{near}'?" if near else f"use one of {', '.join(c.label for c in colours)}, or #rrggbb"
-    raise SceneError(f"{where}: there is no colour '{shown(said)}'; {told}")
+    near = nearest(word.casefold(), list(colours.words)) if len(word) <= MAX_SHOWN else None
+    suggestion = f"did you mean '{near}'?" if near else f"use one of {', '.join(c.label for c in colours)}, or #rrggbb"
+    raise SceneError(f"{where}: there is no colour '{shown(word)}'; {suggestion}")
 
 
 def _place(data: Any, where: str, scale: float) -> tuple[float, float] | None:

@@ -374,5 +374,5 @@ def _candidate(category: InstanceCategory, near: Nearest, spread: Spread, probab
 def _require_one_size(categories: Sequence[InstanceCategory]) -> None:
     sizes = {category.views.size: category.name for category in categories if len(category)}
     if len(sizes) > 1:
-        said = ", ".join(f"{size} in '{name}'" for size, name in sizes.items())
-        raise RecognitionError(f"categories have descriptors of different lengths: {said}")
+        sizes_given = ", ".join(f"{size} in '{name}'" for size, name in sizes.items())
+        raise RecognitionError(f"categories have descriptors of different lengths: {sizes_given}")

@@ -37,8 +37,8 @@ def plate(size: Size, rng: np.random.Generator) -> Mesh:
     share = np.linspace(0.0, 1.0, 24)
     if rng.random() < 0.75:
         step, at = rng.uniform(0.4, 0.6), rng.uniform(0.22, 0.32)
-        eased = (1 - np.cos(np.pi * np.clip(share / at, 0, 1))) / 2
-        rise = np.where(share < at, step * eased, step + (1 - step) * (share - at) / (1 - at))
+        smooth_share = (1 - np.cos(np.pi * np.clip(share / at, 0, 1))) / 2
+        rise = np.where(share < at, step * smooth_share, step + (1 - step) * (share - at) / (1 - at))
     else:
         rise = share ** rng.uniform(1.6, 2.4)
     across, above = well + (radius - well) * share, thickness + (height - thickness) * rise

@@ -98,7 +98,7 @@ class DepthSensor:
         noisy = depth + rng.standard_normal(len(depth)) * self.noise * NOISE * depth**2
         return _quantised(noisy) if self.quantised else noisy
 
-    def lost(self, cosine: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.bool_]:
+    def without_depth(self, cosine: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.bool_]:
         """Return True for each point that has no depth.
 
         Parameters
@@ -189,7 +189,7 @@ def measured_look(
     length = np.linalg.norm(rays[seen], axis=1)
     cosine = -np.einsum("ij,ij->i", rays[seen], hits.normals[seen]) / length
     depth = sensor.measured(hits.distance[seen].astype(np.float64), rng)
-    kept = ~sensor.lost(cosine, rng) & (depth > 0)
+    kept = ~sensor.without_depth(cosine, rng) & (depth > 0)
     image = np.full(len(rays), np.nan)
     image[seen[kept]] = depth[kept]
     points = back_projected(image.reshape(lens.height, lens.width), lens)

@@ -284,11 +284,11 @@ class HandLeg:
         from scipy.spatial.transform import Rotation
 
         share = np.clip((at - self.start) / max(self.finish - self.start, 1e-9), 0.0, 1.0)
-        eased = share**3 * (10 - 15 * share + 6 * share**2)  # least jerk (Flash and Hogan 1985)
+        smooth_share = share**3 * (10 - 15 * share + 6 * share**2)  # least jerk (Flash and Hogan 1985)
         pose = np.eye(4)
-        pose[:3, 3] = self.places[0] + eased * (self.places[1] - self.places[0])
-        turn = self.turns[0] + eased * (self.turns[1] - self.turns[0])
-        tilted = Rotation.from_rotvec(np.sin(np.pi * eased) ** 2 * self.tilt)
+        pose[:3, 3] = self.places[0] + smooth_share * (self.places[1] - self.places[0])
+        turn = self.turns[0] + smooth_share * (self.turns[1] - self.turns[0])
+        tilted = Rotation.from_rotvec(np.sin(np.pi * smooth_share) ** 2 * self.tilt)
         pose[:3, :3] = (tilted * Rotation.from_euler("z", turn)).as_matrix()
         return pose
 

@@ -65,8 +65,8 @@ class Step:
         )
 
     def __str__(self) -> str:
-        said = " ".join(part for part in (self.thing, self.predicate, self.object) if part)
-        return f"{said} {self.number}" if self.number > 1 else said
+        words = " ".join(part for part in (self.thing, self.predicate, self.object) if part)
+        return f"{words} {self.number}" if self.number > 1 else words
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +106,14 @@ class StepSequence:
         seen: Counter[tuple[str, str, str | None]] = Counter()
         steps = []
         for each in ordered:
-            said = each.statement
-            if box_of(said) is not None:
-                said = Statement(said.subject, "placed")
-            key = (kind_of(said.subject), said.predicate, None if said.object is None else kind_of(said.object))
+            statement = each.statement
+            if box_of(statement) is not None:
+                statement = Statement(statement.subject, "placed")
+            key = (
+                kind_of(statement.subject),
+                statement.predicate,
+                None if statement.object is None else kind_of(statement.object),
+            )
             seen[key] += 1
             steps.append(Step(*key, seen[key]))
         return cls(ordered, tuple(steps))
@@ -230,7 +234,7 @@ class Activity:
         Its name.
     steps
         Its steps, in order of their names.
-    told
+    stated
         Masks of the relations that a person stated, shape (n, n); all relations for other pairs.
     present
         Number of examples that have each step, shape (n,).
@@ -244,7 +248,7 @@ class Activity:
 
     name: str
     steps: tuple[Step, ...]
-    told: NDArray[np.uint16]
+    stated: NDArray[np.uint16]
     present: NDArray[np.float64]
     counts: NDArray[np.float64]
     examples: int = 0
@@ -275,15 +279,15 @@ class Activity:
         if not place or len(place) < sum(map(len, groups)):
             raise SettingError("an activity must have at least one step, and each step once")
         steps = tuple(sorted(place))
-        told = np.full((len(steps),) * 2, ALL_ALLEN, dtype=np.uint16)
+        stated = np.full((len(steps),) * 2, ALL_ALLEN, dtype=np.uint16)
         for a, first in enumerate(steps):
             for b, second in enumerate(steps):
                 if place[first] < place[second]:
-                    told[a, b] = STARTS_FIRST
+                    stated[a, b] = STARTS_FIRST
         order = np.array([place[step] for step in steps])
-        told = np.where(order[:, None] > order[None], converse_masks(told.T), told).astype(np.uint16)
+        stated = np.where(order[:, None] > order[None], converse_masks(stated.T), stated).astype(np.uint16)
         n = len(steps)
-        return cls(name, steps, told, np.zeros(n), np.zeros((n, n, RELATIONS)))
+        return cls(name, steps, stated, np.zeros(n), np.zeros((n, n, RELATIONS)))
 
     @classmethod
     def learned(cls, name: str, examples: Iterable[StepSequence]) -> Activity:
@@ -317,9 +321,9 @@ class Activity:
             present[at] += 1
             share = example.members / example.members.sum(axis=2, keepdims=True) if len(at) else example.members
             counts[np.ix_(at, at)] += share
-        told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+        stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
         layings = tuple(example.laying for example in examples if example.steps)
-        return cls(name, steps, told, present, counts, len(examples), layings)
+        return cls(name, steps, stated, present, counts, len(examples), layings)
 
     def __add__(self, other: Activity) -> Activity:
         """Return the activity of the examples of two learned activities."""
@@ -330,9 +334,9 @@ class Activity:
             at = np.array([place[step] for step in each.steps], dtype=np.int64)
             present[at] += each.present
             counts[np.ix_(at, at)] += each.counts
-        told = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
+        stated = np.full((n, n), ALL_ALLEN, dtype=np.uint16)
         layings = self.layings + other.layings
-        return Activity(self.name, steps, told, present, counts, self.examples + other.examples, layings)
+        return Activity(self.name, steps, stated, present, counts, self.examples + other.examples, layings)
 
     @property
     def presence(self) -> NDArray[np.float64]:
@@ -354,10 +358,10 @@ class Activity:
         ndarray
             Shape (n, n, 13).
         """
-        told = members_of(self.told)
-        inside = told * chance
+        stated = members_of(self.stated)
+        inside = stated * chance
         inside /= inside.sum(axis=2, keepdims=True)
-        outside = (1 - told) * chance
+        outside = (1 - stated) * chance
         rest = outside.sum(axis=2, keepdims=True)
         outside = np.divide(outside, rest, out=np.zeros_like(outside), where=rest > 0)
         holds = np.where(rest > 0, TOLD_HOLDS, 1.0)
@@ -378,7 +382,7 @@ class Activity:
         pairs = []
         for a, b in zip(*np.nonzero(~np.eye(len(self.steps), dtype=bool)), strict=True):
             of = self.counts[a, b].sum()
-            told = self.told[a, b] != ALL_ALLEN and not int(self.told[a, b]) & ~STARTS_FIRST
-            if told or (of > 1 and (self.counts[a, b] @ first) >= of - 1e-9):
+            stated = self.stated[a, b] != ALL_ALLEN and not int(self.stated[a, b]) & ~STARTS_FIRST
+            if stated or (of > 1 and (self.counts[a, b] @ first) >= of - 1e-9):
                 pairs.append((self.steps[a], self.steps[b]))
         return tuple(pairs)

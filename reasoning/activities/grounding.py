@@ -41,6 +41,21 @@ class ActivityGrounding(Answer):
 
     ``swapped`` are pairs of matched steps whose fluents started in another order than the activity has, ``other`` the
     ids of the fluents that match no step, ``evidence`` the log-likelihood ratio of the activity against chance in nats.
+
+    Examples
+    --------
+    >>> from deixis.grammar.activities import told_activity
+    >>> from deixis.reasoning.activities.activity import StepSequence
+    >>> from deixis.reasoning.temporal.bounds import Bounds
+    >>> from deixis.reasoning.temporal.fluent import Fluent, Statement
+    >>> laid = {"plate": 10.0, "fork_1": 20.0, "fork_2": 5.0}
+    >>> fluents = [Fluent(name, Statement(name, "laid"), Bounds(start, start)) for name, start in laid.items()]
+    >>> seen = StepSequence.of(fluents)
+    >>> found = ground_activity(told_activity("first the plate, then the forks", seen), seen)
+    >>> found
+    <ActivityGrounding told: 3 of 3 steps, 1 pair in another order>
+    >>> [(str(first), str(second)) for first, second in found.swapped]
+    [('plate', 'fork')]
     """
 
     activity: str

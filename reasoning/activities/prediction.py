@@ -212,7 +212,7 @@ class LayingModel:
         if told is not None:
             for a, one in enumerate(said):
                 for b, other in enumerate(said):
-                    if told.told[a, b] == STARTS_FIRST:
+                    if told.stated[a, b] == STARTS_FIRST:
                         i, j = self._at[one], self._at[other]
                         prior[i, j], prior[j, i] = TOLD_HOLDS, (1 - TOLD_HOLDS) / 2
         yes, no = self._before, self._before.T

@@ -226,12 +226,12 @@ def _miscoloured(
     layout = evidence.description
     if seen is None or colours is None or not layout.colours:
         return {}
-    said = [layout.colours[layout.index(role)] for role in grounding.matches]
+    described = [layout.colours[layout.index(role)] for role in grounding.matches]
     things = [evidence.scene.index(match.perceived) for match in grounding.matches.values()]
-    others = other_colours(said, seen[things], colours)
+    others = other_colours(described, seen[things], colours)
     return {
         role: Miscoloured(colours[iri], other)
-        for role, iri, other in zip(grounding.matches, said, others, strict=True)
+        for role, iri, other in zip(grounding.matches, described, others, strict=True)
         if iri is not None and other is not None
     }
 
@@ -430,14 +430,14 @@ def checked_table(
     while True:
         found = ground(evidence, engine, deadline)
         table = check_table(evidence, labels, kinds, found, seen, colours)
-        said = evidence.sizes.copy()
+        sizes = evidence.sizes.copy()
         for check in table.of(RoleVerdict.MISPLACED):
             if check.perceived is None or check.role in sure[check.perceived]:
                 continue
             place = evidence.description.index(check.role), evidence.scene.index(check.perceived)
             if evidence.labels[place] <= 0 and evidence.sizes[place] < MIN_SIZE_LOG_RATIO:
-                said[place] = RULED_OUT_LOG_RATIO
-        rest = None if np.array_equal(said, evidence.sizes) else replace(evidence, sizes=said)
+                sizes[place] = RULED_OUT_LOG_RATIO
+        rest = None if np.array_equal(sizes, evidence.sizes) else replace(evidence, sizes=sizes)
         if rest is None or deadline.passed:
             return table
         evidence = rest

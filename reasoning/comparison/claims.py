@@ -305,12 +305,12 @@ class _Measures:
             shown = f"it is {self._length(own)} from {self.things[other]}"
             sign = 1 if term == "nearest" else -1
             rival = min(rest, key=lambda i: sign * distances[i, other], default=None)
-            beaten = rival is not None and sign * (own - distances[rival, other]) > 1e-9
-            if beaten:
+            rival_is_nearer = rival is not None and sign * (own - distances[rival, other]) > 1e-9
+            if rival_is_nearer:
                 assert rival is not None
                 shown += f", {self.things[rival]} is {self._length(float(distances[rival, other]))} from it"
-            if beaten or not worst[1]:
-                worst = (0.0 if beaten else worst[0], shown)
+            if rival_is_nearer or not worst[1]:
+                worst = (0.0 if rival_is_nearer else worst[0], shown)
         return worst
 
     def _closer(self, term: str, subject: int, others: list[int]) -> Measured:
@@ -331,9 +331,9 @@ class _Measures:
         table = np.maximum(*(distance_degree(claim.relation, lengths, claim.metres) for lengths in known))
         worst = min(others, key=lambda other: float(table[subject, other]))
         gap, centres = (float(lengths[subject, worst]) for lengths in known)
-        said = {"distance": "about", "distance_less": "at most", "distance_more": "at least"}[claim.relation]
+        bound = {"distance": "about", "distance_less": "at most", "distance_more": "at least"}[claim.relation]
         shown = f"it is {self._length(gap)} from {self.things[worst]} ({self._length(centres)} between the centres)"
-        return float(table[subject, worst]), f"{shown}, {said} {self._length(claim.metres)} was said"
+        return float(table[subject, worst]), f"{shown}, {bound} {self._length(claim.metres)} was stated"
 
     def _superlative(self, term: str, value: str | None, subject: int, others: list[int]) -> Measured:
         if term not in MEASURES:
@@ -362,15 +362,15 @@ class _Measures:
         return float(ahead > 1e-9), f"it measures {lengths[0]}, {self.things[best]} {lengths[1]}"
 
     def _ordinal(self, value: str, subject: int, others: list[int]) -> Measured:
-        said, _, side = value.partition(" from ")
+        number, _, side = value.partition(" from ")
         sides = [TOWARDS[word] for word in side.split() if word in TOWARDS]
-        if len(sides) != 1 or not said.lstrip("-").isdigit():
+        if len(sides) != 1 or not number.lstrip("-").isdigit():
             return None, f"{value!r} is not a rank from one side"
         axis, sign = sides[0]
         group = [subject, *others] if others else self.on_surface
         places = -sign * self.degrees.centres[group, axis]
         rank = 1 + int((places < places[group.index(subject)] - 1e-9).sum())
-        wanted = int(said) if int(said) > 0 else len(group) + 1 + int(said)
+        wanted = int(number) if int(number) > 0 else len(group) + 1 + int(number)
         return float(rank == wanted), f"it is number {rank} of {len(group)} from the {side}"
 
     def _row(self, order: str | None, members: list[int]) -> Measured:

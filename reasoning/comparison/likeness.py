@@ -176,7 +176,7 @@ class Described:
     graph: RelationGraph
 
     @cached_property
-    def said(self) -> tuple[tuple[str, str], ...]:
+    def named_kinds(self) -> tuple[tuple[str, str], ...]:
         """Class of each object and category of its name, both as IRIs."""
         return tuple(
             (kind, category_of(node)) for kind, node in zip(classes(self.graph), self.graph.nodes, strict=True)
@@ -208,7 +208,7 @@ class Described:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class ComparedScene:
     """A scene prepared for comparison: exact relations of pairs, classes of the labels (IRI or None), boxes or None.
 
     ``metric`` is True for boxes in metres, and False for boxes in pixels.
@@ -228,7 +228,7 @@ class Seen:
         return np.bincount(named) if len(named) else np.zeros(0, np.int64)
 
 
-def seen(name: str, scene: SceneRelations, metric: bool = True) -> Seen:
+def compared_scene(name: str, scene: SceneRelations, metric: bool = True) -> ComparedScene:
     """Prepare a scene for comparison.
 
     Parameters
@@ -242,11 +242,11 @@ def seen(name: str, scene: SceneRelations, metric: bool = True) -> Seen:
 
     Returns
     -------
-    Seen
+    ComparedScene
         The scene with the numbers that comparisons need.
     """
     kinds = scene.kinds or (None,) * len(scene.nodes)
-    return Seen(name, scene.nodes, scene.names, kinds, scene.boxes, metric)
+    return ComparedScene(name, scene.nodes, scene.names, kinds, scene.boxes, metric)
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,7 +289,7 @@ class Comparison:
         self.closeness = Closeness(ontology.relations)
         self._of_kinds: dict[tuple[str, str], float] = {}
 
-    def likeness(self, layout: Described, scene: Seen, deadline: Deadline = Deadline.never()) -> Likeness:
+    def likeness(self, layout: Described, scene: ComparedScene, deadline: Deadline = Deadline.never()) -> Likeness:
         """Return the similarity of a layout and a scene by the best grounding found.
 
         Parameters
@@ -327,7 +327,7 @@ class Comparison:
             best.proved,
         )
 
-    def problem(self, layout: Described, scene: Seen) -> Problem:
+    def problem(self, layout: Described, scene: ComparedScene) -> Problem:
         """Return the matching problem in which the value of a map is the similarity that it gives.
 
         Parameters
@@ -351,15 +351,15 @@ class Comparison:
         tables = np.zeros((len(distinct), n2, n2), dtype=np.float32)
         for row, (mask, positive, weight) in enumerate(distinct):
             close = self.closeness(int(mask), bool(positive))
-            said = np.where(scene.names >= 0, close[scene.names], 0.0)
-            tables[row] = said * (2 * shares.relations * weight / shares.facts)
+            named_kinds = np.where(scene.names >= 0, close[scene.names], 0.0)
+            tables[row] = named_kinds * (2 * shares.relations * weight / shares.facts)
         positions = {key: row for row, key in enumerate(distinct)}
         ends = np.stack([graph.subjects[layout.edges], graph.objects[layout.edges]], axis=1).astype(np.int64)
         kinds = np.array([positions[key] for key in keys], dtype=np.int64)
         unary = self.objects(layout, scene) * (2 * shares.objects / max(shares.things, 1))
         return Problem(ends, kinds, tables, unary, np.zeros(len(graph.nodes)))
 
-    def objects(self, layout: Described, scene: Seen) -> Array:
+    def objects(self, layout: Described, scene: ComparedScene) -> Array:
         """Return the degree to which each object corresponds to each thing, shape (n1, n2), in [0, 1].
 
         Parameters
@@ -374,15 +374,15 @@ class Comparison:
         Array
             Degrees in [0, 1], shape (n1, n2).
         """
-        said = layout.said
-        sized = [kind for kind, _ in said if kind in self._kinds or kind in self._learned]
+        named_kinds = layout.named_kinds
+        sized = [kind for kind, _ in named_kinds if kind in self._kinds or kind in self._learned]
         usual: Mapping[str, Array] = {}
         if scene.boxes is not None and len(scene.boxes):
             usual = usual_sizes(sized, scene.boxes, self._sizes, self._learned, scene.metric)
-        alike = {pair: self._like(*pair, scene, usual) for pair in dict.fromkeys(said)}
-        return np.array([alike[pair] for pair in said]).reshape(len(said), len(scene.kinds))
+        alike = {pair: self._like(*pair, scene, usual) for pair in dict.fromkeys(named_kinds)}
+        return np.array([alike[pair] for pair in named_kinds]).reshape(len(named_kinds), len(scene.kinds))
 
-    def _like(self, kind: str, name: str, scene: Seen, usual: Mapping[str, Array]) -> Array:
+    def _like(self, kind: str, name: str, scene: ComparedScene, usual: Mapping[str, Array]) -> Array:
         """Return how far each thing (n2,) corresponds to an object, by its kind, its size or its exact name."""
         found = usual[kind].copy() if kind in usual else np.ones(len(scene.kinds))
         for p, label in enumerate(scene.kinds):
@@ -402,7 +402,7 @@ class Comparison:
                 self._of_kinds[a, b] = float(STEP_FACTOR ** len(first ^ second))
         return self._of_kinds[a, b]
 
-    def shares(self, layout: Described, scene: Seen) -> Shares:
+    def shares(self, layout: Described, scene: ComparedScene) -> Shares:
         """Return the weights of both parts, and the number of objects and the weight of facts on both sides.
 
         Parameters

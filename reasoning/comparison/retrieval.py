@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from deixis.deadline import Deadline
-from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen
+from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, Likeness
 from deixis.reasoning.errors import SettingError
 
 Progress = Callable[[int, int], None]
@@ -25,7 +25,7 @@ BOUND_TOLERANCE = 1e-5
 
 
 def rank_layouts(
-    scene: Seen,
+    scene: ComparedScene,
     layouts: Iterable[Described],
     comparison: Comparison,
     top: int = 10,
@@ -64,7 +64,7 @@ def rank_layouts(
 
 def rank_scenes(
     layout: Described,
-    scenes: Iterable[Seen],
+    scenes: Iterable[ComparedScene],
     comparison: Comparison,
     top: int = 10,
     deadline: Deadline = Deadline.never(),
@@ -101,7 +101,7 @@ def rank_scenes(
 
 
 def _ranked(
-    pairs: Sequence[tuple[Described, Seen]],
+    pairs: Sequence[tuple[Described, ComparedScene]],
     comparison: Comparison,
     top: int,
     deadline: Deadline,
@@ -127,7 +127,7 @@ def _ranked(
     return sorted(found, key=lambda one: (-one.similarity, one.layout, one.scene))[:top]
 
 
-def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
+def quick_bound(comparison: Comparison, layout: Described, scene: ComparedScene) -> float:
     """Return an upper bound of the similarity from counts alone: of equal kinds, and of pairs with each relation.
 
     Parameters
@@ -148,14 +148,14 @@ def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float
     objects = min(alike.max(axis=1, initial=0.0).sum(), alike.max(axis=0, initial=0.0).sum())
     bound = 2 * shares.objects * float(objects) / max(shares.things, 1)
     graph, edges = layout.graph, layout.edges
-    said: dict[tuple[int, bool], dict[tuple[int, int], float]] = {}
+    facts_by_relation: dict[tuple[int, bool], dict[tuple[int, int], float]] = {}
     for edge, weight in zip(edges.tolist(), layout.weights.tolist(), strict=True):
         key = (int(graph.relation_sets[edge]), bool(graph.positive[edge]))
         pair = (int(graph.subjects[edge]), int(graph.objects[edge]))
-        by_pair = said.setdefault(key, {})
+        by_pair = facts_by_relation.setdefault(key, {})
         by_pair[pair] = by_pair.get(pair, 0.0) + weight
     total = 0.0
-    for (mask, positive), by_pair in said.items():
+    for (mask, positive), by_pair in facts_by_relation.items():
         close = comparison.closeness(mask, positive)[: len(scene.counts)]
         order = np.argsort(-close)
         available = np.repeat(close[order], np.minimum(scene.counts[order], len(by_pair)))[: len(by_pair)]
@@ -164,7 +164,7 @@ def quick_bound(comparison: Comparison, layout: Described, scene: Seen) -> float
     return bound + 2 * shares.relations * total / shares.facts
 
 
-def assignment_bound(comparison: Comparison, layout: Described, scene: Seen) -> float:
+def assignment_bound(comparison: Comparison, layout: Described, scene: ComparedScene) -> float:
     """Return an upper bound of the similarity: the best assignment if each fact chooses its other end freely.
 
     Parameters

@@ -105,7 +105,7 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
     # blank nodes that are part of the syntax of an axiom, not individuals
     structural = {
         node
-        for node, said in about.items()
+        for node, triples_of_node in about.items()
         if is_blank(node)
         and any(
             triple.predicate in (FIRST, REST)
@@ -115,7 +115,7 @@ def split_axioms(triples: Iterable[Triple]) -> Axioms:
                 and triple.object.startswith(_BUILT_IN)
                 and triple.object not in _OF_INDIVIDUALS
             )
-            for triple in said
+            for triple in triples_of_node
         )
     }
     led_to = {triple.object for triple in triples if triple.object in structural}
@@ -179,9 +179,9 @@ class _NameKinds:
         return [Triple(predicate, TYPE, kind) for predicate, kind in used]
 
 
-def _stands_alone(said: list[Triple]) -> bool:
+def _stands_alone(triples_of_node: list[Triple]) -> bool:
     """Return whether an unreferenced blank node is an axiom: a member set, a negative assertion or a general axiom."""
-    predicates = {triple.predicate for triple in said}
+    predicates = {triple.predicate for triple in triples_of_node}
     alone = {term(f"owl:{name}") for name in ("members", "distinctMembers", "sourceIndividual", "disjointWith")}
     return not predicates.isdisjoint({*alone, term("rdfs:subClassOf"), term("owl:equivalentClass")})
 

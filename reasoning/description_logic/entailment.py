@@ -211,9 +211,9 @@ def unsatisfiable_by_rules(triples: Iterable[Triple], deadline: Deadline = Deadl
     classes |= {t.subject for t in triples if t.predicate == SUB_CLASS_OF and not is_blank(t.subject)}
     members = {Triple(f"_:member{i}", TYPE, name): name for i, name in enumerate(sorted(classes))}
     known = Materialisation([*triples, *members], deadline)
-    condemned = set()
+    unsatisfiable = set()
     for contradiction in known.contradictions:
         needed = {members[s.triple] for s in known.derivation(contradiction.premises) if s.triple in members}
         if len(needed) == 1:
-            condemned |= needed
-    return tuple(sorted(name[1:-1] for name in condemned - {NOTHING}))
+            unsatisfiable |= needed
+    return tuple(sorted(name[1:-1] for name in unsatisfiable - {NOTHING}))

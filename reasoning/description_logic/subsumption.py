@@ -64,11 +64,11 @@ class Subsumption:
 
     def __init__(
         self,
-        told: Callable[[str], ToldClass],
+        class_axioms: Callable[[str], ToldClass],
         ends: Callable[[str], PropertyEnds] = lambda prop: PropertyEnds(),
         disjoint: Sequence[frozenset[str]] = (),
     ) -> None:
-        self._told, self._ends, self._disjoint = told, cache(ends), disjoint
+        self._class_axioms, self._ends, self._disjoint = class_axioms, cache(ends), disjoint
         self._classes: dict[str, ToldClass] = {}
         self._broader: dict[str, frozenset[str]] = {}
 
@@ -127,9 +127,9 @@ class Subsumption:
         todo = list(names)
         above = set(todo)
         while todo:
-            told = self._class(todo.pop())
-            domains = (self._ends(prop).domains for prop, _ in told.shows)
-            new = told.broader.union(*domains) - above
+            axioms = self._class(todo.pop())
+            domains = (self._ends(prop).domains for prop, _ in axioms.shows)
+            new = axioms.broader.union(*domains) - above
             above |= new
             todo += new
         return above
@@ -137,5 +137,5 @@ class Subsumption:
     def _class(self, name: str) -> ToldClass:
         known = self._classes.get(name)
         if known is None:
-            known = self._classes[name] = self._told(name)
+            known = self._classes[name] = self._class_axioms(name)
         return known

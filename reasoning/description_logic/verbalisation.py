@@ -172,16 +172,22 @@ class _Sentence:
     def of(self, root: Triple) -> str:
         subject, predicate, obj = root
         if is_blank(subject) and predicate == TYPE:
-            said = self._said[subject]
+            objects = self._said[subject]
             if obj in _MEMBERS:
-                return _MEMBERS[obj].format(self._listed(said.get(MEMBERS, said.get(DISTINCT_MEMBERS, NIL)), ", "))
+                return _MEMBERS[obj].format(
+                    self._listed(objects.get(MEMBERS, objects.get(DISTINCT_MEMBERS, NIL)), ", ")
+                )
             if obj == NEGATIVE_PROPERTY_ASSERTION:
-                parts = (said.get(term(f"owl:{name}"), "") for name in ("sourceIndividual", "targetIndividual"))
-                source, target = (self._expression(part or said.get(term("owl:targetValue"), NIL)) for part in parts)
-                return f"not {self._words.name(said.get(term('owl:assertionProperty'), subject))}({source}, {target})"
+                parts = (objects.get(term(f"owl:{name}"), "") for name in ("sourceIndividual", "targetIndividual"))
+                source, target = (self._expression(part or objects.get(term("owl:targetValue"), NIL)) for part in parts)
+                return (
+                    f"not {self._words.name(objects.get(term('owl:assertionProperty'), subject))}({source}, {target})"
+                )
             for predicate in _STATEMENTS:
-                if predicate in said:
-                    return _STATEMENTS[predicate].format(self._expression(subject), self._expression(said[predicate]))
+                if predicate in objects:
+                    return _STATEMENTS[predicate].format(
+                        self._expression(subject), self._expression(objects[predicate])
+                    )
             return f"something is {_a(self._expression(obj))}"
         if predicate == TYPE:
             characteristic = _CHARACTERISTICS.get(obj)
@@ -196,23 +202,23 @@ class _Sentence:
 
     def _expression(self, node: str) -> str:
         """Return a class expression, a list, or a name."""
-        said = self._said.get(node, {}) if is_blank(node) else {}
-        if FIRST in said:
+        objects = self._said.get(node, {}) if is_blank(node) else {}
+        if FIRST in objects:
             return self._listed(node, ", ")
-        if term("owl:onProperty") in said:
-            prop = self._expression(said[term("owl:onProperty")])
-            kind = self._expression(said.get(term("owl:onClass"), said.get(term("owl:onDataRange"), THING)))
+        if term("owl:onProperty") in objects:
+            prop = self._expression(objects[term("owl:onProperty")])
+            kind = self._expression(objects.get(term("owl:onClass"), objects.get(term("owl:onDataRange"), THING)))
             for predicate, form in _RESTRICTIONS.items():
-                if predicate in said:
-                    return form.format(p=prop, v=self._expression(said[predicate]), c=kind)
+                if predicate in objects:
+                    return form.format(p=prop, v=self._expression(objects[predicate]), c=kind)
             return f"something with '{prop}'"
-        if term("owl:complementOf") in said:
-            return f"something that is not {self._expression(said[term('owl:complementOf')])}"
-        if term("owl:inverseOf") in said:
-            return f"the inverse of {self._expression(said[term('owl:inverseOf')])}"
+        if term("owl:complementOf") in objects:
+            return f"something that is not {self._expression(objects[term('owl:complementOf')])}"
+        if term("owl:inverseOf") in objects:
+            return f"the inverse of {self._expression(objects[term('owl:inverseOf')])}"
         for predicate, between in _JOINED.items():
-            if predicate in said:
-                return f"({self._listed(said[predicate], between)})"
+            if predicate in objects:
+                return f"({self._listed(objects[predicate], between)})"
         return {THING: "thing", NOTHING: "nothing"}.get(node) or self._words.name(node)
 
     def _listed(self, head: str, between: str) -> str:

@@ -409,8 +409,8 @@ class _ProofSearch:
         if cycle is not None:
             given = len(self._facts)
             leaves = [_leaf(self._facts[k]) if k < given else _leaf(assumed[k - given].claim, True) for k in cycle]
-            told = [str(leaf.claim) for leaf in leaves if leaf.rule is Rule.ASSUMED]
-            return Proof(ImpossibleCase(" and ".join(told)), Rule.CONTRADICTION, tuple(leaves))
+            assumptions = [str(leaf.claim) for leaf in leaves if leaf.rule is Rule.ASSUMED]
+            return Proof(ImpossibleCase(" and ".join(assumptions)), Rule.CONTRADICTION, tuple(leaves))
         goal = self._goal
         found = orders.derive(goal.relations[0], goal.subject, goal.object)
         if found is not None:

@@ -28,7 +28,7 @@ class Standing(StrEnum):
     NONE = "none"  # the engine computes no probabilities
     EXACT = "exact"  # summed over all maps that matter
     SAMPLED = "sampled"  # approximate, with an error estimated from independent chains
-    BELIEVED = "believed"  # approximate, from belief propagation, with an unknown error
+    PROPAGATED = "propagated"  # approximate, from belief propagation, with an unknown error
 
 
 class Outcome(StrEnum):
@@ -173,6 +173,18 @@ class Grounding(Answer):
     members
         Members of each group of unknown number (*the chairs*) by its name, the most probable first. The match of the
         group is one of them.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> script = deixis.read_script(text="fork left of plate")
+    >>> scene = deixis.read_scene({"objects": [
+    ...     {"id": "o1", "min": [0, 0], "max": [0.03, 0.2]}, {"id": "o2", "min": [0.1, 0], "max": [0.35, 0.25]}]})
+    >>> found = deixis.ground(script, scene)
+    >>> found
+    <Grounding 2 of 2 objects matched, 2 decided, 1 of 1 fact satisfied, fits 1.00>
+    >>> found.matches["plate"], found.fits > 0.99, found.proved_best
+    (<Match plate is o2, probability 0.995>, True, True)
     """
 
     engine: str

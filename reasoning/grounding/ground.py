@@ -69,8 +69,8 @@ def ground(
     result says so (``interchangeable``, ``decided``).
     """
     started = time.perf_counter()
-    told = len(evidence.description.nodes) + len(evidence.things)
-    deadline = deadline.earlier(min(SECONDS_PER_NAME * told, MAX_MARGIN * deadline.left))
+    name_count = len(evidence.description.nodes) + len(evidence.things)
+    deadline = deadline.earlier(min(SECONDS_PER_NAME * name_count, MAX_MARGIN * deadline.left))
     sensitivity_seconds = SENSITIVITY_SHARE * deadline.left
     rows = np.array(sorted(range(len(evidence.description.nodes)), key=lambda i: evidence.description.nodes[i]), int)
     columns = np.array(sorted(range(len(evidence.scene.nodes)), key=lambda i: evidence.scene.nodes[i]), int)
@@ -113,8 +113,8 @@ def _standing(posterior: Posterior | None) -> Standing:
     """Return the quality of the probabilities of an answer."""
     if posterior is None:
         return Standing.NONE
-    if posterior.believed:
-        return Standing.BELIEVED
+    if posterior.is_propagated:
+        return Standing.PROPAGATED
     return Standing.EXACT if posterior.exact else Standing.SAMPLED
 
 
@@ -197,11 +197,11 @@ def _matches(
     groups: tuple[tuple[str, ...], ...],
 ) -> dict[str, Match]:
     grouped = {name for group in groups for name in group}
-    said, held = dict.fromkeys(evidence.description.nodes, 0.0), dict.fromkeys(evidence.description.nodes, 0.0)
+    stated, held = dict.fromkeys(evidence.description.nodes, 0.0), dict.fromkeys(evidence.description.nodes, 0.0)
     for entry in outcomes:
         if entry.outcome in (Outcome.SATISFIED, Outcome.VIOLATED):
             for name in (entry.fact.subject, entry.fact.object):
-                said[name] += entry.fact.affirmed_weight
+                stated[name] += entry.fact.affirmed_weight
                 held[name] += entry.fact.affirmed_weight * entry.degree
     matches = {}
     for i in np.flatnonzero(alignment.assignment != UNMATCHED):
@@ -210,7 +210,7 @@ def _matches(
         matches[name] = Match(
             object=name,
             perceived=evidence.scene.nodes[p],
-            score=held[name] / said[name] if said[name] else 1.0,
+            score=held[name] / stated[name] if stated[name] else 1.0,
             similarity=float(alignment.matrix[i, p]),
             decided=_decided(evidence, alignment, int(i), name in grouped),
             alternatives=alternatives(evidence, alignment, int(i), groups),

@@ -228,22 +228,22 @@ def weigh(
     (0.99, [0.991, 0.001, 0.001])
     """
     first = _maps_of(evidence, assignment, deadline.share(0.6))
-    if first.found is None or not (math.isfinite(first.found.error) or first.found.believed):
+    if first.found is None or not (math.isfinite(first.found.error) or first.found.is_propagated):
         return None
     problem, readings = evidence.problem, evidence.label_readings
     alone = _log_sum([weight + log_sum_without_facts(known.without_facts) for weight, known in readings])
     most = float(problem.tables.max(axis=(1, 2), initial=0.0)[problem.kinds].sum()) if len(problem.ends) else 0.0
     most = max(0.0, most - entropy_without_facts(evidence.without_facts))
-    told = FitEvidence(
+    fit = FitEvidence(
         first.log_total - alone,
         most,
         min(0.0, alone - log_prior(evidence.without_facts) + KINDS_SLACK * len(problem.absent)),
     )
-    elsewhere = math.log(another / (1 - another)) + told.beside
+    elsewhere = math.log(another / (1 - another)) + fit.beside
     if evidence.present.any():  # an object that was pointed out is of this scene
         elsewhere = -math.inf
     maps = [first]
-    weights = [math.log(sides[0].prior) + FACTS_POWER * told.facts]
+    weights = [math.log(sides[0].prior) + FACTS_POWER * fit.facts]
     rest = list(zip(sides[1:], seen[1:] if seen else (None,) * len(sides[1:]), strict=True))
     for number, (side, known) in enumerate(rest):
         there = None
@@ -258,14 +258,14 @@ def weigh(
             with suppress(OutOfTimeError):
                 there = _maps_of(turned, None, left, first.log_total - first.log_best, *levels)
         maps.append(replace(first, found=None) if there is None else there)
-        facts_there = CHANCE_SHARE * told.chance if there is None else FACTS_POWER * (there.log_total - alone)
+        facts_there = CHANCE_SHARE * fit.chance if there is None else FACTS_POWER * (there.log_total - alone)
         weights.append(math.log(side.prior) + facts_there)
     weights.append(elsewhere)
     shares = np.exp(np.array(weights) - _log_sum(weights)).tolist()
     by_labels, labelled = _by_labels(evidence)
     parts = [(share, one.found) for share, one in zip(shares[:-1], maps, strict=True) if one.found is not None]
     listed = tuple(SeenSide(side, share, one.evidence) for side, share, one in zip(sides, shares, maps, strict=False))
-    return Verdict(_mixed([*parts, (shares[-1], labelled)]), 1 - shares[-1], told, listed, by_labels, labelled)
+    return Verdict(_mixed([*parts, (shares[-1], labelled)]), 1 - shares[-1], fit, listed, by_labels, labelled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,7 +359,7 @@ def _mixed(parts: Sequence[tuple[float, Posterior]]) -> Posterior:
         all(one.exact for _, one in parts),
         sum(share * one.error for share, one in parts),
         np.sum([share * one.errors for share, one in parts], axis=0),
-        any(one.believed for _, one in parts),
+        any(one.is_propagated for _, one in parts),
     )
 
 
@@ -392,19 +392,19 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
     """
     from deixis.reasoning.grounding.matching.exact import exact
 
-    spoken = evidence.allowed & (evidence.labels > 0)
-    rows, nobody = np.flatnonzero(spoken.any(axis=1)), np.full(len(spoken), UNMATCHED)
-    marginals = np.zeros((len(spoken), spoken.shape[1] + 1))
+    is_labelled = evidence.allowed & (evidence.labels > 0)
+    rows, unmatched = np.flatnonzero(is_labelled.any(axis=1)), np.full(len(is_labelled), UNMATCHED)
+    marginals = np.zeros((len(is_labelled), is_labelled.shape[1] + 1))
     marginals[:, -1] = 1.0
     if not len(rows):
-        return nobody, Posterior(marginals, True, 0.0)
-    labelled = without_facts(np.where(spoken, evidence.labels, 0.0)[rows], np.zeros(len(rows)), spoken[rows])
+        return unmatched, Posterior(marginals, True, 0.0)
+    labelled = without_facts(np.where(is_labelled, evidence.labels, 0.0)[rows], np.zeros(len(rows)), is_labelled[rows])
     found = posterior(labelled)
     marginals[rows] = found.marginals
     if evidence.whole is not None:
         marginals *= evidence.whole.labelled_inside[:, None]
-    nobody[rows] = exact(labelled).assignment
-    return nobody, Posterior(marginals, found.exact, found.error, believed=found.believed)
+    unmatched[rows] = exact(labelled).assignment
+    return unmatched, Posterior(marginals, found.exact, found.error, is_propagated=found.is_propagated)
 
 
 def side_text(angle: float, mirrored: bool) -> str:

@@ -213,7 +213,7 @@ def _shortlist_notes(evidence: Evidence, whole: Whole) -> tuple[str, ...]:
 
 def _posterior_notes(evidence: Evidence, probable: Posterior) -> tuple[str, ...]:
     """Return the note for probabilities that are unknown, or on which independent chains disagree."""
-    if probable.believed:
+    if probable.is_propagated:
         lacking = "memory" if evidence.memory_limited else "time"
         return (
             f"not enough {lacking} to sample the probabilities of matches: belief propagation estimated them, and no "

@@ -108,10 +108,10 @@ def compile_solving(wide: bool = True) -> None:
     from deixis.reasoning.qualitative.calculi.registry import calculus
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
     from deixis.reasoning.qualitative.networks.wide_search import WideSearch
-    from deixis.workflows.reasoning.solve import Wish, solve_text
+    from deixis.workflows.reasoning.solve import SolveRequest, solve_text
 
     load_compiled()
-    wishes = (Wish(scenario=True), Wish(closure=True, explain=(0, 1)))
+    requests = (SolveRequest(scenario=True), SolveRequest(closure=True, explain=(0, 1)))
     against = "2 #\n0 1 ( < )\n1 2 ( < )\n0 2 ( > )\n.\n"
     texts = [("allen", "1 #\n0 1 ( < > )\n.\n"), ("ra", "2 #\n0 1 ( <,m >,< )\n1 2 ( <,< )\n.\n"), ("allen", against)]
     if wide:
@@ -120,8 +120,8 @@ def compile_solving(wide: bool = True) -> None:
         WideSearch(Network(joint, 2, (Constraint(0, 1, joint.universal),))).run()
     for name, text in texts:
         for parsed in parse_networks(text, [calculus(name)], "warm"):
-            for wish in wishes:
-                solve_text(parsed, wish)
+            for request in requests:
+                solve_text(parsed, request)
 
 
 def compile_imagining() -> None:

@@ -81,6 +81,36 @@ class Session(Closing):
 
     A memory in a folder that cannot be written is opened for reading; a call that changes it raises
     ReadOnlyMemoryError.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import deixis
+    >>> script = deixis.read_script(text="layout supper; fork left of plate; knife right of plate")
+    >>> scene = deixis.read_scene({"objects": [
+    ...     {"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]},
+    ...     {"id": "o2", "label": "plate", "min": [0.1, 0], "max": [0.35, 0.25]},
+    ...     {"id": "o3", "label": "knife", "min": [0.4, 0], "max": [0.43, 0.2]}]})
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> session = deixis.Session(folder.name + "/memory")
+    >>> session.learn(script, scene).lesson.layout.name
+    'supper'
+    >>> [layout.name for layout in session.layouts()], session.remembers(), session.has_views()
+    (['supper'], True, False)
+    >>> session.check("supper", scene)
+    <Check of 'supper': nothing wrong, 3 correct>
+    >>> print(session.show("supper"))
+    layout supper
+    <BLANKLINE>
+    fork left of plate
+    knife right of plate
+    >>> session.query("SELECT ?role WHERE { ?role a dx:Role }")
+    <QueryResult SELECT ?role: 3 rows>
+    >>> session.forget("supper-1")
+    >>> session.layouts()
+    ()
+    >>> session.close()
+    >>> folder.cleanup()
     """
 
     def __init__(self, memory: str | Path | None = None, ontology: Ontology | None = None) -> None:

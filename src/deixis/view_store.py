@@ -244,7 +244,7 @@ def _settled(memory: LevelMemory) -> dict[tuple[str, str], dict[str, str]]:
 
     stored, found = memory.teachings(), []
     for view in memory.headers():
-        turns = [Teaching.read(said) for said in stored.get(view.id, ())]
+        turns = [Teaching.read(entry) for entry in stored.get(view.id, ())]
         turns = turns or [Teaching(view.category, keys.moment(view.time), json.loads(view.metadata))]
         found += [turn for turn in turns if SETTLES in turn.metadata]
     settled: dict[tuple[str, str], dict[str, str]] = {}

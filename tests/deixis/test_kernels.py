@@ -28,7 +28,7 @@ from deixis.kernels import compile_grounding, compile_imagining, compile_inferen
 from deixis.workflows.layouts.imagine import imagine
 from deixis.workflows.layouts.infer import inference_of
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.workflows.reasoning.solve import Wish, solve_text
+from deixis.workflows.reasoning.solve import SolveRequest, solve_text
 from deixis.workflows.grounding.ground import ground as ask_ground
 
 CHOICES = parse_script("a left of or above b; b left or right of c; c above or below d; e is not left of a")
@@ -53,7 +53,10 @@ truth = {thing.label: thing.id for thing in load_scene(sys.argv[4]).objects}
 commands = {
     "ask": (lambda: None, lambda: ask_ground(script, scene, ask=truth, sizes=False)),
     "infer": (compile_inference, lambda: inference_of(CHOICES)),
-    "solve": (compile_solving, lambda: solve_text(read_networks(sys.argv[3], [calculus("ra")])[0], Wish(False, True))),
+    "solve": (
+        compile_solving,
+        lambda: solve_text(read_networks(sys.argv[3], [calculus("ra")])[0], SolveRequest(False, True)),
+    ),
     "imagine": (compile_imagining, lambda: imagine(script)),
 }
 for name, (ready, run) in commands.items():

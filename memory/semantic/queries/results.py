@@ -355,11 +355,11 @@ def _json_term(term: Term) -> dict[str, Any]:
     if isinstance(term, ox.Triple):
         parts = zip(("subject", "predicate", "object"), term, strict=True)
         return {"type": "triple", "value": {name: _json_term(part) for name, part in parts}}
-    told: dict[str, Any] = {"type": "literal", "value": term.value}
+    value: dict[str, Any] = {"type": "literal", "value": term.value}
     if term.language:
-        told["xml:lang"] = term.language
+        value["xml:lang"] = term.language
         if term.direction is not None:
-            told["its:dir"] = term.direction.value
+            value["its:dir"] = term.direction.value
     elif term.datatype.value != _STRING:
-        told["datatype"] = term.datatype.value
-    return told
+        value["datatype"] = term.datatype.value
+    return value

@@ -411,12 +411,12 @@ def _ordered(found: list[Token]) -> bool:
     return False
 
 
-def _syntax_error(text: _Text, told: str) -> QueryError:
+def _syntax_error(text: _Text, message: str) -> QueryError:
     """Return the error for a message of Oxigraph's parser."""
-    told = " ".join(told.split())
-    found = re.match(r"error at (\d+):(\d+): (.*)", told)
+    message = " ".join(message.split())
+    found = re.match(r"error at (\d+):(\d+): (.*)", message)
     if not found:
-        return QueryError(f"query: {told}")
+        return QueryError(f"query: {message}")
     line, column, what = int(found.group(1)), int(found.group(2)), found.group(3)
     offset = text.offset(line, column)
     opened = None if text.text[offset:].strip() else _unclosed(text.text)
@@ -439,8 +439,8 @@ def _unclosed(text: str) -> Token | None:
 def _expected(what: str) -> str:
     """Return the words, without character classes, that the parser expected."""
     names = re.sub(r"\[[^\]]*\]( \|)?|'[^']*'\.\.='[^']*'", "", what.removeprefix("expected ").removeprefix("one of "))
-    told = next((name for name in names.split(", ") if " " in name.strip() and "not found" not in name), None)
-    if told:
-        return f": {told.strip()}"
+    expected = next((name for name in names.split(", ") if " " in name.strip() and "not found" not in name), None)
+    if expected:
+        return f": {expected.strip()}"
     words = [name.strip() for name in names.split(",") if re.fullmatch(r'[A-Z]+|"[^"]+"', name.strip())]
     return f"; expected {' or '.join(words[:8])}" if words else ""

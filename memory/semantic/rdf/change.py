@@ -52,7 +52,7 @@ def together(*changes: Change) -> Change:
     return Change(added, removed, tuple(chain.from_iterable(change.operations for change in changes)))
 
 
-def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
+def arriving(store: ox.Store, lesson: str, contributions: Mapping[GraphName, Sequence[ox.Triple]]) -> Change:
     """Return the change that a new lesson makes, without what follows from it.
 
     Parameters
@@ -61,7 +61,7 @@ def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.
         Store before the change.
     lesson
         Name of the lesson.
-    said
+    contributions
         Contributions of the lesson by canonical graph, as :func:`incoming` returns them.
 
     Returns
@@ -69,9 +69,9 @@ def arriving(store: ox.Store, lesson: str, said: Mapping[GraphName, Sequence[ox.
     Change
         Change that adds the triples which the canonical graphs lack.
     """
-    held = {name: ledger.held(store, graph_iri(name), triples) for name, triples in said.items()}
-    added = {name: frozenset(triples).difference(held[name]) for name, triples in said.items()}
-    return Change(added=added, operations=tuple(ledger.arrival(store, lesson, said, held)))
+    held = {name: ledger.stored_triples(store, graph_iri(name), triples) for name, triples in contributions.items()}
+    added = {name: frozenset(triples).difference(held[name]) for name, triples in contributions.items()}
+    return Change(added=added, operations=tuple(ledger.arrival(store, lesson, contributions, held)))
 
 
 def departing(store: ox.Store, lesson: str) -> Change:
@@ -163,7 +163,11 @@ def remodelling(store: ox.Store, copy: ox.NamedNode, gone: Sequence[ox.Triple], 
     """
     only = ledger.only_of(store, copy, GraphName.LEARNED, gone)
     return Change(
-        {GraphName.LEARNED: frozenset(come).difference(ledger.held(store, graph_iri(GraphName.LEARNED), come))},
+        {
+            GraphName.LEARNED: frozenset(come).difference(
+                ledger.stored_triples(store, graph_iri(GraphName.LEARNED), come)
+            )
+        },
         {GraphName.LEARNED: frozenset(only)},
         tuple(ledger.replacement(store, copy, GraphName.LEARNED, gone, come)),
     )

@@ -140,11 +140,11 @@ def _statements(triples: Iterable[ox.Triple], indent: str) -> Iterator[str]:
     subject, predicate, term = cache(_subject), cache(_predicate), cache(_term)  # most terms occur in many triples
     rows = sorted({(subject(t.subject), predicate(t.predicate), term(t.object)) for t in triples})
     for (_, name), about in groupby(rows, key=lambda row: row[0]):
-        said = [f"{verb} {obj}" for _, (_, verb), obj in about]
+        statements = [f"{verb} {obj}" for _, (_, verb), obj in about]
         yield indent + name
-        for line in said[:-1]:
+        for line in statements[:-1]:
             yield f"{indent}    {line} ;"
-        yield f"{indent}    {said[-1]} ."
+        yield f"{indent}    {statements[-1]} ."
 
 
 def _subject(term: ox.NamedNode | ox.BlankNode) -> tuple[bool, str]:

@@ -329,7 +329,7 @@ def _held_elsewhere(store: ox.Store, copy: ox.NamedNode, name: GraphName, triple
     return any(quad.graph_name != copy and _copies(quad.graph_name, name) for quad in quads)
 
 
-def held(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
+def stored_triples(store: ox.Store, graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> list[ox.Triple]:
     """Return those of the triples that a graph has.
 
     Parameters

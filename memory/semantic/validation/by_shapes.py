@@ -98,10 +98,10 @@ def validate_by_shapes(
         except subprocess.TimeoutExpired:
             raise LimitError("undecided: time limit reached before the shapes were checked; allow more time") from None
         if not (folder / "report.json").exists():
-            said = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended without a message"]
-            if "MemoryError" in said[-1]:
+            messages = done.stderr.decode("utf-8", "replace").strip().splitlines() or ["it ended without a message"]
+            if "MemoryError" in messages[-1]:
                 raise LimitError(f"undecided: the shapes take more than {MEMORY_LIMIT >> 30} GB of memory to check")
-            raise ShapesError(f"pyshacl cannot check these shapes: {said[-1][:300]}")
+            raise ShapesError(f"pyshacl cannot check these shapes: {messages[-1][:300]}")
         found = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     results = tuple(ShapeResult(**result) for result in found["results"])
     return ShapesReport(found["conforms"], results, found["turtle"])

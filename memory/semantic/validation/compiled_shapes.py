@@ -27,7 +27,7 @@ _FIRST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#first")
 _REST = ox.NamedNode("http://www.w3.org/1999/02/22-rdf-syntax-ns#rest")
 
 Check = Callable[[FocusData, Node], bool]
-Said = dict[ox.NamedNode, list[Node]]
+Properties = dict[ox.NamedNode, list[Node]]
 
 
 def _sh(name: str) -> ox.NamedNode:
@@ -185,80 +185,89 @@ def compile_shapes(file: Path) -> Shapes:
 
 class _Compiler:
     def __init__(self, quads: Iterable[ox.Quad]) -> None:
-        self._said: dict[Node, Said] = defaultdict(lambda: defaultdict(list))
+        self._properties: dict[Node, Properties] = defaultdict(lambda: defaultdict(list))
         for quad in quads:
-            self._said[quad.subject][quad.predicate].append(quad.object)
+            self._properties[quad.subject][quad.predicate].append(quad.object)
         self._read: set[Node] = set()
         self.classes: set[Node] = set()
         self.paths_to_classes: set[ox.NamedNode] = set()
 
     def node_shapes(self) -> list[Node]:
-        return [node for node, said in self._said.items() if _sh("NodeShape") in said[TYPE]]
+        return [node for node, properties in self._properties.items() if _sh("NodeShape") in properties[TYPE]]
 
     def require_all_read(self) -> None:
         """Raise OntologyError where a triple with a SHACL term was not compiled."""
-        for node, said in self._said.items():
-            words = [predicate.value for predicate in said if predicate.value.startswith(SH) and said[predicate]]
+        for node, properties in self._properties.items():
+            words = [
+                predicate.value for predicate in properties if predicate.value.startswith(SH) and properties[predicate]
+            ]
             if words and node not in self._read:
                 raise OntologyError(f"the shape {node}, with <{words[0]}>, is of an unsupported form")
 
-    def _said_of(self, node: Node) -> Said:
+    def _properties_of(self, node: Node) -> Properties:
         self._read.add(node)
-        return self._said[node]
+        return self._properties[node]
 
     def node_shape(self, node: Node) -> Shape:
-        said = self._said_of(node)
-        if not _CLASSES.isdisjoint(said[TYPE]):
+        properties = self._properties_of(node)
+        if not _CLASSES.isdisjoint(properties[TYPE]):
             raise OntologyError(f"the shape {node} must not be a class: use sh:targetClass instead")
-        if said[_sh("path")]:
+        if properties[_sh("path")]:
             raise OntologyError(f"the shape {node} must be a node shape, without a path")
         checks = []
-        for part in said[_sh("property")]:
-            inner = self._said_of(part)
+        for part in properties[_sh("property")]:
+            inner = self._properties_of(part)
             if inner[_sh("property")] or any(inner[target] for target in _TARGETS):
                 raise OntologyError(f"the property shape {part} must not have a target or a property shape")
             checks += self._shape(inner)
         return Shape(
-            classes=tuple(said[_sh("targetClass")]),
-            subjects_of=_names(said[_sh("targetSubjectsOf")]),
-            objects_of=_names(said[_sh("targetObjectsOf")]),
-            checks=(*self._shape(said), *checks),
+            classes=tuple(properties[_sh("targetClass")]),
+            subjects_of=_names(properties[_sh("targetSubjectsOf")]),
+            objects_of=_names(properties[_sh("targetObjectsOf")]),
+            checks=(*self._shape(properties), *checks),
         )
 
-    def _shape(self, said: Said) -> list[Check]:
+    def _shape(self, properties: Properties) -> list[Check]:
         """Return the checks of a node shape or a property shape; none for a shape that rejects nothing."""
-        if said[_sh("severity")] not in ([], [_sh("Violation")]):
-            self._leave_out(said)
+        if properties[_sh("severity")] not in ([], [_sh("Violation")]):
+            self._leave_out(properties)
             return []
-        path = said[_sh("path")]
+        path = properties[_sh("path")]
         values = self._path(path[0]) if path else _ITSELF
         return [
-            self._constraint(predicate, said, values) for predicate in list(said) if predicate not in _NO_CONSTRAINT
+            self._constraint(predicate, properties, values)
+            for predicate in list(properties)
+            if predicate not in _NO_CONSTRAINT
         ]
 
-    def _leave_out(self, said: Said) -> None:
+    def _leave_out(self, properties: Properties) -> None:
         """Mark all triples of a shape as read."""
-        parts = [part for values in said.values() for part in values if part in self._said and part not in self._read]
+        parts = [
+            part
+            for values in properties.values()
+            for part in values
+            if part in self._properties and part not in self._read
+        ]
         for part in parts:
-            self._leave_out(self._said_of(part))
+            self._leave_out(self._properties_of(part))
 
     def _path(self, path: Node) -> Values:
-        inverse = self._said_of(path)[_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
+        inverse = self._properties_of(path)[_sh("inversePath")] if isinstance(path, ox.BlankNode) else []
         if _names(inverse):
             return _Backwards(_names(inverse)[0])
         if not isinstance(path, ox.NamedNode):
             raise OntologyError("the path of a shape must be one step, forwards or sh:inversePath")
         return _Forwards(path)
 
-    def _constraint(self, predicate: ox.NamedNode, said: Said, values: Values) -> Check:
-        name, arguments = predicate.value.removeprefix(SH), said[predicate]
+    def _constraint(self, predicate: ox.NamedNode, properties: Properties, values: Values) -> Check:
+        name, arguments = predicate.value.removeprefix(SH), properties[predicate]
         if name == "or":
-            return _all_of([self._or(head, values, said) for head in arguments])
+            return _all_of([self._or(head, values, properties) for head in arguments])
         if name == "in":
             arguments = [item for head in arguments for item in self._list(head)]
         if name == "class":
             self.classes.update(arguments)
-            self.paths_to_classes.update(_names(said[_sh("path")]))
+            self.paths_to_classes.update(_names(properties[_sh("path")]))
         make = CONSTRAINTS.get(name)
         if make is None:
             raise OntologyError(
@@ -266,27 +275,27 @@ class _Compiler:
             )
         return make(values, arguments)
 
-    def _or(self, head: Node, values: Values, outer: Said) -> Check:
+    def _or(self, head: Node, values: Values, outer: Properties) -> Check:
         outer_path = outer[_sh("path")]
-        cases = [self._case(self._said_of(item), outer_path) for item in self._list(head)]
+        cases = [self._case(self._properties_of(item), outer_path) for item in self._list(head)]
         if outer_path:  # an alternative for each value of the outer path
             return lambda view, node: all(any(case(view, value) for case in cases) for value in values(view, node))
         return lambda view, node: any(case(view, node) for case in cases)
 
-    def _case(self, said: Said, outer_path: list[Node]) -> Check:
+    def _case(self, properties: Properties, outer_path: list[Node]) -> Check:
         """Return one alternative of sh:or, checked for one value; a class in it applies to values of the outer path."""
-        if said[_sh("property")] or any(said[target] for target in _TARGETS):
+        if properties[_sh("property")] or any(properties[target] for target in _TARGETS):
             raise OntologyError("an alternative of sh:or must not have a target or a property shape")
-        if said[_sh("path")] or not outer_path:
-            return _all_of(self._shape(said))
-        placed: Said = defaultdict(list, {**said, _sh("path"): outer_path})
-        return _all_of([self._constraint(p, placed, _ITSELF) for p in list(said) if p not in _NO_CONSTRAINT])
+        if properties[_sh("path")] or not outer_path:
+            return _all_of(self._shape(properties))
+        placed: Properties = defaultdict(list, {**properties, _sh("path"): outer_path})
+        return _all_of([self._constraint(p, placed, _ITSELF) for p in list(properties) if p not in _NO_CONSTRAINT])
 
     def _list(self, head: Node) -> list[Node]:
         items = []
-        while first := self._said[head][_FIRST]:
+        while first := self._properties[head][_FIRST]:
             items.append(first[0])
-            head = self._said[head][_REST][0]
+            head = self._properties[head][_REST][0]
         return items
 
 

@@ -71,8 +71,8 @@ def violations(
 
 
 def _incomparable(node: str = "somewhere") -> ShapeResult:
-    told = "values cannot be compared: give numbers and times in the datatypes that the ontology states"
-    return ShapeResult(short(node), None, told, "Violation", "comparable values")
+    message = "values cannot be compared: give numbers and times in the datatypes that the ontology states"
+    return ShapeResult(short(node), None, message, "Violation", "comparable values")
 
 
 def validate(

@@ -20,8 +20,8 @@ class Committee:
     Science 20(4), 2008. Each classifier has its own representation, and combinations count as further classifiers. The
     success of each over the last ``window`` answers that the teacher confirmed or corrected is recorded. Combinations
     are made from the ``best`` most successful classifiers, and the most successful classifier or combination answers
-    (before any answer, and among equals, the first in the order of ``outlook``). Changed: members are whole learners,
-    so that any can join. Omitted: features of 2-D images, and the pyramid match.
+    (before any answer, and among equals, the first in the order of ``accuracies``). Changed: members are whole
+    learners, so that any can join. Omitted: features of 2-D images, and the pyramid match.
 
     A member with the recent success rate r = (successes + 1) / (answers + 2) gives mass r to its first choice and 1 - r
     to ignorance; these are combined by Dempster's rule. ``unknown`` is that of the first member.
@@ -37,8 +37,8 @@ class Committee:
                 f"`window` ({window}) and `best` ({best}) must be at least 1"
             )
         self._members, self._best = tuple(members), best
-        self._lately = {name: deque[bool](maxlen=window) for name in (BELIEF, VOTE, *names)}
-        self._asked: tuple[ViewFeatures, dict[str, Prediction]] | None = None
+        self._recent_successes = {name: deque[bool](maxlen=window) for name in (BELIEF, VOTE, *names)}
+        self._last_prediction: tuple[ViewFeatures, dict[str, Prediction]] | None = None
 
     @property
     def categories(self) -> tuple[str, ...]:
@@ -51,15 +51,15 @@ class Committee:
         return self._members[0].stored
 
     @property
-    def outlook(self) -> dict[str, float]:
+    def accuracies(self) -> dict[str, float]:
         """Recent success rate of every member and combination, (successes + 1) / (answers + 2)."""
-        return {name: (sum(lately) + 1) / (len(lately) + 2) for name, lately in self._lately.items()}
+        return {name: (sum(successes) + 1) / (len(successes) + 2) for name, successes in self._recent_successes.items()}
 
     @property
     def attended(self) -> str:
         """Name of the member or combination that answers now."""
-        outlook = self.outlook
-        return max(outlook, key=lambda name: outlook[name])
+        accuracies = self.accuracies
+        return max(accuracies, key=lambda name: accuracies[name])
 
     def predict(self, view: ViewFeatures) -> Prediction:
         """Return the prediction of the member or combination that answers now.
@@ -74,7 +74,7 @@ class Committee:
         Prediction
             Scores of that member or combination.
         """
-        return self._opinions(view)[self.attended]
+        return self._predictions(view)[self.attended]
 
     def learn(self, category: str, view: ViewFeatures) -> None:
         """Teach all members.
@@ -179,33 +179,33 @@ class Committee:
             member.merge(category, into)
 
     def _changed(self) -> None:
-        self._asked = None
+        self._last_prediction = None
 
     def _watch(self, category: str, view: ViewFeatures) -> None:
-        for name, opinion in self._opinions(view).items():
-            self._lately[name].append(opinion.best == category)
+        for name, prediction in self._predictions(view).items():
+            self._recent_successes[name].append(prediction.best == category)
         self._changed()
 
-    def _opinions(self, view: ViewFeatures) -> dict[str, Prediction]:
+    def _predictions(self, view: ViewFeatures) -> dict[str, Prediction]:
         """Return all predictions for a view; cached, since the teacher answers for the view of the last question."""
-        if self._asked is None or self._asked[0] is not view:
-            said = {member.name: member.predict(view) for member in self._members}
-            unknown = next(iter(said.values())).unknown
-            outlook = self.outlook
-            chosen = sorted(said, key=lambda name: -outlook[name])[: self._best]
-            support = [(said[name].best, outlook[name]) for name in chosen]
-            heard = [(category, weight) for category, weight in support if category is not None]
-            self._asked = (
+        if self._last_prediction is None or self._last_prediction[0] is not view:
+            predictions = {member.name: member.predict(view) for member in self._members}
+            unknown = next(iter(predictions.values())).unknown
+            accuracies = self.accuracies
+            chosen = sorted(predictions, key=lambda name: -accuracies[name])[: self._best]
+            support = [(predictions[name].best, accuracies[name]) for name in chosen]
+            votes = [(category, weight) for category, weight in support if category is not None]
+            self._last_prediction = (
                 view,
                 {
                     **{
-                        BELIEF: Prediction.of(dempster_shafer(heard), unknown),
-                        VOTE: Prediction.of(majority(heard), unknown),
+                        BELIEF: Prediction.of(dempster_shafer(votes), unknown),
+                        VOTE: Prediction.of(majority(votes), unknown),
                     },
-                    **said,
+                    **predictions,
                 },
             )
-        return self._asked[1]
+        return self._last_prediction[1]
 
 
 def majority(support: Sequence[tuple[str, float]]) -> dict[str, float]:

@@ -54,13 +54,13 @@ class End(Enum):
 class TaughtAnswer:
     """Answer to one question.
 
-    ``category`` was shown, ``said`` is the answer, and ``unknown`` the score for no known category. ``known`` is the
-    number of known categories, ``stored`` the number of instances stored afterwards, and ``accuracy`` the share of
+    ``category`` was shown, ``predicted`` is the answer, and ``unknown`` the score for no known category. ``known`` is
+    the number of known categories, ``stored`` the number of instances stored afterwards, and ``accuracy`` the share of
     right answers that the teacher compares with the threshold.
     """
 
     category: str
-    said: str | None
+    predicted: str | None
     unknown: float
     known: int
     stored: int
@@ -69,7 +69,7 @@ class TaughtAnswer:
     @property
     def right(self) -> bool:
         """True if the answer is the category shown."""
-        return self.said == self.category
+        return self.predicted == self.category
 
 
 @dataclass(frozen=True)

@@ -128,7 +128,7 @@ def claim_tables(
     Log-likelihood ratios in nats, finite.
     """
     index = {name: i for i, name in enumerate(nodes)}
-    said = np.zeros(unary.shape)
+    claim_ratios = np.zeros(unary.shape)
     pairs: dict[tuple[int, int], Array] = {}
     if 1 < len(boxes) <= MAX_THINGS:
         scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric, surface)
@@ -140,14 +140,14 @@ def claim_tables(
                 chances = np.minimum(sum((_chances(unary[member]) for member in members), np.zeros(len(boxes))), 1.0)
                 degree = ordinal_degrees(claim.value or "", scene.centres, chances)
                 if degree is not None and claim.arguments:
-                    said[index[claim.subjects[0]]] += _ratio(claim, degree, 1.0)
+                    claim_ratios[index[claim.subjects[0]]] += _ratio(claim, degree, 1.0)
                 continue
             for ends, degree, share in scene.of(claim):
                 who = tuple(index[name] for name in ends)
                 if len(set(who)) < len(who):
                     continue
                 if len(who) == 1:
-                    said[who[0]] += _ratio(claim, degree, share)
+                    claim_ratios[who[0]] += _ratio(claim, degree, share)
                 elif len(who) == 2:
                     pairs[who[0], who[1]] = pairs.get((who[0], who[1]), 0.0) + _ratio(claim, degree, share)
                 else:
@@ -159,7 +159,7 @@ def claim_tables(
     for table, ratio in zip(tables, pairs.values(), strict=True):
         table[:] = ratio
         np.fill_diagonal(table, 0.0)
-    return ClaimTables(said, np.array(list(pairs), dtype=np.int64).reshape(-1, 2), tables)
+    return ClaimTables(claim_ratios, np.array(list(pairs), dtype=np.int64).reshape(-1, 2), tables)
 
 
 def _chances(unary: Array) -> Array:

@@ -275,8 +275,8 @@ class Evidence:
             tables = np.concatenate([tables, more.tables])
         places, boxes = None, self.scene.boxes
         if literal is not None and boxes is not None and len(boxes) and self.whole is None:
-            said, of_claims = self._said().ratios.facts, len(tables) - len(facts.tables)
-            places = partial(place_ratios, said, boxes, literal, of_claims, self.scene.poses)
+            stated, of_claims = self._fact_evidence().ratios.facts, len(tables) - len(facts.tables)
+            places = partial(place_ratios, stated, boxes, literal, of_claims, self.scene.poses)
         return Problem(ends, kinds, tables, self.unary, self.absent, self.allowed, places)
 
     @property
@@ -317,7 +317,7 @@ class Evidence:
             whole = replace(whole, alone=whole.doubted)
         doubted = replace(self, labels=self.doubted_labels.ratios, doubted_labels=None, whole=whole)
         if self.meaning.graded and self.scene.boxes is not None and len(self.scene.boxes) <= MAX_KEPT_THINGS:
-            doubted.__dict__["_facts_said"] = self._said()
+            doubted.__dict__["_cached_fact_evidence"] = self._fact_evidence()
         trusted = math.log1p(-UNRELIABLE_PRIOR)
         return ((trusted, self), (math.log(UNRELIABLE_PRIOR) + self.doubted_labels.log_likelihood, doubted))
 
@@ -328,8 +328,8 @@ class Evidence:
         if boxes is None or not self.meaning.graded:
             # the crisp reading; by chance, each exact relation is equally frequent
             graph, edges = self.description, self.facts
-            said = np.column_stack([self.degree_table, graph.net_weights[edges]])
-            rows, kinds = np.unique(said, axis=0, return_inverse=True)
+            contents = np.column_stack([self.degree_table, graph.net_weights[edges]])
+            rows, kinds = np.unique(contents, axis=0, return_inverse=True)
             exact = [relation.index for relation in graph.vocabulary.of_reading(Reading.EXACT)]
             tables = np.zeros((len(rows), len(self.scene.nodes), len(self.scene.nodes)), dtype=np.float32)
             silent = np.isin(np.arange(len(rows)), kinds.ravel()[list(self.modelled)]) if boxes is None else ()
@@ -341,20 +341,20 @@ class Evidence:
                 np.fill_diagonal(table, 0.0)
             ends = np.stack([graph.subjects[edges], graph.objects[edges]], axis=1).astype(np.int64)
             return Problem(ends, kinds.ravel().astype(np.int64), tables, self.unary, absent, self.allowed)
-        spoken, unary = self._said(), self.unary
-        literal = spoken.literal(unary, absent, self.allowed)
-        return self._with_claims(spoken.tables(literal), literal)
+        facts, unary = self._fact_evidence(), self.unary
+        literal = facts.literal(unary, absent, self.allowed)
+        return self._with_claims(facts.tables(literal), literal)
 
     @cached_property
     def upper_problem(self) -> Problem:
         """Matching problem in which every map has at least its value in :attr:`problem`; needs no search."""
         if self.scene.boxes is None or not self.meaning.graded:
             return self.problem
-        return self._with_claims(self._said().most())
+        return self._with_claims(self._fact_evidence().most())
 
-    def _said(self) -> FactEvidence:
+    def _fact_evidence(self) -> FactEvidence:
         """Return the evidence of the facts for the boxes; for small scenes it is cached, for both label readings."""
-        known = self.__dict__.get("_facts_said")
+        known = self.__dict__.get("_cached_fact_evidence")
         if known is None:
             boxes = self.scene.boxes
             assert boxes is not None
@@ -369,7 +369,7 @@ class Evidence:
                 deadline=self.deadline.earlier(laying_out),
             )
             if len(boxes) <= MAX_KEPT_THINGS:
-                self.__dict__["_facts_said"] = known
+                self.__dict__["_cached_fact_evidence"] = known
         return known
 
     @cached_property
@@ -515,8 +515,8 @@ class Evidence:
         matched = assignments != UNMATCHED
         totals: NDArray[np.float64] = self.degrees(assignments) @ self.description.affirmed_weights[self.facts]
         if self.labels.size:
-            said = self.labels[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)]
-            totals += np.where(matched, said, 0.0).sum(axis=1)
+            label_values = self.labels[np.arange(assignments.shape[1]), np.where(matched, assignments, 0)]
+            totals += np.where(matched, label_values, 0.0).sum(axis=1)
         return totals
 
     def seen_from(self, angle: float, mirrored: bool) -> Evidence:
@@ -706,26 +706,27 @@ def thing_evidence(
         Log-likelihood ratios in nats, and allowed matches, each of shape (n1, n2).
     """
     weights, shape = meaning.weights, (len(description.nodes), len(labels))
-    said, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
+    label_values, measured, allowed = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
     doubted = None
     if weights.labels > 0:
-        told = label_ratios(description, labels, kinds, label_error)
-        said, allowed = weights.labels * told.ratios, told.allowed
+        by_labels = label_ratios(description, labels, kinds, label_error)
+        label_values, allowed = weights.labels * by_labels.ratios, by_labels.allowed
         ranked = np.zeros(shape)
         if any(candidates):
             ranked = weights.labels * np.where(allowed, candidate_ratios(description, candidates, kinds), 0.0)
-            said = said + ranked
+            label_values = label_values + ranked
         if label_error > 0 and any(label is not None for label in labels):
             unreliable = label_ratios(description, labels, kinds, UNRELIABLE_ERROR)
             doubted = DoubtedLabels(
-                weights.labels * unreliable.ratios + ranked, weights.labels * (unreliable.by_chance - told.by_chance)
+                weights.labels * unreliable.ratios + ranked,
+                weights.labels * (unreliable.by_chance - by_labels.by_chance),
             )
     if weights.sizes > 0 and boxes is not None:
         measured = weights.sizes * size_evidence(classes(description), boxes, sizes, meaning.sizes, metric)
     shades = None
     if weights.colours > 0 and seen is not None and colours is not None and description.colours:
         shades = weights.colours * colour_evidence(description.colours, seen, colours)
-    return ThingEvidence(said, measured, shades, doubted, allowed)
+    return ThingEvidence(label_values, measured, shades, doubted, allowed)
 
 
 def without_facts(unary: NDArray[np.float64], absent: NDArray[np.float64], allowed: NDArray[np.bool_]) -> Problem:

@@ -147,8 +147,8 @@ def fact_tables(
     """
     if literal is not None and not 0 <= literal <= 1:
         raise SettingError(f"`literal`, the share of literal facts, must be between 0 and 1, got {literal:g}")
-    said = FactEvidence.of(description, boxes, models, saying=saying, deadline=deadline)
-    return said.tables(said.literal(unary, absent, allowed) if literal is None else literal)
+    evidence = FactEvidence.of(description, boxes, models, saying=saying, deadline=deadline)
+    return evidence.tables(evidence.literal(unary, absent, allowed) if literal is None else literal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,16 +322,16 @@ class SaidFacts:
 
     def __init__(self, models: RelationModels, vocabulary: Relations, saying: bool, distinct: Sequence[Said]) -> None:
         self.models, self.vocabulary, self.saying = models, vocabulary, saying
-        self.spoken_by_chance = models[SAYING].chance if saying else 1.0
-        self.said = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
-        by_name = [self._literal(relations, positive) for relations, positive, _ in self.said]
+        self.mean_mention_weight = models[SAYING].chance if saying else 1.0
+        self.contents = [(vocabulary.members(mask), positive, weight) for mask, positive, weight in distinct]
+        by_name = [self._literal(relations, positive) for relations, positive, _ in self.contents]
         self.literal = np.reshape(by_name, (len(by_name), len(vocabulary) + 1))
-        self.weights = np.reshape([weight for _, _, weight in self.said], (-1, 1))
+        self.weights = np.reshape([weight for _, _, weight in self.contents], (-1, 1))
         # a fact with a word that only its model decides has no literal meaning
-        self.modelled = [any(relation.by_model for relation in relations) for relations, _, _ in self.said]
+        self.modelled = [any(relation.by_model for relation in relations) for relations, _, _ in self.contents]
         self.literally = np.reshape([0.0 if modelled else 1.0 for modelled in self.modelled], (-1, 1))
 
-    def spoken(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
+    def mention_weight(self, pairs: PairGeometry) -> NDArray[np.float32] | np.float32:
         """Return how readily people mention each pair of a block, in (0, 1].
 
         Parameters
@@ -351,7 +351,7 @@ class SaidFacts:
         fact: int,
         degrees_of: WordDegrees,
         names: NDArray[np.uint8],
-        spoken: NDArray[np.float32] | np.float32,
+        mention_weight: NDArray[np.float32] | np.float32,
     ) -> NDArray[np.float32]:
         """Return the likelihood ratio of a fact for each pair of a block, for a graded speaker against chance.
 
@@ -363,15 +363,15 @@ class SaidFacts:
             Degrees of the words for the pairs of the block.
         names
             Index of the exact relation of each pair, shape (n, m).
-        spoken
-            How readily people mention each pair, from :meth:`spoken`.
+        mention_weight
+            How readily people mention each pair, from :meth:`mention_weight`.
 
         Returns
         -------
         ndarray
             Likelihood ratios, shape (n, m).
         """
-        relations, positive, _ = self.said[fact]
+        relations, positive, _ = self.contents[fact]
         outliers = float(np.mean([self.models.of(relation).outliers for relation in relations]))
         chances = np.array([self.models.of(relation).chance for relation in relations])
         fitting = [degrees_of.of(relation) for relation in relations]
@@ -381,13 +381,13 @@ class SaidFacts:
             fitting = [np.maximum(degree, known[names]) for degree, known in zip(fitting, holds, strict=True)]
         chance = float(combined(chances, positive))
         if self.modelled[fact]:  # such a word is said at any distance that fits it
-            spoken = np.float32(1.0)
+            mention_weight = np.float32(1.0)
         else:
-            chance *= self.spoken_by_chance
+            chance *= self.mean_mention_weight
         by_chance = outliers + (1 - outliers) * chance
         degrees = combined(fitting, positive)
         ratio: NDArray[np.float32] = degrees.astype(np.float32)
-        ratio *= spoken
+        ratio *= mention_weight
         ratio *= np.float32((1 - outliers) / by_chance)
         ratio += np.float32(outliers / by_chance)
         return ratio
@@ -416,7 +416,7 @@ class SaidFacts:
         fact: int,
         degrees_of: WordDegrees,
         names: NDArray[np.uint8],
-        spoken: NDArray[np.float32] | np.float32,
+        mentioned: NDArray[np.float32] | np.float32,
         share: float,
     ) -> NDArray[np.float32]:
         """Return the likelihood ratio of a fact for each pair of a block, if a share of the facts is literal.
@@ -429,8 +429,8 @@ class SaidFacts:
             Degrees of the words for the pairs of the block.
         names
             Index of the exact relation of each pair, shape (n, m).
-        spoken
-            How readily people mention each pair, from :meth:`spoken`.
+        mentioned
+            How readily people mention each pair, from :meth:`mention_weight`.
         share
             Share of literal facts, in [0, 1].
 
@@ -439,8 +439,8 @@ class SaidFacts:
         ndarray
             Likelihood ratios, shape (n, m).
         """
-        ratio = self.ratio(fact, degrees_of, names, spoken)
-        ratio *= np.float32(self.said[fact][2] * (1 - share * float(self.literally[fact, 0])))
+        ratio = self.ratio(fact, degrees_of, names, mentioned)
+        ratio *= np.float32(self.contents[fact][2] * (1 - share * float(self.literally[fact, 0])))
         ratio += self.offset(fact, share)[names]
         return ratio
 
@@ -462,7 +462,7 @@ class _FactRatios:
     ) -> None:
         self.names = np.where(names < 0, len(facts.vocabulary), names).astype(np.uint8)
         self.facts, self.deadline = facts, deadline
-        self.graded = np.empty((len(facts.said), *names.shape), np.float32)
+        self.graded = np.empty((len(facts.contents), *names.shape), np.float32)
         starts, started = range(0, len(names), SIDE), time.monotonic()
         blocks = [(a, b) for a in starts for b in starts if b <= a]
         for done, (subject, object) in enumerate(blocks):
@@ -476,24 +476,24 @@ class _FactRatios:
 
         ``order`` (n2,) is the order of the things in the result.
         """
-        n, k, known = len(self.names), len(self.facts.said), self.facts
+        n, k, known = len(self.names), len(self.facts.contents), self.facts
         tables = empty_tables(k, n)
         some = max(1, min(k, TABLE_CELLS // max(n * n, 1)))
         room = np.empty((some, n, n), dtype=np.float32)
         for start in range(0, k, some):
             self._require_time()
             part = slice(start, start + some)
-            said = room[: min(some, k - start)]
-            np.take(known.offset(part, share), self.names, axis=1, out=said, mode="clip")
+            likelihoods = room[: min(some, k - start)]
+            np.take(known.offset(part, share), self.names, axis=1, out=likelihoods, mode="clip")
             scales = (known.weights[part] * (1 - share * known.literally[part])).astype(np.float32)[:, :, None]
-            said += np.multiply(self.graded[part], scales, out=tables[part])
-            np.log(said, out=said)
-            said[:, np.arange(n), np.arange(n)] = 0.0
+            likelihoods += np.multiply(self.graded[part], scales, out=tables[part])
+            np.log(likelihoods, out=likelihoods)
+            likelihoods[:, np.arange(n), np.arange(n)] = 0.0
             if order is None:
-                tables[part] = said
+                tables[part] = likelihoods
             else:
                 for row, place in enumerate(order.tolist()):
-                    np.take(said[:, place], order, axis=1, out=tables[part, row], mode="clip")
+                    np.take(likelihoods[:, place], order, axis=1, out=tables[part, row], mode="clip")
         return tables
 
     def _require_time(self, needed: float = 0.0) -> None:
@@ -512,9 +512,11 @@ class _FactRatios:
         degrees = WordDegrees(pairs, self.facts.models)
         both = [(subjects, objects, pairs, degrees), (objects, subjects, pairs.reverse, degrees.reverse)]
         for rows, columns, some, fitting in both if subjects != objects else both[:1]:
-            spoken = self.facts.spoken(some)
+            mention_weight = self.facts.mention_weight(some)
             for fact in range(len(self.graded)):
-                self.graded[fact, rows, columns] = self.facts.ratio(fact, fitting, self.names[rows, columns], spoken)
+                self.graded[fact, rows, columns] = self.facts.ratio(
+                    fact, fitting, self.names[rows, columns], mention_weight
+                )
 
 
 def literal_degree(

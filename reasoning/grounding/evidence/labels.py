@@ -104,14 +104,14 @@ def naming(description: RelationGraph, labels: Sequence[Label | None], kinds: Ki
     Naming
         Masks of shape (n1, n2).
     """
-    said = [label.text if label is not None and label.confidence > 0 else None for label in labels]
+    given_texts = [label.text if label is not None and label.confidence > 0 else None for label in labels]
     nothing = np.zeros(len(description.nodes), dtype=bool)
     texts = {
         text: _columns(description, text, kinds) if text is not None else (nothing, nothing)
-        for text in dict.fromkeys(said)
+        for text in dict.fromkeys(given_texts)
     }
     place = {text: number for number, text in enumerate(texts)}
-    which = np.array([place[text] for text in said], dtype=np.int64)
+    which = np.array([place[text] for text in given_texts], dtype=np.int64)
     both = np.array(list(texts.values()), dtype=bool).reshape(len(texts), 2, len(nothing))  # (different texts, 2, n1)
     named, fitting = both[which, 0].T, both[which, 1].T
     sureness = np.array([label.confidence if label is not None else 0.0 for label in labels])
@@ -144,7 +144,9 @@ def _columns(description: RelationGraph, label: str, kinds: Kinds) -> tuple[NDAr
     if called.any() or kind is None:
         return called, fitting
     known = (None if iri is None else kinds[iri] for iri in _kinds(description))
-    return np.array([told is not None and kinds.is_a(told, kind) for told in known], dtype=bool), fitting
+    return np.array(
+        [known_name is not None and kinds.is_a(known_name, kind) for known_name in known], dtype=bool
+    ), fitting
 
 
 def _narrowing(words: str) -> bool:

@@ -86,7 +86,7 @@ def place_ratios(
     ndarray
         Likelihood ratios, shape (2(k + c), g, n2): the subject at the place, then the object at the place.
     """
-    places, kinds = place_boxes(boxes), len(facts.said)
+    places, kinds = place_boxes(boxes), len(facts.contents)
     tables = kinds + more_tables
     ratios = np.ones((2, tables, len(places), len(boxes)), np.float32)
     there, here = Surroundings.of(places, boxes), Surroundings.of(boxes, boxes, poses=poses)
@@ -103,6 +103,6 @@ def _fill(ratios: NDArray[np.float32], facts: SaidFacts, pairs: PairGeometry, li
     """Fill in the likelihood ratios (k, n, m) of k facts for a block of pairs of n subjects and m objects."""
     ranks = np.arange(len(pairs.boxes)), np.arange(len(pairs.objects))
     _, names = cross_relations(pairs.boxes, pairs.objects, ranks, facts.vocabulary)
-    degrees, spoken = WordDegrees(pairs, facts.models), facts.spoken(pairs)
+    degrees, mentioned = WordDegrees(pairs, facts.models), facts.mention_weight(pairs)
     for kind, ratio in enumerate(ratios):
-        ratio[:] = facts.mixed(kind, degrees, names.astype(np.uint8), spoken, literal)
+        ratio[:] = facts.mixed(kind, degrees, names.astype(np.uint8), mentioned, literal)

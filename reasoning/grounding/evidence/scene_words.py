@@ -113,6 +113,6 @@ def scene_words(boxes: Array, poses: Poses | None = None, models: RelationModels
     known = models or shipped_models()
     fitting = WordDegrees(pair_geometry(boxes, poses), known)
     left_out = PASSIVE if boxes.shape[2] == 3 else PASSIVE | UPRIGHT
-    said = [word for word in (*FAMILIES, *GRADED_FAMILIES) if word not in left_out]
-    degrees = {word: np.where(fitting.undecided(word), np.nan, fitting.of_word(word)) for word in said}
+    words = [word for word in (*FAMILIES, *GRADED_FAMILIES) if word not in left_out]
+    degrees = {word: np.where(fitting.undecided(word), np.nan, fitting.of_word(word)) for word in words}
     return SceneWords(degrees, between_degrees(boxes[:, :, :2].mean(axis=1)))

@@ -271,9 +271,9 @@ class _Weighing:
         _, names = cross_relations(here, there, (self.ranks[rows], self.ranks[columns]), self.vocabulary)
         if self.graded:
             pairs = near.block_with(some, far, others)
-            degrees, spoken = WordDegrees(pairs, self.facts.models), self.facts.spoken(pairs)
-            return self.facts.mixed(kind, degrees, names.astype(np.uint8), spoken, LITERAL * LITERAL_PRIOR)
-        relations, positive, weight = self.facts.said[kind]
+            degrees, mentioned = WordDegrees(pairs, self.facts.models), self.facts.mention_weight(pairs)
+            return self.facts.mixed(kind, degrees, names.astype(np.uint8), mentioned, LITERAL * LITERAL_PRIOR)
+        relations, positive, weight = self.facts.contents[kind]
         by_name = literal_degree(relations, positive, np.arange(len(self.vocabulary)), self.vocabulary)
         ratio = np.exp(log_likelihood_ratio(by_name, OUTLIERS, float(by_name[self.exact].mean())))
         literal: NDArray[np.float32] = (weight * ratio + 1 - weight).astype(np.float32)[names]
@@ -294,7 +294,7 @@ class _Link:
     fact: int
     ends: tuple[int, int]  # subject and object
     ratios: NDArray[np.float32]  # (r, c) likelihood ratios of their candidates
-    told: list[Array]  # log messages to the two ends, for each candidate and, last, for absence
+    log_messages: list[Array]  # log messages to the two ends, for each candidate and, last, for absence
 
 
 class _Messages:
@@ -319,33 +319,33 @@ class _Messages:
 
     def add(self, subject: int, object: int, ratios: NDArray[np.float32], fact: int) -> None:
         """Add a fact with its likelihood ratios (r, c)."""
-        told = [np.zeros(len(self.candidates[end]) + 1) for end in (subject, object)]
-        self.links.append(_Link(fact, (subject, object), ratios, told))
+        log_messages = [np.zeros(len(self.candidates[end]) + 1) for end in (subject, object)]
+        self.links.append(_Link(fact, (subject, object), ratios, log_messages))
 
-    def known(self) -> list[Array]:
+    def log_totals(self) -> list[Array]:
         """Return the sum of unary evidence and messages of facts, for the candidates and absence of each object."""
         total = [alone.copy() for alone in self.alone]
         for link in self.links:
-            for end, told in zip(link.ends, link.told, strict=True):
-                total[end] += told
+            for end, log_messages in zip(link.ends, link.log_messages, strict=True):
+                total[end] += log_messages
         return total
 
     def beliefs(self) -> list[Array]:
         """Return the approximate probability of each object's candidates and, last, of its absence."""
-        return [_shares(known + demand) for known, demand in zip(self.known(), self.demand, strict=True)]
+        return [_shares(known + demand) for known, demand in zip(self.log_totals(), self.demand, strict=True)]
 
     def settle(self, deadline: Deadline) -> None:
         """Exchange messages until the beliefs converge, or until the deadline."""
         before = self.beliefs()
         for _ in range(STEPS):
             self._ask_things()
-            known = self.known()
+            known = self.log_totals()
             logs = [one + demand for one, demand in zip(known, self.demand, strict=True)]
             for link in self.links:
-                (s, o), (to_s, to_o) = link.ends, link.told
+                (s, o), (to_s, to_o) = link.ends, link.log_messages
                 weights_s, weights_o = _weights(logs[s] - to_s), _weights(logs[o] - to_o)
-                _tell(to_o, weights_s[:-1] @ link.ratios, weights_s)
-                _tell(to_s, link.ratios @ weights_o[:-1], weights_o)
+                _damped_update(to_o, weights_s[:-1] @ link.ratios, weights_s)
+                _damped_update(to_s, link.ratios @ weights_o[:-1], weights_o)
             after = self.beliefs()
             change = max((float(np.abs(a - b).sum()) for a, b in zip(after, before, strict=True)), default=0.0)
             if change < SETTLED or deadline.passed:
@@ -355,15 +355,15 @@ class _Messages:
     def _ask_things(self) -> None:
         """Update the message of every thing to each object: the odds that another object is this thing."""
         wanted, own = np.zeros(self.things), []
-        for known, demand, things in zip(self.known(), self.demand, self.candidates, strict=True):
+        for known, demand, things in zip(self.log_totals(), self.demand, self.candidates, strict=True):
             share = _shares(known + demand)
             odds = share * np.exp(np.minimum(-demand, 60.0)) / np.maximum(1.0 - share, 1e-12)
             odds = np.minimum(odds[:-1], MAX_ODDS)
             wanted[things] += odds
             own.append(odds)
         for demand, things, odds in zip(self.demand, self.candidates, own, strict=True):
-            told = -np.log1p(np.maximum(wanted[things] - odds, 0.0))
-            demand[:-1] = DAMPING * demand[:-1] + (1 - DAMPING) * told
+            log_message = -np.log1p(np.maximum(wanted[things] - odds, 0.0))
+            demand[:-1] = DAMPING * demand[:-1] + (1 - DAMPING) * log_message
 
     def drop(self) -> None:
         """Drop the least likely candidates of the objects that have facts."""
@@ -378,7 +378,9 @@ class _Messages:
         for link in self.links:
             s, o = link.ends
             link.ratios = np.ascontiguousarray(link.ratios[np.ix_(kept[s], kept[o])])
-            link.told = [told[np.append(kept[end], True)] for end, told in zip(link.ends, link.told, strict=True)]
+            link.log_messages = [
+                message[np.append(kept[end], True)] for end, message in zip(link.ends, link.log_messages, strict=True)
+            ]
 
 
 def _likeliest(belief: Array) -> NDArray[np.bool_]:
@@ -406,12 +408,12 @@ def _shares(logs: Array) -> Array:
     return shares
 
 
-def _tell(told: Array, by_thing: NDArray[np.float32], weights: NDArray[np.float32]) -> None:
+def _damped_update(log_message: Array, by_thing: NDArray[np.float32], weights: NDArray[np.float32]) -> None:
     """Update the message of a fact to an object, for its candidates and its absence, in place."""
     total = float(weights.sum())
     new = np.append(np.log(np.maximum(by_thing + weights[-1], 1e-30) / total), 0.0)
-    told *= DAMPING
-    told += (1 - DAMPING) * new
+    log_message *= DAMPING
+    log_message += (1 - DAMPING) * new
 
 
 def _extended(
@@ -430,11 +432,11 @@ def _extended(
     """
     n1, n2 = alone.unary.shape
     candidates = messages.candidates
-    logs = [known + demand for known, demand in zip(messages.known(), messages.demand, strict=True)]
-    told = [np.where(alone.allowed[i, things], alone.unary[i, things], -np.inf) for i, things in enumerate(reach)]
+    logs = [known + demand for known, demand in zip(messages.log_totals(), messages.demand, strict=True)]
+    log_unary = [np.where(alone.allowed[i, things], alone.unary[i, things], -np.inf) for i, things in enumerate(reach)]
     cells = sum(len(reach[end]) for end in weighing.ends.ravel().tolist())
     each = max(1, int(min(most, deadline.left * weighing.cells_per_second / max(cells, 1))))
-    facts = [(link.fact, link.ends, link.told) for link in messages.links]
+    facts = [(link.fact, link.ends, link.log_messages) for link in messages.links]
     silent = [np.zeros(1), np.zeros(1)]
     facts += [(fact, (int(weighing.ends[fact, 0]), int(weighing.ends[fact, 1])), silent) for fact in waiting]
     for fact, ends, from_fact in facts:
@@ -450,12 +452,12 @@ def _extended(
             rows, columns = (reach[here], things) if place == 0 else (things, reach[here])
             ratios = weighing.ratios(fact, rows, columns)
             by_thing = (ratios if place == 0 else ratios.T) @ kept + (1.0 - kept.sum())
-            told[here] += np.log(np.maximum(by_thing, 1e-30))
+            log_unary[here] += np.log(np.maximum(by_thing, 1e-30))
     found = np.zeros((n1, n2 + 1))
     unused = np.bincount(weighing.ends[waiting].ravel(), minlength=n1) > 0
     for i in range(n1):
         log = np.full(n2 + 1, -np.inf)
-        log[reach[i]] = told[i]
+        log[reach[i]] = log_unary[i]
         if not unused[i]:
             log[candidates[i]] = logs[i][:-1]
         log[-1] = logs[i][-1]

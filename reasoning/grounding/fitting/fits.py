@@ -113,8 +113,8 @@ def likeliest_powers(
 
     def loss(powers: Array) -> tuple[float, Array]:
         odds = design @ powers
-        said = np.logaddexp(0.0, odds) - right * odds
-        return float(share @ said), design.T @ (share * (1 / (1 + np.exp(-np.clip(odds, -500, 500))) - right))
+        losses = np.logaddexp(0.0, odds) - right * odds
+        return float(share @ losses), design.T @ (share * (1 / (1 + np.exp(-np.clip(odds, -500, 500))) - right))
 
     bounds = [(power, power) for power in held] + [(0.0, 5.0)] * (3 - len(held))
     start = np.array([*held, *[0.1] * (3 - len(held))])

@@ -76,8 +76,10 @@ def said_pairs(
     for fact in description.facts():
         subject, obj = index[fact.subject], index[fact.object]
         first, second = things[subject], things[obj]
-        said = fact.plain and not fact.optional  # a fact with *rarely* is not plain: it is an example of the opposite
-        if said and first is not None and second is not None and first != second:
+        is_stated = (
+            fact.plain and not fact.optional
+        )  # a fact with *rarely* is not plain: it is an example of the opposite
+        if is_stated and first is not None and second is not None and first != second:
             words.append(fact.relations[0].word)
             ends.append((first, second))
             weights.append(fact.weight * sure[subject] * sure[obj])
@@ -168,7 +170,7 @@ class _Designed:
             self.designs[word] = (np.concatenate(parts, axis=1), columns, model.outliers)
         position = np.full(apart.shape, -1)
         position[apart] = np.arange(apart.sum())
-        self.said = [
+        self.stated_pairs = [
             (word, int(position[a, b]), float(weight))
             for word, (a, b), weight in zip(scene.words, scene.ends.tolist(), scene.weights.tolist(), strict=True)
             if word in words
@@ -185,16 +187,16 @@ class _Designed:
 
     def weights(self) -> dict[str, float]:
         """Return the total weight of each word's examples."""
-        said = dict.fromkeys(self.designs, 0.0)
-        for word, _, weight in self.said:
-            said[word] += weight
-        return said
+        totals = dict.fromkeys(self.designs, 0.0)
+        for word, _, weight in self.stated_pairs:
+            totals[word] += weight
+        return totals
 
     def contrast_pairs(self, scores: dict[str, Array]) -> tuple[float, dict[str, Array]]:
         """Return each word's pair among all pairs of the scene: log-likelihood, and its slope by the scores."""
         total, pull = 0.0, {word: np.zeros_like(score) for word, score in scores.items()}
         share = {word: _softmax(score) for word, score in scores.items()}
-        for word, pair, weight in self.said:
+        for word, pair, weight in self.stated_pairs:
             total += weight * float(np.log(share[word][pair]))
             pull[word] -= weight * share[word]
             pull[word][pair] += weight
@@ -207,7 +209,7 @@ class _Designed:
         share = np.stack([scores[word] for word in words])
         share = np.exp(share - share.max(axis=0))
         share /= share.sum(axis=0)
-        for word, pair, weight in self.said:
+        for word, pair, weight in self.stated_pairs:
             total += weight * float(np.log(share[words.index(word), pair]))
             for other, part in zip(words, share[:, pair].tolist(), strict=True):
                 pull[other][pair] += weight * ((other == word) - part)

@@ -61,7 +61,7 @@ class Posterior:
     errors
         Error of each object's marginals, shape (n1,), estimated from independent ladders without a guarantee; by
         default, ``error`` for all.
-    believed
+    is_propagated
         Whether the marginals are from belief propagation alone, so that their error is unknown.
     log_total
         Logarithm of the sum of the exponentials of all maps' values; nan where it is unknown.
@@ -73,7 +73,7 @@ class Posterior:
     exact: bool
     error: float
     errors: NDArray[np.float64] = field(default_factory=lambda: np.array(math.nan))
-    believed: bool = False
+    is_propagated: bool = False
     log_total: float = math.nan
     placed: bool = False
 
@@ -144,16 +144,15 @@ def posterior(
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     if not chains:
-        return Posterior(believed_marginals(problem.compiled, deadline)[0], False, math.inf, believed=True)
+        return Posterior(believed_marginals(problem.compiled, deadline)[0], False, math.inf, is_propagated=True)
     places = None
     if problem.places is not None and len(problem.ends):
         needed = SECONDS_PER_PLACED_THING * len(problem.tables) * n2 * min(n2, MAX_PLACED_THINGS)
         places = problem.places() if needed < PLACES_SHARE * deadline.left else None
     marginals, errors = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)
     error = float(errors.max(initial=0.0))
-    believed = not math.isfinite(error)
     placed = places is not None and n1 <= MAX_SETTLED_OBJECTS
-    return Posterior(marginals, False, error, errors, believed=believed, placed=placed)
+    return Posterior(marginals, False, error, errors, is_propagated=not math.isfinite(error), placed=placed)
 
 
 def exact_posterior(

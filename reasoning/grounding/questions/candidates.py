@@ -164,7 +164,7 @@ class Candidates:
                 result = Candidates(np.concatenate(swapped), weights, groups, result.complete)
         return result
 
-    def kept(self, rows: NDArray[np.bool_]) -> Candidates:
+    def select(self, rows: NDArray[np.bool_]) -> Candidates:
         """Return the candidates of some rows.
 
         Parameters

@@ -43,7 +43,7 @@ class Exchange:
     against: tuple[int, ...] = ()
 
     @property
-    def believed(self) -> bool:
+    def is_used(self) -> bool:
         """True where the answer is used."""
         return self.outcome in (ExchangeOutcome.RESOLVED, ExchangeOutcome.SURPRISING)
 
@@ -78,7 +78,7 @@ def update(situation: Situation, candidates: Candidates, question: Question, ans
     agree = np.array([given == answer for given in answers_of(question, situation, rows.assignments)])
     if not (agree & (rows.weights > 0)).any():
         raise ContradictionError(f"the answer '{answer}' to '{question.text}' contradicts every remaining grounding")
-    return rows.kept(agree)
+    return rows.select(agree)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ class Inquiry:
         """
         patience = max(PATIENCE, len(self.situation.objects))
         latest = self.exchanges[-patience:]
-        if len(latest) == patience and not any(exchange.believed for exchange in latest):
+        if len(latest) == patience and not any(exchange.is_used for exchange in latest):
             return None
         barred = {exchange.question.topic for exchange in self.exchanges}
         unknown = (exchange for exchange in self.exchanges if exchange.outcome is ExchangeOutcome.UNKNOWN)
@@ -131,8 +131,8 @@ class Inquiry:
             left = update(self.situation, self.candidates, question, answer)
         except ContradictionError:
             against = self._against(question, answer)
-            told = question.kind is not QuestionKind.RELATION and not against
-            outcome = ExchangeOutcome.SURPRISING if told else ExchangeOutcome.CONTRADICTORY
+            settles_object = question.kind is not QuestionKind.RELATION and not against
+            outcome = ExchangeOutcome.SURPRISING if settles_object else ExchangeOutcome.CONTRADICTORY
             return self._with(Exchange(question, answer, outcome, against), self.candidates)
         return self._with(Exchange(question, answer, ExchangeOutcome.RESOLVED), left)
 

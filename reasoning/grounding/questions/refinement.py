@@ -83,11 +83,11 @@ def refine(
             break  # the person ended the dialogue
         candidates = considered(evidence, Deadline.after(time_limit / 2))
         for exchange in done.exchanges:
-            if exchange.believed:
+            if exchange.is_used:
                 with suppress(ContradictionError):  # the likeliest groundings need not agree with every answer
                     candidates = update(done.situation, candidates, exchange.question, exchange.answer)
         if (candidates.likeliest_shares >= DECIDED).all():
-            candidates = candidates.kept((candidates.assignments == candidates.best).all(axis=1))
+            candidates = candidates.select((candidates.assignments == candidates.best).all(axis=1))
         inquiry = replace(done, start=candidates, candidates=candidates)
         most = question_limit(inquiry) if done.exchanges[-1].outcome is ExchangeOutcome.SURPRISING else most
         done = hold(inquiry, most)
@@ -169,7 +169,7 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
         out = _possible(done.start, labels.shape) & ~left
     for exchange in done.exchanges:
         question, answer = exchange.question, exchange.answer
-        if not exchange.believed or question.kind is QuestionKind.RELATION:
+        if not exchange.is_used or question.kind is QuestionKind.RELATION:
             continue
         if answer == NO:
             out[question.subject, question.thing] = True
@@ -179,8 +179,8 @@ def narrowed(evidence: Evidence, done: Inquiry) -> Evidence:
             p = question.thing if answer == YES else done.situation.things.index(answer)
             others = np.arange(len(labels)) != question.subject
             allowed[others, p], allowed[question.subject, p] = False, True
-            for told in (labels,) if doubted is None else (labels, doubted.ratios):
-                told[others, p], told[question.subject, p] = 0.0, -PRESENT_LOG_ODDS
+            for ratios in (labels,) if doubted is None else (labels, doubted.ratios):
+                ratios[others, p], ratios[question.subject, p] = 0.0, -PRESENT_LOG_ODDS
             identified[p], out[question.subject, p] = True, False
     return replace(evidence, labels=labels, doubted_labels=doubted, allowed=allowed & ~out, identified=identified)
 

@@ -114,13 +114,13 @@ def _settled(description: RelationGraph, relations: tuple[Relation, ...], implie
         holds[row, pairs[:, 0], pairs[:, 1]] = True
     denied = np.zeros_like(holds)
     for edge in implied.demands.firm.tolist():
-        said, subject, obj = (
+        mask, subject, obj = (
             int(array[edge]) for array in (description.relation_sets, description.subjects, description.objects)
         )
         for row, relation in enumerate(relations):
-            if said & relation.bit and not description.positive[edge]:
+            if mask & relation.bit and not description.positive[edge]:
                 denied[row, subject, obj] = True
-            elif said == relation.bit:
+            elif mask == relation.bit:
                 holds[row, subject, obj] = True
     excluded = np.array(
         [[(a.x_atoms & b.x_atoms == 0 or a.y_atoms & b.y_atoms == 0) for b in relations] for a in relations]

@@ -61,6 +61,16 @@ class Reference(Answer):
         Questions that were asked, with their answers.
     notes
         Warnings about the text.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> scene = deixis.read_scene({"objects": [
+    ...     {"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]},
+    ...     {"id": "o2", "label": "plate", "min": [0.1, 0], "max": [0.35, 0.25]}]})
+    >>> found = deixis.refer("the thing left of the plate", scene)
+    >>> found.target, found.paraphrase, found.decided
+    ('o1', 'the one to the left of the plate', True)
     """
 
     text: str

@@ -235,12 +235,12 @@ def reading_order(attributes: Attributes) -> Iterator[int]:
     first = max(unique or everything, key=lambda i: attributes.sizes[i])
     yield first
     nearest = attributes.gaps[first].copy()
-    told = np.zeros(n, dtype=bool)
-    told[first] = True
+    placed = np.zeros(n, dtype=bool)
+    placed[first] = True
     for _ in range(n - 1):
-        following = int(np.where(told, np.inf, nearest).argmin())
+        following = int(np.where(placed, np.inf, nearest).argmin())
         yield following
-        told[following] = True
+        placed[following] = True
         nearest = np.minimum(nearest, attributes.gaps[following])
 
 

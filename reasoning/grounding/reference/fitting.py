@@ -187,10 +187,10 @@ def feature_names(colours: Colours) -> dict[str, tuple[str, ...]]:
     pairs = Pairs(room, both, both, (both,))
     names = {family: tuple(features(pairs, 1.0)) for family, features in FAMILIES.items()}
     names |= {f"{family} inverted": names[family] for family in FAMILIES}
-    said = [Property("colour", "red"), Property("colour", "dark"), Property("rank", "left", rank=2)]
-    said += [Property("position", word) for word in ("middle", "left", "back")]
-    said += [Property("size", word, degree) for word in SIZES for degree in ("plain", "superlative")]
-    for prop in said:
+    properties = [Property("colour", "red"), Property("colour", "dark"), Property("rank", "left", rank=2)]
+    properties += [Property("position", word) for word in ("middle", "left", "back")]
+    properties += [Property("size", word, degree) for word in SIZES for degree in ("plain", "superlative")]
+    for prop in properties:
         known = property_features(prop, room, both, (both,), colours)
         if known is not None:
             names[known[0]] = tuple(known[1])

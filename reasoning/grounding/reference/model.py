@@ -216,29 +216,29 @@ class Model:
         }
         return np.array([float(known[name]) for name in DOUBTS])
 
-    def _keep(self, said: object, what: str, compute: Callable[[], Kept]) -> Kept:
+    def _keep(self, part: object, what: str, compute: Callable[[], Kept]) -> Kept:
         """Return what does not depend on the weights, computed once for each part of a query while these are fitted."""
         if self.kept is None:
             return compute()
-        key = (id(said), what)  # a query keeps its parts, so that their ids are not used again
+        key = (id(part), what)  # a query keeps its parts, so that their ids are not used again
         if key not in self.kept:
             self.kept[key] = compute()
         found: Kept = self.kept[key]
         return found
 
-    def _description(self, said: Description, room: Room, among: Indices, target: bool = False) -> Score:
+    def _description(self, description: Description, room: Room, among: Indices, target: bool = False) -> Score:
         """Return log scores of the objects ``among`` for a description, shape (v or 1, x)."""
         rivals, nouns, numbers = self._keep(
-            said,
+            description,
             f"noun of {among.tobytes()!r}",
             lambda: (
-                self._rivals(said, room, among),
-                self._noun_features(said, room)[:, among],
-                self.lexis.number_fit(said.plural, room)[among],
+                self._rivals(description, room, among),
+                self._noun_features(description, room)[:, among],
+                self.lexis.number_fit(description.plural, room)[among],
             ),
         )
         found = self._named(nouns, class_shares(room)[:, among])[None]
-        if said.noun:
+        if description.noun:
             found = found + weighted(numbers, "number", self.weights)[None]
         if target:
             sizes = np.zeros((len(among), 2))
@@ -251,10 +251,10 @@ class Model:
                     None
                 ]
             )
-        for prop in said.properties:
+        for prop in description.properties:
             if (score := self._property(prop, room, among, rivals)) is not None:
                 found = found + score
-        for relation in said.relations:
+        for relation in description.relations:
             if (score := self._relation(relation, room, among, rivals)) is not None:
                 found = found + score
         return found
@@ -274,67 +274,67 @@ class Model:
         with np.errstate(divide="ignore"):
             return log_sum(weighted(features, "noun", self.weights) + constant(np.log(shares)), 0)
 
-    def _rivals(self, said: Description, room: Room, among: Indices) -> tuple[Indices, ...]:
+    def _rivals(self, description: Description, room: Room, among: Indices) -> tuple[Indices, ...]:
         """Return the groups of objects that compete: those with one label, then those that have the said colour too.
 
         *The tallest red cup* is compared with the red cups, and a blue cup with all cups. All objects
         compete for *the tallest object*, and wherever no noun is given and any of them has no label.
         """
-        anything = not said.noun and (said.anything or room.unlabelled.any())
+        anything = not description.noun and (description.anything or room.unlabelled.any())
         groups = (np.arange(len(among)),) if anything else rival_groups(room, among)
-        for prop in said.properties:
+        for prop in description.properties:
             if prop.positive and (called := called_by(prop.word, room, self.lexis.colours)) is not None:
                 parts = (group[called[among[group]]] for group in groups)
                 groups = (*groups, *(part for part in parts if len(part)))
         return groups
 
-    def _property(self, said: Property, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
+    def _property(self, prop: Property, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
         def measured() -> tuple[str, Array] | None:
-            known = property_features(said, room, among, rivals, self.lexis.colours)
+            known = property_features(prop, room, among, rivals, self.lexis.colours)
             return None if known is None else (known[0], stacked(known[1]))
 
-        known = self._keep(said, f"property of {among.tobytes()!r}", measured)
+        known = self._keep(prop, f"property of {among.tobytes()!r}", measured)
         if known is None:
             return None
         score = weighted(known[1], known[0], self.weights)
-        return score if said.positive else _denied(score)
+        return score if prop.positive else _denied(score)
 
-    def _relation(self, said: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
-        if not said.arguments:
+    def _relation(self, relation: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score | None:
+        if not relation.arguments:
             return None
-        if any(self._unseen(argument, room) for argument in said.arguments):
-            if (unlisted := UNLISTED.get(said.arguments[0].noun)) is not None:
-                instead = self._keep(said, "instead", lambda: replace(unlisted, positive=said.positive))
+        if any(self._unseen(argument, room) for argument in relation.arguments):
+            if (unlisted := UNLISTED.get(relation.arguments[0].noun)) is not None:
+                instead = self._keep(relation, "instead", lambda: replace(unlisted, positive=relation.positive))
                 return self._property(instead, room, among, rivals)
-            places = self._keep(said, "places", lambda: places_of(said))
+            places = self._keep(relation, "places", lambda: places_of(relation))
             scores = (self._property(one, room, among, rivals) for one in places)
             known = [one for one in scores if one is not None]
             return sum(known[1:], known[0]) if known else None
-        family, sign = RELATIONS.get(said.name, ANY_RELATION)
+        family, sign = RELATIONS.get(relation.name, ANY_RELATION)
         if family == "between":
-            score = self._between(said, room, among, rivals)
+            score = self._between(relation, room, among, rivals)
         else:
-            score = self._binary(said, family, sign, room, among, rivals)
-            if family in COUNTED and (said.arguments[0].count or 0) > 1:
-                score = score + self._counted(said.arguments[0], room, among)
-        return score if said.positive else _denied(score)
+            score = self._binary(relation, family, sign, room, among, rivals)
+            if family in COUNTED and (relation.arguments[0].count or 0) > 1:
+                score = score + self._counted(relation.arguments[0], room, among)
+        return score if relation.positive else _denied(score)
 
     def _binary(
-        self, said: Relation, family: str, sign: float, room: Room, among: Indices, rivals: tuple[Indices, ...]
+        self, relation: Relation, family: str, sign: float, room: Room, among: Indices, rivals: tuple[Indices, ...]
     ) -> Score:
-        argument = said.arguments[0]
+        argument = relation.arguments[0]
         landmarks = self._landmarks(argument, room)
         own = log_shares(self._description(argument, room, landmarks), 1)
 
         def compared() -> Array:
-            if said.inverted:
+            if relation.inverted:
                 pairs = Pairs(room, landmarks, among, rival_groups(room, landmarks))
                 return np.swapaxes(stacked(FAMILIES[family](pairs, sign)), 1, 2)
             return stacked(FAMILIES[family](Pairs(room, among, landmarks, rivals), sign))
 
-        features = self._keep(said, f"pairs of {among.tobytes()!r}", compared)
-        name = said.name if said.degree == "plain" else f"{said.name} {said.degree}"
-        block = f"{family} inverted" if said.inverted else family
+        features = self._keep(relation, f"pairs of {among.tobytes()!r}", compared)
+        name = relation.name if relation.degree == "plain" else f"{relation.name} {relation.degree}"
+        block = f"{family} inverted" if relation.inverted else family
         score = weighted(features, f"{block}/{name}", self.weights)
         same = IMPOSSIBLE * (among[:, None] == landmarks[None]).astype(np.float64)[None]
         score = score + constant(same) + own[:, None, :]
@@ -342,14 +342,16 @@ class Model:
             score = score + self._seen(room, landmarks)
         return log_sum(score, 2)
 
-    def _between(self, said: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score:
-        first, second = said.arguments[0], said.arguments[-1]
+    def _between(self, relation: Relation, room: Room, among: Indices, rivals: tuple[Indices, ...]) -> Score:
+        first, second = relation.arguments[0], relation.arguments[-1]
         ones, others = (self._landmarks(one, room)[:MAX_LANDMARKS] for one in (first, second))
         landmarks = np.union1d(ones, others)
         one = log_shares(self._description(first, room, landmarks), 1)
         other = log_shares(self._description(second, room, landmarks), 1)
         pairs = Pairs(room, among, landmarks, rivals)
-        features = self._keep(said, f"pairs of {among.tobytes()!r}", lambda: stacked(FAMILIES["between"](pairs, 1.0)))
+        features = self._keep(
+            relation, f"pairs of {among.tobytes()!r}", lambda: stacked(FAMILIES["between"](pairs, 1.0))
+        )
         score = weighted(features, "between/between", self.weights)
         n = len(landmarks)
         ends = np.stack([np.repeat(landmarks, n), np.tile(landmarks, n)])
@@ -357,61 +359,61 @@ class Model:
         both = _outer(one, other)
         return log_sum(score + constant(IMPOSSIBLE * bad[None].astype(np.float64)) + both[:, None, :], 2)
 
-    def _counted(self, said: Description, room: Room, among: Indices) -> Score:
+    def _counted(self, description: Description, room: Room, among: Indices) -> Score:
         """Return log scores of having the stated number of landmarks close by, shape (1, x)."""
 
         def counted() -> Array:
-            close = (room.gaps[among] < COUNTED_GAP) & (self._fit(said, room) > 0)
+            close = (room.gaps[among] < COUNTED_GAP) & (self._fit(description, room) > 0)
             close[np.arange(len(among)), among] = False
-            off = np.abs(close.sum(axis=1) - (said.count or 1))
+            off = np.abs(close.sum(axis=1) - (description.count or 1))
             return np.stack([off == 0, -np.minimum(off, 3)], axis=1).astype(np.float64)
 
-        return weighted(self._keep(said, f"count of {among.tobytes()!r}", counted), "count", self.weights)[None]
+        return weighted(self._keep(description, f"count of {among.tobytes()!r}", counted), "count", self.weights)[None]
 
-    def _noun_features(self, said: Description, room: Room) -> Array:
+    def _noun_features(self, description: Description, room: Room) -> Array:
         """Return the features of the noun that fits each object best, shape (k, n, f)."""
-        first = self.lexis.noun_fit(said.noun, room)
-        if not said.other_nouns:
+        first = self.lexis.noun_fit(description.noun, room)
+        if not description.other_nouns:
             return first
-        features = np.stack([first, *(self.lexis.noun_fit(noun, room) for noun in said.other_nouns)])
-        best = np.argmax([self.lexis.similarity(noun, room) for noun in said.nouns], axis=0)
+        features = np.stack([first, *(self.lexis.noun_fit(noun, room) for noun in description.other_nouns)])
+        best = np.argmax([self.lexis.similarity(noun, room) for noun in description.nouns], axis=0)
         found: Array = np.moveaxis(features[best, :, np.arange(len(room))], 0, 1)
         return found
 
-    def _fit(self, said: Description, room: Room) -> Array:
+    def _fit(self, description: Description, room: Room) -> Array:
         """Return how well the nouns of a description fit each object, shape (n,), in [0, 1]."""
-        fit = self.lexis.similarity(said.noun, room)
-        for noun in said.other_nouns:
+        fit = self.lexis.similarity(description.noun, room)
+        for noun in description.other_nouns:
             fit = np.maximum(fit, self.lexis.similarity(noun, room))
         return fit
 
-    def _size_fit(self, said: Description, room: Room) -> Array:
+    def _size_fit(self, description: Description, room: Room) -> Array:
         """Return log densities of the sizes of objects without a label for a noun, 0 for the others, shape (n,)."""
-        result: Array = self._noun_features(said, room)[-2:, :, -1].min(axis=0)
+        result: Array = self._noun_features(description, room)[-2:, :, -1].min(axis=0)
         return result
 
-    def _unseen(self, said: Description, room: Room) -> bool:
+    def _unseen(self, description: Description, room: Room) -> bool:
         """Return whether a landmark has a noun that names none of the objects, nor has one without a label its size."""
 
         def unnamed() -> bool:
-            if not said.noun or room.unlabelled.all():
+            if not description.noun or room.unlabelled.all():
                 return False
-            sized = room.unlabelled & (self._size_fit(said, room) > -SIZE_TOLERANCE)
-            return not (self._fit(said, room) > 0).any() and not sized.any()
+            sized = room.unlabelled & (self._size_fit(description, room) > -SIZE_TOLERANCE)
+            return not (self._fit(description, room) > 0).any() and not sized.any()
 
-        return self._keep(said, "unseen", unnamed)
+        return self._keep(description, "unseen", unnamed)
 
-    def _landmarks(self, said: Description, room: Room) -> Indices:
+    def _landmarks(self, description: Description, room: Room) -> Indices:
         """Return the objects that a landmark may be: those that fit its noun best, and those without a label."""
-        return self._keep(said, "landmarks", lambda: self._best_landmarks(said, room))
+        return self._keep(description, "landmarks", lambda: self._best_landmarks(description, room))
 
-    def _best_landmarks(self, said: Description, room: Room) -> Indices:
-        fit = self._fit(said, room)
+    def _best_landmarks(self, description: Description, room: Room) -> Indices:
+        fit = self._fit(description, room)
         named = np.argsort(-fit, kind="stable")[: min(int((fit > 0).sum()), MAX_LANDMARKS)]
         if len(named) and not room.unlabelled.any():
             return np.sort(named)
-        others = np.flatnonzero(room.unlabelled) if said.noun and room.unlabelled.any() else np.arange(len(room))
-        by_size = others[np.argsort(-self._size_fit(said, room)[others], kind="stable")]
+        others = np.flatnonzero(room.unlabelled) if description.noun and room.unlabelled.any() else np.arange(len(room))
+        by_size = others[np.argsort(-self._size_fit(description, room)[others], kind="stable")]
         return np.union1d(named, by_size[:MAX_UNKNOWN_LANDMARKS])
 
     def _seen(self, room: Room, landmarks: Indices) -> Score:
@@ -494,7 +496,7 @@ def calibrated(logs: Array, doubts: Array, weights: Array) -> Array:
     return result
 
 
-def places_of(said: Relation) -> tuple[Property, ...]:
+def places_of(relation: Relation) -> tuple[Property, ...]:
     """Return the places in the scene that a relation to a landmark outside it tells.
 
     *On the left side of the table* is on the left, where the table itself is not an object of the scene, and *closest
@@ -502,7 +504,7 @@ def places_of(said: Relation) -> tuple[Property, ...]:
 
     Parameters
     ----------
-    said
+    relation
         A relation to a landmark.
 
     Returns
@@ -510,12 +512,14 @@ def places_of(said: Relation) -> tuple[Property, ...]:
     tuple of Property
         Properties of the position of the described object; none for other relations.
     """
-    words = [one.word for argument in said.arguments for one in argument.properties if one.word in SIDES]
-    if said.name in PLACES:
-        words.append(PLACES[said.name])
-    if said.name == "far":
+    words = [one.word for argument in relation.arguments for one in argument.properties if one.word in SIDES]
+    if relation.name in PLACES:
+        words.append(PLACES[relation.name])
+    if relation.name == "far":
         words = [OPPOSITES[word] for word in words if word in OPPOSITES]
-    return tuple(Property("position", word, said.degree, positive=said.positive) for word in dict.fromkeys(words))
+    return tuple(
+        Property("position", word, relation.degree, positive=relation.positive) for word in dict.fromkeys(words)
+    )
 
 
 def rival_groups(room: Room, among: Indices) -> tuple[Indices, ...]:

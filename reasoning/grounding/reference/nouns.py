@@ -116,8 +116,8 @@ class Nouns:
         an object that may turn out to be a sofa; without such a name, those of the noun itself.
         """
         names = dict.fromkeys(name for names in room.names for name in names)
-        told = [self._pair(noun, name) for name in names]
-        meant = [one for one in told if one[FITS.index(Relatedness.SAME)] or one[FITS.index(Relatedness.SYNONYM)]]
+        features = [self._pair(noun, name) for name in names]
+        meant = [one for one in features if one[FITS.index(Relatedness.SAME)] or one[FITS.index(Relatedness.SYNONYM)]]
         if meant:
             return max(meant, key=lambda one: one[-1])[:-1]
         return (*(float(fit == Relatedness.SAME) for fit in FITS), 1.0, 1.0, 1.0)

@@ -275,13 +275,13 @@ def side_values(room: Room, candidates: Indices, axis: int, sign: float, person:
 
 
 def property_features(
-    said: Property, room: Room, candidates: Indices, rivals: Rivals, colours: Colours
+    prop: Property, room: Room, candidates: Indices, rivals: Rivals, colours: Colours
 ) -> tuple[str, Features] | None:
     """Return the name of the weights of a property and its features, or None if nothing in a scene shows it.
 
     Parameters
     ----------
-    said
+    prop
         The property.
     room
         The scene.
@@ -297,17 +297,17 @@ def property_features(
     tuple or None
         Name of the weights, and features by name, each of shape (v, x) or (1, x).
     """
-    word = said.word
+    word = prop.word
     if word in FLAT and room.is_flat:
         word = FLAT[word]
-        said = replace(said, word=word)
-    if said.dimension == "rank" or said.rank is not None:
-        return _ranked(said, room, candidates, rivals)
+        prop = replace(prop, word=word)
+    if prop.dimension == "rank" or prop.rank is not None:
+        return _ranked(prop, room, candidates, rivals)
     if (term := colours.of_word(word)) is not None:
         return "colour", _colour(term.prototype, room, candidates, rivals)
     if word in LIGHTNESS:
         return "lightness", order(LIGHTNESS[word] * np.nan_to_num(room.lab[candidates, 0], nan=50.0)[None], rivals)
-    degree = "" if said.degree == "plain" else "est"
+    degree = "" if prop.degree == "plain" else "est"
     if word in MIDDLE:
         across = middling(side_values(room, candidates, 0, 1.0), rivals)
         central = order(MEASURES["middle"](room)[candidates][None], rivals)
@@ -319,9 +319,9 @@ def property_features(
         }
     if word in SIDES:
         axis, sign = SIDES[word]
-        seen = room.viewer or said.person in room.headings  # the weights of depth are for an unknown viewer
+        seen = room.viewer or prop.person in room.headings  # the weights of depth are for an unknown viewer
         name = "side" if axis == 0 or seen else "depth"
-        return name, order(side_values(room, candidates, axis, sign, said.person), rivals)
+        return name, order(side_values(room, candidates, axis, sign, prop.person), rivals)
     if word in SIZES:
         measure, sign = SIZES[word]
         return f"{measure}{degree}", order(sign * MEASURES[measure](room)[candidates][None], rivals)
@@ -355,13 +355,13 @@ def called_by(word: str, room: Room, colours: Colours) -> NDArray[np.bool_] | No
     return result
 
 
-def _ranked(said: Property, room: Room, candidates: Indices, rivals: Rivals) -> tuple[str, Features]:
-    place = said.rank or 1
-    if said.word in SIZES:
-        measure, sign = SIZES[said.word]
+def _ranked(prop: Property, room: Room, candidates: Indices, rivals: Rivals) -> tuple[str, Features]:
+    place = prop.rank or 1
+    if prop.word in SIZES:
+        measure, sign = SIZES[prop.word]
         return "rank", placed(sign * MEASURES[measure](room)[candidates][None], rivals, place)
-    axis, sign = SIDES.get(said.word, (0, -1.0))
-    return "rank", placed(side_values(room, candidates, axis, sign, said.person), rivals, place)
+    axis, sign = SIDES.get(prop.word, (0, -1.0))
+    return "rank", placed(side_values(room, candidates, axis, sign, prop.person), rivals, place)
 
 
 def _colour(prototype: tuple[int, int, int], room: Room, candidates: Indices, rivals: Rivals) -> Features:

@@ -94,14 +94,14 @@ class Description:
         return replace(self, relations=())
 
 
-def readings(said: Description) -> Iterator[Description]:
+def readings(description: Description) -> Iterator[Description]:
     """Yield a description, and the one in which its last phrase belongs to the described object.
 
     In *the pillow on the bed that is closest to the door*, the bed or the pillow may be closest to the door.
 
     Parameters
     ----------
-    said
+    description
         The description.
 
     Yields
@@ -109,14 +109,14 @@ def readings(said: Description) -> Iterator[Description]:
     Description
         Reading; the description as it was parsed comes first.
     """
-    yield said
-    last = said.relations[-1] if said.relations else None
+    yield description
+    last = description.relations[-1] if description.relations else None
     if last is None or len(last.arguments) != 1 or not last.positive or not last.arguments[0].relations:
         return
     (landmark,) = last.arguments
     *rest, lifted = landmark.relations
     bare = replace(last, arguments=(replace(landmark, relations=tuple(rest)),))
-    yield replace(said, relations=(*said.relations[:-1], bare, lifted))
+    yield replace(description, relations=(*description.relations[:-1], bare, lifted))
 
 
 @dataclass(frozen=True, slots=True)

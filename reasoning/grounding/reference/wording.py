@@ -83,16 +83,16 @@ def paraphrase(query: Query) -> str:
     >>> paraphrase(Query(Description("chair", (Property("colour", "red"),), (Relation("left", (desk,)),))))
     'the red chair to the left of the desk with the monitor'
     """
-    said = noun_phrase(query.target)
-    return said if query.viewer is None else f"{_viewer(query.viewer)}, {said}"
+    phrase = noun_phrase(query.target)
+    return phrase if query.viewer is None else f"{_viewer(query.viewer)}, {phrase}"
 
 
-def noun_phrase(said: Description) -> str:
+def noun_phrase(description: Description) -> str:
     """Return a description as a noun phrase.
 
     Parameters
     ----------
-    said
+    description
         The description.
 
     Returns
@@ -100,32 +100,32 @@ def noun_phrase(said: Description) -> str:
     str
         The noun phrase with the definite article.
     """
-    before = [_adjective(one) for one in said.properties if one.positive and not _is_place(one)]
-    after = [_place(one) for one in said.properties if one.positive and _is_place(one)]
-    after += [f"not {_adjective(one)}" for one in said.properties if not one.positive]
-    after += [_relation(one) for one in said.relations]
-    count = "" if said.count is None or said.count < 2 else f"{said.count} "
-    many = said.plural or bool(count)
-    nouns = [plural(noun) if many and noun else noun for noun in said.nouns]
+    before = [_adjective(one) for one in description.properties if one.positive and not _is_place(one)]
+    after = [_place(one) for one in description.properties if one.positive and _is_place(one)]
+    after += [f"not {_adjective(one)}" for one in description.properties if not one.positive]
+    after += [_relation(one) for one in description.relations]
+    count = "" if description.count is None or description.count < 2 else f"{description.count} "
+    many = description.plural or bool(count)
+    nouns = [plural(noun) if many and noun else noun for noun in description.nouns]
     named_by = " or ".join(nouns) or ("ones" if many else "one")
     phrase = " ".join(["the", f"{count}{' '.join([*before, named_by])}", _joined(after)])
     return phrase.strip()
 
 
-def _is_place(said: Property) -> bool:
-    if said.person is not None:
+def _is_place(prop: Property) -> bool:
+    if prop.person is not None:
         return True
-    return said.dimension in {"position", "rank"} and said.degree == "plain"
+    return prop.dimension in {"position", "rank"} and prop.degree == "plain"
 
 
 def _joined(parts: list[str]) -> str:
     return " and ".join(parts)
 
 
-def _adjective(said: Property) -> str:
-    if said.degree == "superlative" and said.word not in {"leftmost", "rightmost"}:
-        return _graded(said.word, "est")
-    return _graded(said.word, "er") if said.degree == "comparative" else said.word
+def _adjective(prop: Property) -> str:
+    if prop.degree == "superlative" and prop.word not in {"leftmost", "rightmost"}:
+        return _graded(prop.word, "est")
+    return _graded(prop.word, "er") if prop.degree == "comparative" else prop.word
 
 
 def _graded(word: str, ending: str) -> str:
@@ -139,51 +139,49 @@ def _graded(word: str, ending: str) -> str:
     return stem + ending
 
 
-def _place(said: Property) -> str:
-    if said.person is not None:
-        return _from_person(said, said.person)
-    if said.rank is not None:
-        side = f"{said.word} side" if said.word in {"far", "near"} else said.word
-        return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from the {side}"
-    return PLACES.get(said.word, f"at the {said.word}")
+def _place(prop: Property) -> str:
+    if prop.person is not None:
+        return _from_person(prop, prop.person)
+    if prop.rank is not None:
+        side = f"{prop.word} side" if prop.word in {"far", "near"} else prop.word
+        return f"that is {ORDINALS.get(prop.rank, f'number {prop.rank}')} from the {side}"
+    return PLACES.get(prop.word, f"at the {prop.word}")
 
 
-def _from_person(said: Property, person: Person) -> str:
+def _from_person(prop: Property, person: Person) -> str:
     """Return a place as a person sees it: *closest to you*, *second closest to me*, *on your left*."""
     whom, whose = PRONOUNS[person]
-    if said.word in {"near", "far"}:
-        degree = "superlative" if said.rank is not None and said.degree == "plain" else said.degree
-        near = DEGREES.get((said.word, degree), {"near": "near", "far": "far from"}[said.word])
-        rank = "" if said.rank in {None, 1} else f"{ORDINALS.get(said.rank or 0, f'number {said.rank}')} "
+    if prop.word in {"near", "far"}:
+        degree = "superlative" if prop.rank is not None and prop.degree == "plain" else prop.degree
+        near = DEGREES.get((prop.word, degree), {"near": "near", "far": "far from"}[prop.word])
+        rank = "" if prop.rank in {None, 1} else f"{ORDINALS.get(prop.rank or 0, f'number {prop.rank}')} "
         return f"{rank}{near} {whom}"
-    if said.rank is not None:
-        return f"that is {ORDINALS.get(said.rank, f'number {said.rank}')} from {whose} {said.word}"
-    far = "far " if said.degree == "superlative" else ""
-    return f"on {whose} {far}{said.word}" if said.word in {"left", "right"} else f"at {whose} {said.word}"
+    if prop.rank is not None:
+        return f"that is {ORDINALS.get(prop.rank, f'number {prop.rank}')} from {whose} {prop.word}"
+    far = "far " if prop.degree == "superlative" else ""
+    return f"on {whose} {far}{prop.word}" if prop.word in {"left", "right"} else f"at {whose} {prop.word}"
 
 
-def _relation(said: Relation) -> str:
-    place = WORDS.get(said.name, said.name.replace("_", " "))
-    name = DEGREES.get((said.name, said.degree), place)
-    phrase = _joined([noun_phrase(one) for one in said.arguments])
-    if said.inverted:
-        return (
-            f"{'with' if said.positive else 'without'} {phrase} {WORDS.get(said.name, said.name.replace('_', ' '))} it"
-        )
-    return f"{'' if said.positive else 'not '}{name} {phrase}"
+def _relation(relation: Relation) -> str:
+    place = WORDS.get(relation.name, relation.name.replace("_", " "))
+    name = DEGREES.get((relation.name, relation.degree), place)
+    phrase = _joined([noun_phrase(one) for one in relation.arguments])
+    if relation.inverted:
+        return f"{'with' if relation.positive else 'without'} {phrase} {place} it"
+    return f"{'' if relation.positive else 'not '}{name} {phrase}"
 
 
-def _viewer(said: Viewer) -> str:
-    if said.person is not None:
-        return f"from {PRONOUNS[said.person][1]} point of view"
-    landmark = noun_phrase(said.landmark)
-    if said.stance == "towards" and said.target is not None:
-        return f"looking from {landmark} to {noun_phrase(said.target)}"
+def _viewer(viewer: Viewer) -> str:
+    if viewer.person is not None:
+        return f"from {PRONOUNS[viewer.person][1]} point of view"
+    landmark = noun_phrase(viewer.landmark)
+    if viewer.stance == "towards" and viewer.target is not None:
+        return f"looking from {landmark} to {noun_phrase(viewer.target)}"
     return {
         "facing": f"facing {landmark}",
         "entering": f"coming in through {landmark}",
         "own": f"as seen by {landmark}",
-    }.get(said.stance, f"from {landmark}")
+    }.get(viewer.stance, f"from {landmark}")
 
 
 def named(noun: str) -> str:

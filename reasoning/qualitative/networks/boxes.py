@@ -180,8 +180,8 @@ def find_boxes(
 
 def _stated_pairs(networks: Sequence[Network]) -> list[tuple[int, int]]:
     """Return the pairs of different things that a constraint relates, lower number first."""
-    said = {(min(c.first, c.second), max(c.first, c.second)) for network in networks for c in network.constraints}
-    return sorted((i, j) for i, j in said if i != j)
+    pairs = {(min(c.first, c.second), max(c.first, c.second)) for network in networks for c in network.constraints}
+    return sorted((i, j) for i, j in pairs if i != j)
 
 
 class _Pairs:

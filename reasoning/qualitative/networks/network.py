@@ -58,6 +58,15 @@ class Network:
     NetworkError
         If a constraint is on a thing outside the network or has atoms that the calculus lacks, or if there are not
         as many names as things.
+
+    Examples
+    --------
+    >>> from deixis.reasoning.qualitative.calculi.registry import calculus
+    >>> rcc8 = calculus("rcc8")
+    >>> constraints = (Constraint(0, 1, rcc8.relation(["NTPP"])), Constraint(1, 2, rcc8.relation(["NTPP"])))
+    >>> network = Network(rcc8, 3, constraints, ("napkin", "plate", "table"))
+    >>> network.name(0), len(network.only(constraints[:1]).constraints), network.compact()[0].size
+    ('napkin', 1, 3)
     """
 
     calculus: Calculus

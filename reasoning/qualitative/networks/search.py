@@ -190,7 +190,7 @@ class _Part:
         everything = np.array([axis.universal for axis in self.axes], dtype=np.uint64)
         return np.flatnonzero((masks != everything[:, None, None]) & upper)
 
-    def settled(self) -> bool:
+    def is_decided_by_closure(self) -> bool:
         """Return True if closure has already decided: the remaining relation of every stated pair is tractable."""
         if self.nogoods or not self.is_closed:
             return False
@@ -201,7 +201,7 @@ class _Part:
 
     def decide(self, deadline: Deadline) -> bool | None:
         """Decide whether the axes are consistent, as far as their calculi allow; return None if time ran out."""
-        if self.settled():
+        if self.is_decided_by_closure():
             return True
         edges = self.edges(None if self.atomic else self.stated)
         self.search = ConflictSearch(

@@ -62,7 +62,7 @@ def learned_meanings(
     list of Meaning
         What the words mean, one entry for each photograph, learned without the photographs of its fold.
     """
-    lessons = [said_pairs(said, boxes, range(len(boxes))) for said, boxes in images]
+    lessons = [said_pairs(description, boxes, range(len(boxes))) for description, boxes in images]
     found: dict[int, Meaning] = {}
     for test in folds(len(images), number, seed):
         taught = np.setdiff1d(np.arange(len(images)), test).tolist()
@@ -86,7 +86,7 @@ def relative_sizes(images: Sequence[Photograph]) -> Mapping[str, SizeModel]:
         Distribution of the length, in medians of the scene, and of the aspect, by class IRI.
     """
     views: dict[str, list[NDArray[np.float64]]] = defaultdict(list)
-    for said, boxes in images:
-        for kind, size in zip(classes(said), log_sizes(boxes, relative=True), strict=True):
+    for description, boxes in images:
+        for kind, size in zip(classes(description), log_sizes(boxes, relative=True), strict=True):
             views[kind].append(size)
     return learn_sizes({kind: np.array(seen) for kind, seen in views.items()}, relative=True)

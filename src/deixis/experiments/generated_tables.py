@@ -80,8 +80,8 @@ class GeneratedTable:
             Fact(names[s], (relations.wide(exact[word]),), names[o])
             for (s, o), word in zip(self.ends.tolist(), self.words.tolist(), strict=True)
         ]
-        told = [ontology.kinds.words[piece].iri for piece in SETTING] if kinds else []
-        return RelationGraph.from_facts(relations, names, facts, [told[i] for i in self.pieces] if kinds else ())
+        kind_iris = [ontology.kinds.words[piece].iri for piece in SETTING] if kinds else []
+        return RelationGraph.from_facts(relations, names, facts, [kind_iris[i] for i in self.pieces] if kinds else ())
 
     def scene(self) -> SceneRelations:
         """Return the perceived scene: the exact relation of every ordered pair.

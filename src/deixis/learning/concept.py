@@ -135,21 +135,21 @@ def concept_of(tables: Sequence[TaughtTable], relations: Relations) -> CountedCo
     CountedConcept
         The layout with its counts. From one table it is the layout of the lesson.
     """
-    told = _united(tables)
+    united = _united(tables)
     seen = _Tables(tables, relations)
-    filled = {role.name: seen.experience.filled.get(role.name, Tally()) for role in told.roles}
+    filled = {role.name: seen.experience.filled.get(role.name, Tally()) for role in united.roles}
     optional = {role for role, tally in filled.items() if tally.held < tally.of}
-    statements = [Counted(fact, seen.held(fact), True) for fact in told.facts]
+    statements = [Counted(fact, seen.held(fact), True) for fact in united.facts]
     if len(tables) >= MIN_TABLES:
         statements = [replace(each, statement=_weighed(each, optional)) for each in statements]
         firm = [each.statement for each in statements if isinstance(each.statement, Fact) and _is_firm(each.statement)]
-        statements += seen.unstated([role.name for role in told.roles], firm, list(told.facts), optional)
-        statements += seen.distances(told)
-    statements += [Counted(claim, Tally(), True) for claim in told.claims]
+        statements += seen.unstated([role.name for role in united.roles], firm, list(united.facts), optional)
+        statements += seen.distances(united)
+    statements += [Counted(claim, Tally(), True) for claim in united.claims]
     facts = tuple(each.statement for each in statements if isinstance(each.statement, Fact))
     claims = tuple(each.statement for each in statements if isinstance(each.statement, Claim))
     several = len(tables) >= MIN_TABLES
-    layout = replace(told, lesson=told.name if several else told.lesson, facts=facts, claims=claims)
+    layout = replace(united, lesson=united.name if several else united.lesson, facts=facts, claims=claims)
     return CountedConcept(layout, tuple(sorted(table.lesson for table in tables)), tuple(statements), filled)
 
 
@@ -227,12 +227,12 @@ class _Tables:
         return Tally(float(held), float(len(names)))
 
     def unstated(
-        self, roles: Sequence[str], firm: Sequence[Fact], told: Sequence[Fact], optional: set[str]
+        self, roles: Sequence[str], firm: Sequence[Fact], united: Sequence[Fact], optional: set[str]
     ) -> list[Counted]:
         """Return the relations that held on every table and do not follow from the words or from each other."""
         implied = Implications(RelationGraph.from_facts(self._relations, roles, firm), cases=False)
         known = {(relation.name, a, b) for relation, a, b in implied.triples()}
-        known |= {(relation.name, fact.subject, fact.object) for fact in told for relation in fact.relations}
+        known |= {(relation.name, fact.subject, fact.object) for fact in united for relation in fact.relations}
         found = []
         for word in COMPARED:
             relation: Relation = self._relations[word]
@@ -250,14 +250,14 @@ class _Tables:
                     found.append(Counted(fact, tally, False))
         return found
 
-    def distances(self, told: LayoutConcept) -> list[Counted]:
+    def distances(self, united: LayoutConcept) -> list[Counted]:
         """Return the distances of things that a told fact relates, where they hardly vary."""
         stated = {
             frozenset((*claim.subjects, *claim.arguments))
-            for claim in told.claims
+            for claim in united.claims
             if claim.relation.startswith("distance")
         }
-        pairs = {tuple(sorted((f.subject, f.object))) for f in told.facts if f.positive and f.subject != f.object}
+        pairs = {tuple(sorted((f.subject, f.object))) for f in united.facts if f.positive and f.subject != f.object}
         found = []
         for a, b in sorted(pairs):
             gaps = np.array([_gap(things[a], things[b]) for things in self._things if a in things and b in things])

@@ -116,9 +116,9 @@ def of_layouts(after: After, nodes: Iterable[object], relations: Relations) -> s
     for node in nodes:
         assert isinstance(node, ox.NamedNode)
         parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
-        said = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
+        triples = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
         whole = any(after.triples(GraphName.INFERRED, node, STORED, typed(True)))  # a query may have completed it
-        for layout in layouts(said, relations):
+        for layout in layouts(triples, relations):
             found.update(implied_triples(layout, relations, math.inf if whole else None))
     return found
 
@@ -148,8 +148,8 @@ def completion(after: After, relations: Relations, deadline: Deadline) -> Change
     for marked in list(after.triples(GraphName.INFERRED, None, STORED, typed(False))):
         node = marked.subject
         parts = [t.subject for t in after.triples(GraphName.LEARNED, None, IN_LAYOUT, node)]
-        said = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
-        for layout in layouts(said, relations):
+        triples = [t for part in (node, *parts) for t in after.triples(GraphName.LEARNED, part)]
+        for layout in layouts(triples, relations):
             added: list[ox.Triple] = []
             for triple in implied_triples(layout, relations, math.inf):
                 added.append(triple)

@@ -76,8 +76,8 @@ def following(after: After, relations: Relations) -> Change:
     BeyondLessonsError
         If the class axioms are not of the form that lessons write.
     """
-    said = _Said(after, relations)
-    said.require_lessons_only(after.change.added)
+    statements = _Said(after, relations)
+    statements.require_lessons_only(after.change.added)
     gone: set[ox.Triple] = set()
     come: set[ox.Triple] = set()
 
@@ -95,18 +95,18 @@ def following(after: After, relations: Relations) -> Change:
     classes = {
         _value(t.subject) for t in changed if t.predicate == SUB_CLASS_OF and not _value(t.subject).startswith(GENID)
     }
-    module = said.module(classes)
-    said.require_satisfiable(module)
+    module = statements.module(classes)
+    statements.require_satisfiable(module)
     for name in module:
-        replace(after.triples(GraphName.INFERRED, iri(name), SUB_CLASS_OF), said.class_triples(name))
+        replace(after.triples(GraphName.INFERRED, iri(name), SUB_CLASS_OF), statements.class_triples(name))
     things = {t.subject for t in changed if t.predicate == TYPE}
     reclassified = {*map(iri, classes), *(t.subject for t in (*gone, *come))}
     things |= {t.subject for kind in reclassified for t in after.triples(GraphName.ASSERTED, None, TYPE, kind)}
     for thing in things:
-        replace(after.triples(GraphName.INFERRED, thing, TYPE), said.types(thing))
-    for subject, object in {(t.subject, t.object) for t in changed if t.predicate in said.wider}:
+        replace(after.triples(GraphName.INFERRED, thing, TYPE), statements.types(thing))
+    for subject, object in {(t.subject, t.object) for t in changed if t.predicate in statements.wider}:
         old = after.triples(GraphName.INFERRED, subject, None, object)
-        replace((t for t in old if t.predicate not in (TYPE, SUB_CLASS_OF)), said.wide(subject, object))
+        replace((t for t in old if t.predicate not in (TYPE, SUB_CLASS_OF)), statements.wide(subject, object))
     replace(*changed_layouts(after, relations))
     for name in STATED:
         gone |= {t for t in after.change.added.get(name, ()) if after.holds(GraphName.INFERRED, t)}
@@ -135,12 +135,12 @@ def everything_that_follows(after: After, relations: Relations) -> set[ox.Triple
     BeyondLessonsError
         If the class axioms are not of the form that lessons write.
     """
-    said = _Said(after, relations)
-    said.require_lessons_only({name: after.triples(name) for name in CLASSES})
+    statements = _Said(after, relations)
+    statements.require_lessons_only({name: after.triples(name) for name in CLASSES})
     names = {_value(t.subject) for name in CLASSES for t in after.triples(name, None, SUB_CLASS_OF)}
-    said.require_satisfiable(names)
-    found = {triple for name in names for triple in said.class_triples(name)}
-    return found | said.of_things() | of_all_layouts(after, relations) | set(origin())
+    statements.require_satisfiable(names)
+    found = {triple for name in names for triple in statements.class_triples(name)}
+    return found | statements.of_things() | of_all_layouts(after, relations) | set(origin())
 
 
 def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
@@ -170,11 +170,11 @@ def everything_by_hermit(after: After, relations: Relations) -> set[ox.Triple]:
     if classified.unsatisfiable:
         raise impossible(classified.unsatisfiable)
     quads = ox.parse(classified.inferred, format=ox.RdfFormat.N_TRIPLES)
-    said = _Said(after, relations, {quad.triple for quad in quads})
-    found = {triple for triple in said.classified or () if not said.stated(triple)}
+    statements = _Said(after, relations, {quad.triple for quad in quads})
+    found = {triple for triple in statements.classified or () if not statements.stated(triple)}
     return (
         found
-        | said.of_things()
+        | statements.of_things()
         | of_all_layouts(after, relations)
         | set(origin({**ENGINES, "HermiT": "broader classes"}))
     )
@@ -301,11 +301,11 @@ class _Said:
     def _broader_of_kind(self, kind: str) -> set[str]:
         """Return the classes above a kind, without those that follow from the ontology only."""
         found = set(self._broader(kind)) if self.classified is None else self._by_hermit.get(kind, set())
-        told = {
+        broader = {
             name: {_value(t.object) for t in self._after.triples(name, iri(kind), SUB_CLASS_OF)} for name in CLASSES
         }
-        learned = {value for value in told[GraphName.LEARNED] if not value.startswith(GENID)}
-        return (found - told[GraphName.ONTOLOGY]) | learned
+        learned = {value for value in broader[GraphName.LEARNED] if not value.startswith(GENID)}
+        return (found - broader[GraphName.ONTOLOGY]) | learned
 
 
 @dataclass(frozen=True)

@@ -115,9 +115,9 @@ def taught_tables(
 def _table(memory: SemanticMemory, lesson: str, ontology: Ontology, settled: SettledRoles) -> TaughtTable | None:
     from deixis.perception.formats.scene_json import read_scene
 
-    said = memory.contributions(lesson)
-    records = lesson_records(said.get(GraphName.LEARNED, ()), said.get(GraphName.EPISODES, ()))
-    found = layouts(said.get(GraphName.LEARNED, ()), ontology.relations)
+    contributions = memory.contributions(lesson)
+    records = lesson_records(contributions.get(GraphName.LEARNED, ()), contributions.get(GraphName.EPISODES, ()))
+    found = layouts(contributions.get(GraphName.LEARNED, ()), ontology.relations)
     if len(records) != 1 or len(found) != 1:
         return None
     try:

@@ -49,16 +49,16 @@ class Teaching:
         Json
             Category, time, metadata and lesson.
         """
-        said = {"category": self.category, "time": self.time.isoformat(), "metadata": dict(self.metadata)}
-        return said if self.lesson is None else {**said, "lesson": self.lesson}
+        entry = {"category": self.category, "time": self.time.isoformat(), "metadata": dict(self.metadata)}
+        return entry if self.lesson is None else {**entry, "lesson": self.lesson}
 
     @classmethod
-    def read(cls, said: Json) -> Teaching:
+    def read(cls, entry: Json) -> Teaching:
         """Read a teaching from the JSON of :meth:`to_json`.
 
         Parameters
         ----------
-        said
+        entry
             The JSON.
 
         Returns
@@ -66,7 +66,7 @@ class Teaching:
         Teaching
             The teaching.
         """
-        return cls(said["category"], datetime.fromisoformat(said["time"]), said["metadata"], said.get("lesson"))
+        return cls(entry["category"], datetime.fromisoformat(entry["time"]), entry["metadata"], entry.get("lesson"))
 
 
 Teachings = tuple[Teaching, ...]
@@ -115,11 +115,11 @@ def teachings_of(current: Teaching, stored: Sequence[Json], linked: Iterable[str
     Teachings
         The teachings, in turn.
     """
-    turns = [Teaching.read(said) for said in stored] or [current]
+    turns = [Teaching.read(entry) for entry in stored] or [current]
     last = prevailing(turns)
     turns = [replace(turn, category=current.category) if turn is last else turn for turn in turns]
-    told = {turn.lesson for turn in turns}
-    older = [replace(current, lesson=name) for name in linked if name not in told]
+    lessons = {turn.lesson for turn in turns}
+    older = [replace(current, lesson=name) for name in linked if name not in lessons]
     return (*older, *turns)
 
 
@@ -173,8 +173,8 @@ def each_changed(
         New teachings, as they are stored, by the ids of the views that differ.
     """
     new: dict[str, list[Json]] = {}
-    for view, said in stored.items():
-        before = [Teaching.read(each) for each in said]
+    for view, entry in stored.items():
+        before = [Teaching.read(each) for each in entry]
         after = [turn for turn in map(change, before) if turn is not None]
         if after != before:
             new[view] = written(after)

@@ -21,8 +21,7 @@ from deixis.learning.implied_statements import completion
 from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
 from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
 from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
-from deixis.learning.word_statistics import kept as kept_words
-from deixis.learning.word_statistics import replacing
+from deixis.learning.word_statistics import replacing, stored_words
 from deixis.learning.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
 from deixis.memory.perceptual.records import View
@@ -260,7 +259,7 @@ def _departed(memory: SemanticMemory, ontology: Ontology, lesson: str) -> tuple[
     change, rules = _followed(memory, ontology, memory.departure(lesson), gone=[lesson])
     known, strength = informed(models_from_triples(memory.models(ModelSet.WORDS)))
     if lesson in known:
-        kept = kept_words(memory.store)
+        kept = stored_words(memory.store)
         words = without(one, kept, strength) if kept is not None and one is not None else None
         if words is None:
             others = [memory.contributions(id) for id in sorted(known - {lesson}) if memory.knows(id)]
@@ -340,14 +339,17 @@ def word_triples(models: Iterable[RelationModel]) -> list[ox.Triple]:
 
 
 def _contributions(lesson: Lesson | WordLesson, ontology: Ontology) -> dict[GraphName, list[ox.Triple]]:
-    said = {GraphName.ASSERTED: list(asserted_triples(lesson)), GraphName.EPISODES: list(episode_triples(lesson))}
+    contributions = {
+        GraphName.ASSERTED: list(asserted_triples(lesson)),
+        GraphName.EPISODES: list(episode_triples(lesson)),
+    }
     if isinstance(lesson, Lesson):
-        said[GraphName.LEARNED] = [
+        contributions[GraphName.LEARNED] = [
             *learned_triples(lesson, ontology.relations),
             *noun_triples(lesson, ontology.kinds),
         ]
-        said[GraphName.SHAPES] = list(layout_shapes(lesson.layout))
-    return said
+        contributions[GraphName.SHAPES] = list(layout_shapes(lesson.layout))
+    return contributions
 
 
 def _remembered_one(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Remembered | None:
@@ -361,7 +363,7 @@ def _recollected_from(
 ) -> Recollection:
     """Return the lessons in some contributions."""
     learned, episodes = (
-        [triple for said in contributions for triple in said.get(name, ())]
+        [triple for by_graph in contributions for triple in by_graph.get(name, ())]
         for name in (GraphName.LEARNED, GraphName.EPISODES)
     )
     return recollect(learned, episodes, ontology)

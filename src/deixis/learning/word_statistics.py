@@ -47,7 +47,7 @@ def replacing(words: LearnedWords | None) -> list[ledger.Operation]:
     return operations
 
 
-def kept(store: ox.Store) -> LearnedWords | None:
+def stored_words(store: ox.Store) -> LearnedWords | None:
     """Return the learned models of a store with their statistics.
 
     Parameters

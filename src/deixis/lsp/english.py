@@ -202,8 +202,8 @@ def english_hover(document: EnglishText, line: int, column: int) -> str | None:
     for number, sentence in enumerate(script.reading.sentences):
         if sentence.span[0] <= at < sentence.span[1]:
             facts = [f"- `{stated.content}`" for stated in script.reading.stated if stated.sentence == number]
-            said = [sentence.paraphrase] if sentence.paraphrase else []
-            if not said and not facts:
+            paraphrases = [sentence.paraphrase] if sentence.paraphrase else []
+            if not paraphrases and not facts:
                 return "Nothing in this sentence states a fact."
-            return "\n".join([*said, *([""] if said and facts else []), *facts])
+            return "\n".join([*paraphrases, *([""] if paraphrases and facts else []), *facts])
     return None

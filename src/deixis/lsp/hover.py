@@ -83,12 +83,12 @@ def _about(document: Document, name: str, deadline: Deadline) -> Iterator[str]:
     parts += [f"colour {colour.label}"] if colour else []
     parts.append(_of_kind(document, kind) if kind else "kind unknown")
     yield f"**{name}**: {', '.join(parts)}"
-    stated = [said for fact in script.facts if (said := _seen_from(document, fact, first))]
+    stated = [wording for fact in script.facts if (wording := _seen_from(document, fact, first))]
     follows, complete = _following(document, first, set(stated), deadline)
     if stated or follows:
         yield ""
     for title, facts in (("states", stated), ("follows", follows)):
-        yield from (f"- {title}: {said}" for said in facts[:MAX_FACTS_SHOWN])
+        yield from (f"- {title}: {wording}" for wording in facts[:MAX_FACTS_SHOWN])
     if len(stated) > MAX_FACTS_SHOWN or len(follows) > MAX_FACTS_SHOWN or not complete:
         yield "- …"
 
@@ -120,9 +120,9 @@ def _following(document: Document, name: str, stated: set[str], deadline: Deadli
     for number, (fact, _) in enumerate(inference.implications.implied_with_steps()):
         if number % 100 == 99 and deadline.passed:
             return list(found), False
-        said = _seen_from(document, fact, name)
-        if said is not None and said not in stated:
-            found[said] = None
+        wording = _seen_from(document, fact, name)
+        if wording is not None and wording not in stated:
+            found[wording] = None
             if len(found) > MAX_FACTS_SHOWN:
                 break
     return list(found), complete

@@ -100,6 +100,13 @@ def assert_grounds(
         If an object is something else, is left out, or is not decided; the message lists each with its alternatives.
     DeixisError
         If the script or the scene cannot be read.
+
+    Examples
+    --------
+    >>> table = {"objects": [
+    ...     {"id": "o1", "min": [0, 0], "max": [0.03, 0.2]}, {"id": "o2", "min": [0.1, 0], "max": [0.35, 0.25]}]}
+    >>> assert_grounds("fork left of plate", table, {"fork": "o1", "plate": "o2"})
+    <Grounding 2 of 2 objects matched, 2 decided, 1 of 1 fact satisfied, fits 1.00>
     """
     from deixis.errors import DeixisError
     from deixis.report.grounding.ground import grounding_lines
@@ -146,6 +153,11 @@ def assert_follows(script: Script | str | Path, fact: str) -> Inference:
     ------
     AssertionError
         If it does not follow; the message shows a picture without it, or why it cannot hold.
+
+    Examples
+    --------
+    >>> assert_follows("fork left of plate; plate left of knife", "left(fork, knife)")
+    <Inference 2 stated facts: consistent>
     """
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.report.layouts.script import why_not_lines
@@ -176,6 +188,11 @@ def assert_not_follows(script: Script | str | Path, fact: str) -> Inference:
     ------
     AssertionError
         If it follows; the message shows its derivation.
+
+    Examples
+    --------
+    >>> assert_not_follows("fork left of plate", "left(plate, fork)")
+    <Inference 1 stated fact: consistent>
     """
     __tracebackhide__ = True
     inference, claim = _inferred(script, fact)
@@ -202,6 +219,11 @@ def assert_consistent(script: Script | str | Path) -> Inference:
     ------
     AssertionError
         If it contradicts itself; the message shows the minimal conflict.
+
+    Examples
+    --------
+    >>> assert_consistent("fork left of plate")
+    <Inference 1 stated fact: consistent>
     """
     from deixis.report.layouts.script import inference_lines
     from deixis.workflows.layouts.infer import infer
@@ -232,6 +254,11 @@ def assert_contradictory(script: Script | str | Path) -> Inference:
     ------
     AssertionError
         If it does not; the message gives boxes that satisfy it.
+
+    Examples
+    --------
+    >>> assert_contradictory("fork left of plate; plate left of fork")
+    <Inference 2 stated facts: contradictory>
     """
     from deixis.report.layouts.imagine import imagination_lines
     from deixis.workflows.layouts.imagine import imagine
@@ -279,6 +306,14 @@ def assert_checks(
     ------
     AssertionError
         If the faults are others; the message lists what ``deixis check`` prints.
+
+    Examples
+    --------
+    >>> table = {"objects": [
+    ...     {"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]},
+    ...     {"id": "o2", "label": "plate", "min": [0.1, 0], "max": [0.35, 0.25]}]}
+    >>> assert_checks("fork left of plate; knife right of plate", table, missing=["knife"])
+    <Check of 'text': not as described, 2 correct, 1 missing>
     """
     from deixis.report.layouts.script import check_lines
     from deixis.workflows.grounding.check import check

@@ -67,17 +67,19 @@ def expectations_in(text: str, file: str) -> Iterator[Expectation]:
         return
     first = text.count("\n", 0, start.end()) + 2
     for line, content in enumerate(text[start.end() :].split("\n")[1:], start=first):
-        said = content.strip()
-        if not said:
+        comment = content.strip()
+        if not comment:
             continue
-        if not said.startswith("#"):
-            raise ExpectationError(f"{file}:{line}:1: an expectation block is comments up to the end, got '{said:.40}'")
-        said = said.lstrip("#").strip()
-        if said and _check(said) is None:
+        if not comment.startswith("#"):
+            raise ExpectationError(
+                f"{file}:{line}:1: an expectation block is comments up to the end, got '{comment:.40}'"
+            )
+        comment = comment.lstrip("#").strip()
+        if comment and _check(comment) is None:
             known = ", ".join(CHECKS)
-            raise ExpectationError(f"{file}:{line}:1: '{said:.60}' is not an expectation; one starts with {known}")
-        if said:
-            yield Expectation(line, said)
+            raise ExpectationError(f"{file}:{line}:1: '{comment:.60}' is not an expectation; one starts with {known}")
+        if comment:
+            yield Expectation(line, comment)
 
 
 def run(expectation: Expectation, script: Script, folder: Path) -> None:

@@ -14,7 +14,7 @@ from deixis.experiments.apprentice.report import lines, to_dict
 from deixis.experiments.apprentice.run import LAYOUTS, Apprentice, ApprenticePlan, run
 from deixis.experiments.apprentice.scoring import Count
 from deixis.experiments.apprentice.tables import lay_tampered
-from deixis.grammar.read import read_script
+from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.reasoning.comparison.explanation import MistakeKind
 
@@ -28,7 +28,7 @@ def found() -> Apprentice:
 
 @pytest.fixture(scope="module")
 def script() -> Script:
-    return read_script(str(example("childs_place.layout")))
+    return read_script_file(str(example("childs_place.layout")))
 
 
 def test_small_run_reports_valid_json_and_intervals(found: Apprentice) -> None:
@@ -78,7 +78,7 @@ def test_interval_of_wilson_contains_the_share() -> None:
 
 def test_all_layouts_are_shipped() -> None:
     for name in LAYOUTS:
-        assert read_script(str(example(f"{name}.layout"))).name == name
+        assert read_script_file(str(example(f"{name}.layout"))).name == name
 
 
 def test_plan_counts_first_and_further_tables() -> None:

@@ -74,7 +74,7 @@ def test_where_memory_is_short_probabilities_are_beliefs(tmp_path: Path) -> None
     limit = required_gigabytes(100, 100, len(said), different_facts(said), chains=False) + 1e-4
     assert not leaves_room_for_chains(read.graph(), 100, limit)
     found = answer(GroundingRequest(read, read_scene(scene), engine="scalable", memory_limit=limit))
-    assert found.probabilities is Standing.BELIEVED
+    assert found.probabilities is Standing.PROPAGATED
     assert not any(match.decided for match in found.matches.values())
     assert any("memory" in note for note in found.notes)
 

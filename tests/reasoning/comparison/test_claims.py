@@ -42,7 +42,7 @@ def checked(claim: Claim, boxes: np.ndarray | None = BOXES, metric: bool = True)
         ("grape at the middle of the plate", "satisfied", "on plate, it is 50% of the way"),
         ("cup at the left end of the plate", "violated", "it is 17.09 cm beside plate"),
         ("fork about 2 cm from plate", "satisfied", "2 cm from plate"),
-        ("cup about 2 cm from plate", "violated", "about 2 cm was said"),
+        ("cup about 2 cm from plate", "violated", "about 2 cm was stated"),
         ("jar at most 3 cm from fork", "violated", "9.43 cm from fork (24.38 cm between the centres)"),
         ("cup at least 10 cm from plate", "satisfied", "17.09 cm"),
         ("plate between fork and knife", "satisfied", "51% of the way from fork to knife"),

@@ -16,7 +16,14 @@ from deixis.grammar.parser import parse_script
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.comparison.likeness import Closeness, Comparison, Described, Likeness, Seen, seen
+from deixis.reasoning.comparison.likeness import (
+    Closeness,
+    ComparedScene,
+    Comparison,
+    Described,
+    Likeness,
+    compared_scene,
+)
 from deixis.reasoning.comparison.retrieval import assignment_bound, quick_bound, rank_layouts, rank_scenes
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
@@ -54,7 +61,7 @@ def script(seed: int, n: int, facts: int) -> Described:
 
 
 def likeness(description: Described, scene: SceneRelations) -> Likeness:
-    return COMPARISON.likeness(description, seen("scene", scene))
+    return COMPARISON.likeness(description, compared_scene("scene", scene))
 
 
 @given(st.integers(0, 10**6), st.integers(1, 6))
@@ -78,7 +85,7 @@ def test_the_similarity_of_two_scenes_is_symmetric(seed: int, n: int, m: int) ->
 @settings(max_examples=40, deadline=None)
 def test_the_similarity_is_the_maximum_and_below_its_bounds(seed: int, n1: int, n2: int, facts: int) -> None:
     description, scene = script(seed, n1, facts), table(seed + 7, n2, labelled=seed % 2 == 0)
-    ready = seen("scene", scene)
+    ready = compared_scene("scene", scene)
     problem = COMPARISON.problem(description, ready)
     values = [0.0]
     for choice in product(range(UNMATCHED, n2), repeat=n1):
@@ -191,11 +198,11 @@ def test_a_known_kind_is_not_similar_to_an_unknown_word() -> None:
     assert likeness(layout("gasket is a fork; fork left of gasket"), scene).objects == 1
 
 
-def in_pixels(scale: float, metric: bool = False) -> Seen:
+def in_pixels(scale: float, metric: bool = False) -> ComparedScene:
     """Return the formal setting without labels, in pixels of an image from above."""
     scene = formal_setting().without_labels().relations(RELATIONS)
     assert scene.boxes is not None
-    return seen("image", replace(scene, boxes=scene.boxes[:, :, :2] * scale), metric=metric)
+    return compared_scene("image", replace(scene, boxes=scene.boxes[:, :, :2] * scale), metric=metric)
 
 
 def test_sizes_in_pixels_are_compared_at_any_scale() -> None:
@@ -219,7 +226,9 @@ def test_sizes_learned_from_images_count_in_pixels() -> None:
         length: Comparison(ONTOLOGY, {kind: SizeModel((np.log(length), 0.1), (0.0, 0.1), True)})
         for length in (9.0, 100.0)
     }
-    unary = {length: one.objects(plate, seen("image", scene, metric=False))[0] for length, one in likely.items()}
+    unary = {
+        length: one.objects(plate, compared_scene("image", scene, metric=False))[0] for length, one in likely.items()
+    }
     assert unary[9.0][0] == 1 > unary[9.0][1:].max()
     assert unary[100.0].max() < 0.01
 
@@ -232,7 +241,7 @@ def test_an_empty_scene_has_similarity_zero() -> None:
 @pytest.mark.parametrize("top", [1, 3, 30])
 def test_ranks_equal_those_of_comparing_all_pairs(top: int) -> None:
     layouts = [script(seed, 4 + seed % 3, 6) for seed in range(12)]
-    scenes = [seen(f"scene{seed:03}", table(seed, 3 + seed % 4)) for seed in range(12)]
+    scenes = [compared_scene(f"scene{seed:03}", table(seed, 3 + seed % 4)) for seed in range(12)]
     rng = np.random.default_rng(2)
     for scene in scenes[:4]:
         every = sorted(
@@ -260,14 +269,14 @@ def test_most_pairs_are_excluded_by_their_bounds(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(Comparison, "likeness", counted)
     layouts = [script(seed, 6, 9) for seed in range(30)]
-    found = rank_layouts(seen("scene", table(5, 6)), layouts, COMPARISON, top=1)
+    found = rank_layouts(compared_scene("scene", table(5, 6)), layouts, COMPARISON, top=1)
     assert found[0].layout == "script005"
     assert len(compared) < 15
 
 
 def test_a_top_of_zero_is_refused() -> None:
     with pytest.raises(SettingError, match="`top` must be at least 1, got 0"):
-        rank_layouts(seen("scene", table(1, 2)), [], COMPARISON, top=0)
+        rank_layouts(compared_scene("scene", table(1, 2)), [], COMPARISON, top=0)
 
 
 def test_a_learned_size_replaces_the_usual_one_unless_relative() -> None:
@@ -276,8 +285,8 @@ def test_a_learned_size_replaces_the_usual_one_unless_relative() -> None:
     kind = plate.graph.kinds[0]
     large = SizeModel((np.log(0.9), 0.1), (np.log(0.5), 0.1))
     found = {
-        name: Comparison(ONTOLOGY, {str(kind): model}).likeness(plate, seen("scene", scene)).objects
+        name: Comparison(ONTOLOGY, {str(kind): model}).likeness(plate, compared_scene("scene", scene)).objects
         for name, model in (("metres", large), ("relative", replace(large, relative=True)))
     }
     assert found["metres"] == 1
-    assert found["relative"] == COMPARISON.likeness(plate, seen("scene", scene)).objects < 0.5
+    assert found["relative"] == COMPARISON.likeness(plate, compared_scene("scene", scene)).objects < 0.5

@@ -167,11 +167,11 @@ def _terminal(out: object) -> Answerer:
     def answer(question: Question) -> bool | None:
         while True:
             print(visible_line(f"{question.text} (yes, no, or an empty line to stop) "), end="", flush=True, file=out)  # type: ignore[call-overload]
-            said = StandardInput().readline().strip().casefold()
-            if not said:
+            reply = StandardInput().readline().strip().casefold()
+            if not reply:
                 return None
-            if said in {"y", "yes", "n", "no"}:
-                return said[0] == "y"
+            if reply in {"y", "yes", "n", "no"}:
+                return reply[0] == "y"
             print("Answer yes or no.", file=out)  # type: ignore[call-overload]
 
     return answer

@@ -30,10 +30,10 @@ def tell(
     from deixis.workflows.layouts.read import load_scene
 
     given = source if holds_facts(source) else load_scene(source, hide_labels, image)
-    told = run(given, all_facts=all_facts, time_limit=time_limit)
+    telling = run(given, all_facts=all_facts, time_limit=time_limit)
     if as_json:
-        print_json(told.to_dict())
+        print_json(telling.to_dict())
     else:
-        print_lines(told.to_text().splitlines())
-    if told.misread or any(thing.found is False for thing in told.objects):
+        print_lines(telling.to_text().splitlines())
+    if telling.misread or any(thing.found is False for thing in telling.objects):
         raise typer.Exit(NO)

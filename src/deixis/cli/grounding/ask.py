@@ -35,11 +35,11 @@ def ask(
     from deixis.view_store import new_category_name
     from deixis.workflows.layouts.read import load_scene
 
-    said, seen = new_category_name(word), load_scene(scene)
+    name_given, seen = new_category_name(word), load_scene(scene)
     _require_something_to_show(seen)
     with Session(memory) as session:
-        name = session.category_meant(said)
-        print_lines(meant_lines(said, name))
+        name = session.category_meant(name_given)
+        print_lines(meant_lines(name_given, name))
         if name in session.categories() and points_at is None:
             with progress_bar("reading the taught views") as progress:
                 answers = session.recognise(seen.without_labels(), progress, print_note).answers

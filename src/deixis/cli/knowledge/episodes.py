@@ -82,8 +82,8 @@ def add(
         raise DeixisError(f"a statement has a subject, a predicate and at most one object, got {len(words)} words")
     with _board(memory, create=True) as board:
         source = Source(Origin(origin.value), by)
-        said = Statement(*words)
-        fluent = episodic(board.new_id("f"), said, start=start, finish=finish, certainty=certainty, source=source)
+        statement = Statement(*words)
+        fluent = episodic(board.new_id("f"), statement, start=start, finish=finish, certainty=certainty, source=source)
         board.write(Add(fluent), by=by)
         print_line(str(fluent))
 

@@ -60,8 +60,8 @@ def learn(
         where = session.path
         note_change(where)
     if as_json:
-        told = [learned_to_dict(learned) for learned in lessons]
-        print_json(told[0] if len(inputs) == 2 and len(told) == 1 else told)
+        answers = [learned_to_dict(learned) for learned in lessons]
+        print_json(answers[0] if len(inputs) == 2 and len(answers) == 1 else answers)
     else:
         for learned in lessons:
             print_lines(learned_lines(learned, str(where)))

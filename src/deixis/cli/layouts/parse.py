@@ -26,9 +26,9 @@ def parse(
     as_json: AsJson = False,
 ) -> None:
     """Print the facts of a script with their lines."""
-    from deixis.grammar.read import read_script
+    from deixis.grammar.read import read_script_file
 
-    parsed = read_script(script)
+    parsed = read_script_file(script)
     if as_json or format is GraphFormat.JSON:
         from deixis.report.json_answers import script_to_dict
 

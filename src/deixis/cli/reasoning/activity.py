@@ -24,7 +24,7 @@ Fluents = Annotated[
 
 @activity_app.command("ground")
 def ground(
-    told: Annotated[str, typer.Argument(metavar="TEXT", help="Such as 'first the plate, then the forks'.")],
+    activity: Annotated[str, typer.Argument(metavar="TEXT", help="Such as 'first the plate, then the forks'.")],
     file: Fluents = None,
     time_limit: TimeLimit = 10.0,
     memory: MemoryDir = None,
@@ -34,7 +34,7 @@ def ground(
     from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
     from deixis.workflows.reasoning.activities import ground as run
 
-    found = run(told, _sequence(file, memory), time_limit)
+    found = run(activity, _sequence(file, memory), time_limit)
     if as_json:
         print_json(grounded_to_dict(found))
     else:

@@ -145,8 +145,8 @@ def _explain(stated: list[Triple], asked: Triple, every: bool, turtle: bool, tim
     if turtle:
         _print_turtle(*found)
     elif as_json:
-        told = [justification_to_dict(one, words, _steps(one)) for one in found]
-        print_json({"justifications": told, "complete": unfinished is None} if every else told[0])
+        justifications = [justification_to_dict(one, words, _steps(one)) for one in found]
+        print_json({"justifications": justifications, "complete": unfinished is None} if every else justifications[0])
     if unfinished is not None:
         raise unfinished
 

@@ -51,7 +51,7 @@ def solve(
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
     from deixis.report.reasoning.solve import reason_lines
-    from deixis.workflows.reasoning.solve import Wish, calculi_named, solve_text
+    from deixis.workflows.reasoning.solve import SolveRequest, calculi_named, solve_text
 
     if closure and scenario:
         raise DeixisError("--closure and --scenario exclude each other")
@@ -59,7 +59,7 @@ def solve(
         raise DeixisError("-o writes the network that --closure or --scenario prints; give one of them")
     if verdict and (closure or scenario or explain is not None):
         raise DeixisError("--verdict excludes --closure, --scenario and --explain")
-    wish = Wish(closure, scenario, explain, not verdict, time_limit)
+    request = SolveRequest(closure, scenario, explain, not verdict, time_limit)
     calculi, notes = calculi_named(calculus)
     for note in notes:
         print_note(note)
@@ -69,7 +69,7 @@ def solve(
     solved = []
     with progress_bar("closing") as progress:
         for text in texts:
-            solved.append(solve_text(text, wish, progress, _quiet if aside else _print_verdict))
+            solved.append(solve_text(text, request, progress, _quiet if aside else _print_verdict))
             if not aside:
                 print_lines(reason_lines(solved[-1], not verdict))
     _report(network, solved, out, as_json, aside)
@@ -99,8 +99,8 @@ def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: b
         print_json({"file": file, "networks": [solved_to_dict(each) for each in solved]})
         return
     if aside:
-        said = [line for each in solved for line in solved_lines(each)]
-        print_lines([f"# {line}" for line in said] + shown if shown else said)
+        lines = [line for each in solved for line in solved_lines(each)]
+        print_lines([f"# {line}" for line in lines] + shown if shown else lines)
     print_written(out)
 
 

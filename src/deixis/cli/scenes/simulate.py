@@ -97,13 +97,13 @@ def simulate(
 
 def _laid(layout: str | None, random: int | None, seed: int, meshes: dict[str, Mesh], cloth: bool) -> LaidScript:
     from deixis.errors import DeixisError
-    from deixis.grammar.read import read_script
+    from deixis.grammar.read import read_script_file
     from deixis.workflows.layouts.lay_table import lay_random, lay_script
 
     if (layout is None) == (random is None):
         raise DeixisError("simulate: give either a layout or --random N")
     if layout is not None:
-        return lay_script(read_script(layout), seed, meshes, cloth=cloth)
+        return lay_script(read_script_file(layout), seed, meshes, cloth=cloth)
     return lay_random(random or 0, seed, meshes, cloth=cloth)
 
 

@@ -94,8 +94,8 @@ def lines(found: Apprentice) -> list[str]:
 
 def _row(title: str, count: Count) -> str:
     interval = count.interval
-    said = "" if interval is None else f"{interval[0]:.3f} to {interval[1]:.3f}"
-    return f"{title:52} {_share(count):>5}  {said:16}  {count.right} of {count.of}"
+    bounds = "" if interval is None else f"{interval[0]:.3f} to {interval[1]:.3f}"
+    return f"{title:52} {_share(count):>5}  {bounds:16}  {count.right} of {count.of}"
 
 
 def _share(count: Count) -> str:

@@ -137,11 +137,11 @@ def run(plan: ApprenticePlan, tick: Tick = lambda: None) -> Apprentice:
     """
     require("open3d", "simulating tables")
     with tempfile.TemporaryDirectory() as folder, closing(Robot(folder)) as robot:
-        told = []
+        taught_lessons = []
         for lesson in teach(robot, plan):
-            told.append(lesson)
+            taught_lessons.append(lesson)
             tick()
-        lessons = [lesson_score(robot, lesson) for lesson in told]
+        lessons = [lesson_score(robot, lesson) for lesson in taught_lessons]
         knowledge = robot.knowledge()
         numbers = range(plan.tables)
         processes = min(plan.processes or len(os.sched_getaffinity(0)), max(plan.tables, 1))
@@ -185,9 +185,9 @@ def teach(robot: Robot, plan: ApprenticePlan) -> Iterator[Taught]:
             truth = true_things(look, scene)
             if left := {id: name for id, name in truth.items() if name in SHOWN and name not in pointed_at}:
                 pointed_at |= point_at(robot, left, _seed(plan, 2, number, place))
-            told = robot.told(scripts[name])
+            answer = robot.told(scripts[name])
             wanted = tuple(role for role in singled_out(scripts[name], look) if plain_name(role) not in SHOWN)
-            yield Taught(told.lesson.number, name, truth, wanted, asked(robot, truth))
+            yield Taught(answer.lesson.number, name, truth, wanted, answer_questions(robot, truth))
     robot.reconsider()
 
 
@@ -215,12 +215,12 @@ def point_at(robot: Robot, things: Mapping[str, str], seed: int) -> set[str]:
 
     order = sorted(things, key=lambda id: things[id])
     recording = Teacher(robot.scene, seed).points_at(order, hold=1.0)
-    said = [
+    utterances = [
         Utterance(f"this is a {things[id].replace('_', ' ')}", aim.start, aim.finish)
         for id, aim in zip(order, recording.aims, strict=True)
     ]
     taught = set()
-    for label in point(recording.skeletons, robot.scene, said).taught:
+    for label in point(recording.skeletons, robot.scene, utterances).taught:
         assert label.name is not None and label.target is not None
         name = label.name.replace(" ", "_")
         robot.shown(name, label.target, by="teacher")
@@ -228,7 +228,7 @@ def point_at(robot: Robot, things: Mapping[str, str], seed: int) -> set[str]:
     return taught
 
 
-def asked(robot: Robot, truth: Mapping[str, str]) -> int:
+def answer_questions(robot: Robot, truth: Mapping[str, str]) -> int:
     """Let the teacher answer the questions of a robot about the present table.
 
     Parameters

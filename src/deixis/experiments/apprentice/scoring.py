@@ -135,16 +135,16 @@ def score(look: Look, table: Tampered, layout: str, things: Mapping[str, str], t
             best = next(iter(look.scene[id].candidates), None)
             recognised += best is not None and best[0] == plain_name(name)
     truth = Counter((one.kind, frozenset(map(_bare(one), one.names))) for one in table.mistakes)
-    said = Counter(_as_truth(fault, things) for fault in look.faults())
-    hits = truth & said
+    reported = Counter(_as_truth(fault, things) for fault in look.faults())
+    hits = truth & reported
     return TableScore(
         Count(int(look.layout == layout), 1),
         Count(named, len(wanted)),
         Count(recognised, len(wanted)),
         Count(len(set(wanted) & place.keys()), len(wanted)),
         _by_kind(hits, truth),
-        _by_kind(hits, said),
-        missed=tuple(TrueMistake(kind, tuple(sorted(names))) for kind, names in (truth - said).elements()),
+        _by_kind(hits, reported),
+        missed=tuple(TrueMistake(kind, tuple(sorted(names))) for kind, names in (truth - reported).elements()),
         false=tuple(str(fault) for fault in look.faults() if _as_truth(fault, things) not in truth),
     )
 

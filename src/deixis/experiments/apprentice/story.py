@@ -91,7 +91,7 @@ def write_story(plan: ApprenticePlan, folder: Path) -> tuple[Frame, ...]:
                 for id in understood.scene.ids
             }
             layout = (understood.layout or "no known layout").replace("_", " ")
-            keep(understood.scene, names, f"Table {number + 1} is laid as: {layout}. {_said(faults)}")
+            keep(understood.scene, names, f"Table {number + 1} is laid as: {layout}. {_spoken_faults(faults)}")
     (folder / "index.html").write_text(_page(frames), encoding="utf-8")
     return tuple(frames)
 
@@ -109,7 +109,7 @@ def _teaching(
         keep(known.scene, names, f"The teacher describes: {title}. The robot learns {len(taught)} things{asked}.")
 
 
-def _said(faults: tuple[Fault, ...]) -> str:
+def _spoken_faults(faults: tuple[Fault, ...]) -> str:
     if not faults:
         return "Nothing is wrong."
     listed = "; ".join(str(fault) for fault in faults)

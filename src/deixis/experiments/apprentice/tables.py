@@ -105,7 +105,7 @@ def lay_tampered(script: Script, seed: int, mistakes: int | None = None) -> Tamp
         if done is not None:
             table, names = done
             made.append(TrueMistake(kind, names))
-    things = table.settled() if made else laid.table.things
+    things = table.things_set_down() if made else laid.table.things
     top = top_under(things, colour=laid.table.top.colour) if made else laid.table.top
     return Tampered(replace(laid, table=LaidTable(top, things)), tuple(made))
 
@@ -251,7 +251,7 @@ class _Table:
                 return replace(self, things=(*self.things, moved), touched=self.touched | {name}), (name,)
         return None
 
-    def settled(self) -> tuple[LaidThing, ...]:
+    def things_set_down(self) -> tuple[LaidThing, ...]:
         """Return all things, those that were moved set down on what lies below them."""
         order = sorted(self.things, key=lambda thing: -float(np.prod(thing.box[1, :2] - thing.box[0, :2])))
         placements = []

@@ -34,7 +34,11 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
         If matplotlib is not installed.
     """
     figure, axes = new_figure(12.0, 3.6 * len(found.findings) + 0.6, nrows=len(found.findings), ncols=3, squeeze=False)
-    panels = (("categories known", known), ("share of all answers right", accuracy), ("instances a category", stored))
+    panels = (
+        ("categories known", known_categories),
+        ("share of all answers right", accuracy),
+        ("instances a category", stored),
+    )
     for one, row in zip(found.findings, axes, strict=True):
         for panel, (title, curve) in zip(row, panels, strict=True):
             for number, name in enumerate(dict.fromkeys(taught.contestant for taught in one.taught)):
@@ -55,7 +59,7 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
     save(figure, path)
 
 
-def known(course: Course) -> NDArray[np.float64]:
+def known_categories(course: Course) -> NDArray[np.float64]:
     """Return the number of known categories at each answer.
 
     Parameters

@@ -103,8 +103,8 @@ def _possible(table: GeneratedTable, names: Names, said_off: Matrix, deadline: D
 def _word_likelihood(table: GeneratedTable, names: Names, said_off: Matrix, maps: Maps) -> Matrix:
     """Return the logarithm of the probability of the words of the wrong facts for each of c maps, shape (c,)."""
     true = names[maps[:, table.ends[:, 0]], maps[:, table.ends[:, 1]]]
-    said = np.where(true == table.words, 1.0, said_off[true, table.words])
-    likelihood: Matrix = np.log(said).sum(axis=1)
+    likelihoods = np.where(true == table.words, 1.0, said_off[true, table.words])
+    likelihood: Matrix = np.log(likelihoods).sum(axis=1)
     return likelihood
 
 

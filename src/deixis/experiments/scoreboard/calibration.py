@@ -99,24 +99,24 @@ def calibration(forecasts: Sequence[Forecasts]) -> Reliability:
 
     Examples
     --------
-    >>> said = np.array([0.65, 0.65, 1.0, 1.0])
-    >>> found = calibration([Forecasts("exact", Group(2, 0.0), said, np.array([True, False, True, True]))])
+    >>> probabilities = np.array([0.65, 0.65, 1.0, 1.0])
+    >>> found = calibration([Forecasts("exact", Group(2, 0.0), probabilities, np.array([True, False, True, True]))])
     >>> round(found.error, 3), found.decided, found.precision
     (0.075, 0.5, 1.0)
     """
-    said = np.concatenate([np.zeros(0), *(one.probability for one in forecasts)])
+    probabilities = np.concatenate([np.zeros(0), *(one.probability for one in forecasts)])
     right = np.concatenate([np.zeros(0, bool), *(one.right for one in forecasts)])
-    number = np.clip((said * BINS).astype(int), 0, BINS - 1)
+    number = np.clip((probabilities * BINS).astype(int), 0, BINS - 1)
     bins = []
     for b in range(BINS):
         held = number == b
-        bins.append(Bin(b / BINS, (b + 1) / BINS, int(held.sum()), _mean(said[held]), _mean(right[held])))
+        bins.append(Bin(b / BINS, (b + 1) / BINS, int(held.sum()), _mean(probabilities[held]), _mean(right[held])))
     off = sum(b.count * abs(b.right - b.probability) for b in bins if b.count)
     sure = np.concatenate([np.zeros(0, bool), *(is_decided(one.probability, one.error) for one in forecasts)])
     return Reliability(
         tuple(bins),
-        len(said),
-        off / len(said) if len(said) else float("nan"),
+        len(probabilities),
+        off / len(probabilities) if len(probabilities) else float("nan"),
         _mean(sure),
         _mean(right[sure]),
     )

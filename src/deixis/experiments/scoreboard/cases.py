@@ -192,8 +192,8 @@ def generated_cases(settings: Sequence[Setting], count: int, seed: int, *, kinds
         for number in range(count):
             drawn = table(setting, number, seed)
             rng = np.random.default_rng([seed, number, setting.objects])
-            said, things = drawn.description(kinds=kinds), _names(len(drawn.boxes))
-            yield Case(setting, number, said, drawn.boxes, things, drawn.truth).shuffled(rng)
+            description, things = drawn.description(kinds=kinds), _names(len(drawn.boxes))
+            yield Case(setting, number, description, drawn.boxes, things, drawn.truth).shuffled(rng)
 
 
 def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, learn: bool = False) -> Iterator[Case]:
@@ -225,8 +225,8 @@ def photograph_cases(folder: Path, orders: int, most: int | None, seed: int, *, 
     setting = Setting(PHOTOGRAPHS, 0.0, 0.0, False)
     images = list(photographs(folder, default_ontology()))
     learned = learned_meanings(images, seed) if learn else [None] * len(images)
-    for unit, ((said, boxes), taught) in enumerate(zip(images[:most], learned[:most], strict=True)):
+    for unit, ((description, boxes), taught) in enumerate(zip(images[:most], learned[:most], strict=True)):
         names, truth = _names(len(boxes)), np.arange(len(boxes))
-        case = Case(setting, unit, said, boxes, names, truth, metric=False, learned=taught)
+        case = Case(setting, unit, description, boxes, names, truth, metric=False, learned=taught)
         for order in range(orders):
             yield case.shuffled(np.random.default_rng([seed, unit, order]))

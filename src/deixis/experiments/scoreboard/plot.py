@@ -158,10 +158,10 @@ def _reliability(axes: Axes, found: Scoreboard) -> None:
     axes.plot([0, 1], [0, 1], color=QUIET, linewidth=1, linestyle=":")
     for (name, one), colour in zip(found.calibrations().items(), (*NOISES, *COLOURS[3:]), strict=False):
         bins = [each for each in one.bins if each.count]
-        said, right = [each.probability for each in bins], [each.right for each in bins]
-        axes.plot(said, right, color=colour, linewidth=1.2, label=f"{name} ({one.error:.3f})")
+        probabilities, right = [each.probability for each in bins], [each.right for each in bins]
+        axes.plot(probabilities, right, color=colour, linewidth=1.2, label=f"{name} ({one.error:.3f})")
         areas = [4 + 60 * each.count / one.count for each in bins]
-        axes.scatter(said, right, s=areas, color=colour, linewidths=0, alpha=0.8)
+        axes.scatter(probabilities, right, s=areas, color=colour, linewidths=0, alpha=0.8)
     title = "expected calibration error"
     look = {"frameon": False, "labelcolor": INK, "ncols": 2, "columnspacing": 0.8}
     axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **look)

@@ -207,9 +207,9 @@ def _short(count: int) -> str:
 
 def _significance(found: Scoreboard) -> Iterator[str]:
     plan = found.plan
-    for measure, said in (("right", "share right"), ("grouped", "share right up to interchangeability")):
+    for measure, title in (("right", "share right"), ("grouped", "share right up to interchangeability")):
         comparisons = found.main.comparisons(measure, plan.seed)
-        yield f"{DEFAULT} less each other, {said}: mean difference, p of a paired permutation test"
+        yield f"{DEFAULT} less each other, {title}: mean difference, p of a paired permutation test"
         yield f"over the cases, and + or - where {DEFAULT} is significantly better or worse (at {ALPHA:g}, by Holm's"
         yield "correction for all of these comparisons)."
         cells = {(one.group, one.other): one for one in comparisons}

@@ -16,12 +16,12 @@ WIDTH = 100
 """Columns of the text."""
 
 
-def telling_lines(told: Telling) -> list[str]:
+def telling_lines(telling: Telling) -> list[str]:
     """Return the text, filled to the width of the terminal, then what it could not say.
 
     Parameters
     ----------
-    told
+    telling
         Answer of ``deixis tell``.
 
     Returns
@@ -29,20 +29,20 @@ def telling_lines(told: Telling) -> list[str]:
     list of str
         Lines of at most :data:`WIDTH` characters unless a word is longer; then the warnings, marked as doubt.
     """
-    lines = textwrap.wrap(told.text, WIDTH, break_long_words=False, break_on_hyphens=False) or ["Nothing is stated."]
-    lines += [doubt(f"Not read as it is meant: {content}") for content in told.misread]
-    lost = [thing.id for thing in told.objects if thing.found is False]
+    lines = textwrap.wrap(telling.text, WIDTH, break_long_words=False, break_on_hyphens=False) or ["Nothing is stated."]
+    lines += [doubt(f"Not read as it is meant: {content}") for content in telling.misread]
+    lost = [thing.id for thing in telling.objects if thing.found is False]
     if lost:
         lines.append(doubt(f"Not singled out: {', '.join(lost)}."))
-    return lines + [doubt(f"Note: {note}") for note in told.notes]
+    return lines + [doubt(f"Note: {note}") for note in telling.notes]
 
 
-def telling_to_dict(told: Telling) -> dict[str, Any]:
+def telling_to_dict(telling: Telling) -> dict[str, Any]:
     """Return the text, its sentences with the facts that they state, and the words for each object.
 
     Parameters
     ----------
-    told
+    telling
         Answer of ``deixis tell``.
 
     Returns
@@ -52,19 +52,19 @@ def telling_to_dict(told: Telling) -> dict[str, Any]:
         ``notes``. ``found`` of an object is False where its words do not single it out.
     """
     return {
-        "file": told.file,
-        "text": told.text,
+        "file": telling.file,
+        "text": telling.text,
         "sentences": [
-            {"text": sentence.text, "facts": [_stated_to_dict(told.facts[i]) for i in sentence.facts]}
-            for sentence in told.sentences
+            {"text": sentence.text, "facts": [_stated_to_dict(telling.facts[i]) for i in sentence.facts]}
+            for sentence in telling.sentences
         ],
         "objects": [
             {"id": thing.id, "words": thing.words, "description": thing.description, "found": thing.found}
-            for thing in told.objects
+            for thing in telling.objects
         ],
-        "left_out": [content_to_dict(fact) for fact in told.left_out],
-        "misread": [content_to_dict(content) for content in told.misread],
-        "notes": list(told.notes),
+        "left_out": [content_to_dict(fact) for fact in telling.left_out],
+        "misread": [content_to_dict(content) for content in telling.misread],
+        "notes": list(telling.notes),
     }
 
 

@@ -53,13 +53,13 @@ def recall_to_dict(found: Recall) -> dict[str, Any]:
 
 
 def _fact(found: Recall, fact: Recalled) -> dict[str, Any]:
-    fluent, said = fact.fluent, fact.fluent.statement
+    fluent, statement = fact.fluent, fact.fluent.statement
     return {
         "fluent": fluent.id,
-        "subject": said.subject,
+        "subject": statement.subject,
         "name": fact.name,
-        "predicate": said.predicate,
-        "object": said.object,
+        "predicate": statement.predicate,
+        "object": statement.object,
         "other": fact.other,
         "start": _bounds(found, fluent.start),
         "finish": _bounds(found, fluent.finish),

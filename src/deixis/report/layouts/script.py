@@ -224,8 +224,8 @@ def check_lines(checked: Check) -> list[str]:
         facts = [
             fact for fact in checked.layout.facts if entry.role in (fact.subject, fact.object) and not fact.optional
         ]
-        said = "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
-        lines.append(violation(f"missing     {entry.role}{said}"))
+        stated = "".join(f"; {fact}" + (f" ({fact.source})" if fact.source else "") for fact in facts)
+        lines.append(violation(f"missing     {entry.role}{stated}"))
     for entry in table.of(RoleVerdict.MISPLACED):
         exchanged = f", where {entry.in_place_of} belongs" if entry.in_place_of else ""
         lines.append(violation(f"misplaced   {entry.role} ({entry.perceived}){exchanged}"))

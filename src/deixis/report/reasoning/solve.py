@@ -144,8 +144,8 @@ def _plain(solved: SolvedNetwork) -> list[tuple[int, list[list[float]]]]:
 def _constraint(network: Network, c: Constraint) -> dict[str, Any]:
     members = list(network.calculus.members(c.relation))
     line = None if c.source is None else c.source.line
-    said = {"calculus": network.calculus.name, "first": c.first, "second": c.second, "relation": members}
-    return said if line is None else {**said, "line": line}
+    entry = {"calculus": network.calculus.name, "first": c.first, "second": c.second, "relation": members}
+    return entry if line is None else {**entry, "line": line}
 
 
 def _step(step: Step, networks: Sequence[Network]) -> dict[str, Any]:

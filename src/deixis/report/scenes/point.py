@@ -43,12 +43,12 @@ def shown_lines(found: Shown) -> Iterator[str]:
 
 
 def _line(label: PointedLabel) -> str:
-    said = f"'{label.utterance.text}' at {label.utterance.at:g} s"
+    utterance = f"'{label.utterance.text}' at {label.utterance.at:g} s"
     if label.refused is not None:
         asked = f" {label.question}" if label.question else ""
-        return doubt(f"{said}: refused, {label.refused}.{asked}")
+        return doubt(f"{utterance}: refused, {label.refused}.{asked}")
     name = label.name if label.positive else f"not {label.name}"
-    return f"{said}: {label.target} is taught as {name}, probability {label.probability:.2f}"
+    return f"{utterance}: {label.target} is taught as {name}, probability {label.probability:.2f}"
 
 
 def shown_to_dict(found: Shown) -> dict[str, Any]:

@@ -48,8 +48,8 @@ def pair_lines(
         if words is None:
             yield f"{a:<{wide}}  {sign:<{mid}}  {b}"
         else:
-            said = ", ".join(f"{word} {share:.2f}" for word, share in words.of(place[a], place[b]).items())
-            yield f"{a:<{wide}}  {sign:<{mid}}  {b:<{wide_object}}  {said}".rstrip()
+            degrees = ", ".join(f"{word} {share:.2f}" for word, share in words.of(place[a], place[b]).items())
+            yield f"{a:<{wide}}  {sign:<{mid}}  {b:<{wide_object}}  {degrees}".rstrip()
     if empty:
         yield "There are no pairs."
     for i, j, k, share in words.triples() if words is not None else ():
@@ -126,11 +126,12 @@ def json_lines(
     previous = '  "pairs": ['
     for a, sign, b in related.pairs(subject, object):
         yield previous
-        said = ""
+        words_json = ""
         if words is not None:
             known = {word: round(share, 4) for word, share in words.of(place[a], place[b]).items()}
-            said = f',\n      "words": {json.dumps(known)}'
-        yield f'    {{\n      "subject": {ids[a]},\n      "relation": {signs[sign]},\n      "object": {ids[b]}{said}'
+            words_json = f',\n      "words": {json.dumps(known)}'
+        pair = f'"subject": {ids[a]},\n      "relation": {signs[sign]},\n      "object": {ids[b]}{words_json}'
+        yield f"    {{\n      {pair}"
         previous = "    },"
     end = "" if words is None else ","
     yield ('  "pairs": []' if previous != "    }," else "    }\n  ]") + end

@@ -80,12 +80,12 @@ def taught_line(taught: Taught, name: str) -> str:
     return f"{name} is a view of '{taught.category}'{corrected}; {taught.views} in all."
 
 
-def meant_lines(said: str, known: str) -> list[str]:
+def meant_lines(given: str, known: str) -> list[str]:
     """Return a line that names the category of a word where their spelling differs by case.
 
     Parameters
     ----------
-    said
+    given
         Category as the user wrote it.
     known
         Category as the memory spells it.
@@ -95,7 +95,7 @@ def meant_lines(said: str, known: str) -> list[str]:
     list of str
         One line; none where the spellings are equal.
     """
-    return [] if said == known else [f"'{said}' is read as '{known}', which differs only by case."]
+    return [] if given == known else [f"'{given}' is read as '{known}', which differs only by case."]
 
 
 MAX_NAMES = 3

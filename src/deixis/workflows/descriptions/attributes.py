@@ -110,13 +110,13 @@ def new_adjectives(text: str) -> Phrase | None:
     words = re.findall(r"[a-z][a-z'-]*", text.casefold().replace("’", "'"))
     link = next((i for i, word in enumerate(words) if word in LINKS), None)
     if link is not None:
-        said = [word for word in words[link + 1 :] if word not in ("not", "very", "quite", "really")]
-        if len(said) == 1 and is_new_adjective(said[0]):
+        rest = [word for word in words[link + 1 :] if word not in ("not", "very", "quite", "really")]
+        if len(rest) == 1 and is_new_adjective(rest[0]):
             denied = "not" in words[link:] or words[link].endswith("n't")
-            return Phrase((said[0],), "", stated=True, positive=not denied)
-        if not said or said[0] not in DETERMINERS:
+            return Phrase((rest[0],), "", stated=True, positive=not denied)
+        if not rest or rest[0] not in DETERMINERS:
             return None
-        words = said
+        words = rest
     start = next((i for i, word in enumerate(words) if word in DETERMINERS), -1) + 1
     end = next((i for i in range(start, len(words)) if words[i] in ENDS), len(words))
     phrase = words[start:end]

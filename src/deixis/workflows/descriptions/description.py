@@ -170,30 +170,32 @@ def query_of(sentences: Sequence[Sentence]) -> Query:
     target, context = Description(""), None
     for part in parts:
         named, own = _resolve(part.subject, part.predicates)
-        told = _description(named, 0) if named is not None else Description("")
+        named_part = _description(named, 0) if named is not None else Description("")
         pointed = _pointed_at(part) if not target.noun else None
         if pointed is not None:
-            target = Description(pointed[0], relations=(replace(pointed[1], arguments=(told,)),))
+            target = Description(pointed[0], relations=(replace(pointed[1], arguments=(named_part,)),))
             continue
         back = _mention(own, target.noun) if target != Description("") else None
         begins = not target.noun and (back is None or part.picks)
         if begins and named is not None and (name := _noun(named)):
-            target = replace(target, noun=name, plural=told.plural)
-        if told.noun and target != Description("") and not (target.noun and _same(told.noun, target.noun)):
+            target = replace(target, noun=name, plural=named_part.plural)
+        if named_part.noun and target != Description("") and not (target.noun and _same(named_part.noun, target.noun)):
             if part.picks:
-                target, context = Description(told.noun, plural=told.plural), target
+                target, context = Description(named_part.noun, plural=named_part.plural), target
             else:
                 if back is not None:
-                    relation = Relation(RENAMED.get(back.relation, back.relation), (told,), inverted=not back.reversed)
+                    relation = Relation(
+                        RENAMED.get(back.relation, back.relation), (named_part,), inverted=not back.reversed
+                    )
                     target = replace(target, relations=(*target.relations, relation))
                 continue
-        properties, relations = _said(own, 0)
+        properties, relations = _constraints(own, 0)
         target = replace(
             target,
-            properties=_ranked(_distinct((*target.properties, *told.properties, *properties))),
-            other_nouns=target.other_nouns or told.other_nouns,
-            anything=target.anything or told.anything,
-            relations=_distinct((*target.relations, *told.relations, *relations)),
+            properties=_ranked(_distinct((*target.properties, *named_part.properties, *properties))),
+            other_nouns=target.other_nouns or named_part.other_nouns,
+            anything=target.anything or named_part.anything,
+            relations=_distinct((*target.relations, *named_part.relations, *relations)),
         )
     target = replace(_with_own_noun(target, viewer), properties=_ordered(target.properties))
     return Query(_with_nouns(target, viewer, context), viewer, understood, words)
@@ -246,14 +248,16 @@ def _with_nouns(target: Description, viewer: Viewer | None, context: Description
     *The largest object* gets none.
     """
 
-    def named(told: Description) -> Description:
-        if told.noun or (told.anything and any(one.degree == "superlative" for one in told.properties)):
-            return told
-        if context is not None and told == Description(""):
+    def named(description: Description) -> Description:
+        if description.noun or (
+            description.anything and any(one.degree == "superlative" for one in description.properties)
+        ):
+            return description
+        if context is not None and description == Description(""):
             return context
-        if viewer is not None and viewer.person is None and told == Description(""):
+        if viewer is not None and viewer.person is None and description == Description(""):
             return viewer.target or viewer.landmark
-        return replace(told, noun=target.noun)
+        return replace(description, noun=target.noun)
 
     relations = (replace(one, arguments=tuple(map(named, one.arguments))) for one in target.relations)
     return replace(target, relations=tuple(relations))
@@ -270,8 +274,8 @@ class Statement:
 
 def _statements(sentence: Sentence) -> Iterator[Statement]:
     if (fragment := sentence.fragment) is not None and fragment.negated:  # 'Not the lamp between the beds.'
-        told = replace(fragment, negated=False)
-        yield Statement(None, (Predicate("kind", (told,), fragment.span, positive=False),))
+        affirmed = replace(fragment, negated=False)
+        yield Statement(None, (Predicate("kind", (affirmed,), fragment.span, positive=False),))
     elif fragment is not None:
         yield Statement(fragment, (), picks=fragment.determiner in {"the", "this", "that"})
     for clause in sentence.clauses:
@@ -288,8 +292,8 @@ def _statements(sentence: Sentence) -> Iterator[Statement]:
         yield Statement(subject, predicates, picks and positive)
 
 
-def _is_definite(said: Predicate) -> bool:
-    return said.arguments[0].determiner == "the"
+def _is_definite(predicate: Predicate) -> bool:
+    return predicate.arguments[0].determiner == "the"
 
 
 def _pointed_at(part: Statement) -> tuple[str, Relation] | None:
@@ -380,7 +384,7 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.of is not None:
         inner = _description(phrase.of, depth + 1)
     properties = [_property(one) for one in phrase.adjectives]
-    more, relations = _said(phrase.predicates, depth + 1)
+    more, relations = _constraints(phrase.predicates, depth + 1)
     noun, plural = "" if head in EMPTY else head, phrase.plural
     if noun in SIDE_NOUNS and inner is None:
         noun, properties = "", [*properties, Property("position", noun)]
@@ -395,8 +399,10 @@ def _description(phrase: NounPhrase, depth: int) -> Description:
     if phrase.owner is not None and not phrase.owner.pronoun:
         relations = (*relations, Relation("with", (_description(phrase.owner, depth + 1),)))
     count = phrase.count if phrase.plural or phrase.count else None
-    said = _ranked(_distinct((*properties, *more)))
-    return Description(noun, said, relations, count, phrase.negated, plural, anything=not noun and head in ANYTHING)
+    properties_found = _ranked(_distinct((*properties, *more)))
+    return Description(
+        noun, properties_found, relations, count, phrase.negated, plural, anything=not noun and head in ANYTHING
+    )
 
 
 def _either(first: Description, others: Sequence[Description]) -> Description:
@@ -425,19 +431,21 @@ def _ranked(properties: Sequence[Property]) -> tuple[Property, ...]:
     return tuple(joined if one is rank else one for one in properties if one is not side)
 
 
-def _denied(told: Description) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
+def _denied(description: Description) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
     """Return what *not the one next to the door* tells; nothing if it denies several parts, of which one may hold."""
-    if len(told.properties) + len(told.relations) != 1:
+    if len(description.properties) + len(description.relations) != 1:
         return (), ()
-    properties = tuple(replace(one, positive=not one.positive) for one in told.properties)
-    return properties, tuple(replace(one, positive=not one.positive) for one in told.relations)
+    properties = tuple(replace(one, positive=not one.positive) for one in description.properties)
+    return properties, tuple(replace(one, positive=not one.positive) for one in description.relations)
 
 
-def _property(said: Adjective) -> Property:
-    return Property(said.dimension, said.word.casefold(), str(said.degree), said.rank, said.positive)
+def _property(adjective: Adjective) -> Property:
+    return Property(
+        adjective.dimension, adjective.word.casefold(), str(adjective.degree), adjective.rank, adjective.positive
+    )
 
 
-def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
+def _constraints(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, ...], tuple[Relation, ...]]:
     """Return the properties and the relations that predicates state of their subject."""
     properties: list[Property] = []
     relations: list[Relation] = []
@@ -453,9 +461,9 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             properties += _place(predicate)
             continue
         if predicate.relation == "kind":
-            told = _description(arguments[0], depth + 1)
+            landmark = _description(arguments[0], depth + 1)
             if predicate.positive:
-                properties, relations = [*properties, *told.properties], [*relations, *told.relations]
+                properties, relations = [*properties, *landmark.properties], [*relations, *landmark.relations]
             else:
                 for refused in (_denied(_description(one, depth + 1)) for one in arguments):
                     properties, relations = [*properties, *refused[0]], [*relations, *refused[1]]
@@ -465,36 +473,46 @@ def _said(predicates: Sequence[Predicate], depth: int) -> tuple[tuple[Property, 
             name = COMPARED[predicate.value.word]
         landmarks = [(one, _description(one, depth + 1)) for one in arguments]
         if name == "between" or (name == "middle" and (len(arguments) > 1 or arguments[0].plural)):
-            told_all = tuple(told for _, told in landmarks)
-            relations.append(Relation("between", told_all, positive=predicate.positive))
+            landmark_pair = tuple(landmark for _, landmark in landmarks)
+            relations.append(Relation("between", landmark_pair, positive=predicate.positive))
             continue
-        for phrase, told in landmarks:
+        for phrase, landmark in landmarks:
             positive = predicate.positive != (phrase.negated or phrase.determiner == "no")
             if (person := _person(phrase)) is not None:
                 properties += _from_person(replace(predicate, positive=positive), phrase, name, person)
                 continue
-            if told.noun == "wall" and told.relations:  # 'the wall with the window': the window says where
+            if landmark.noun == "wall" and landmark.relations:  # 'the wall with the window': the window says where
                 placed = WALL_RELATIONS.get(name, name)
                 relations.append(
                     replace(
-                        told.relations[0], name=placed, degree=str(predicate.degree), positive=positive, inverted=False
+                        landmark.relations[0],
+                        name=placed,
+                        degree=str(predicate.degree),
+                        positive=positive,
+                        inverted=False,
                     )
                 )
-            elif told.noun == "wall" and name in {*WALL_RELATIONS, "near", "far"} and _is_chosen(told, predicate):
-                relations.append(Relation(name, (told,), str(predicate.degree), positive))
-            elif told.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (known := _surface(name, told.noun, positive)):
+            elif (
+                landmark.noun == "wall" and name in {*WALL_RELATIONS, "near", "far"} and _is_chosen(landmark, predicate)
+            ):
+                relations.append(Relation(name, (landmark,), str(predicate.degree), positive))
+            elif landmark.noun in SURROUNDINGS | {"wall"} | set(LEVELS) and (
+                known := _surface(name, landmark.noun, positive)
+            ):
                 properties += known
-                relations += _on_surface(told, positive)
-            elif told.noun in SURROUNDINGS:
+                relations += _on_surface(landmark, positive)
+            elif landmark.noun in SURROUNDINGS:
                 properties += _place(replace(predicate, positive=positive))
-                relations += _on_surface(told, positive)
+                relations += _on_surface(landmark, positive)
             else:
                 degree = str(predicate.degree)
-                if name == "with" and (upon := [one for one in told.properties if one.word in UPON]):
-                    told = replace(told, properties=tuple(one for one in told.properties if one not in upon))
-                    relations.append(Relation(UPON[upon[0].word], (told,), degree, positive, inverted=True))
+                if name == "with" and (upon := [one for one in landmark.properties if one.word in UPON]):
+                    landmark = replace(
+                        landmark, properties=tuple(one for one in landmark.properties if one not in upon)
+                    )
+                    relations.append(Relation(UPON[upon[0].word], (landmark,), degree, positive, inverted=True))
                     continue
-                relations.append(Relation(name, (told,), degree, positive, predicate.reversed))
+                relations.append(Relation(name, (landmark,), degree, positive, predicate.reversed))
     return tuple(properties), tuple(relations)
 
 
@@ -508,21 +526,21 @@ def _person(phrase: NounPhrase) -> Person | None:
     return None
 
 
-def _from_person(said: Predicate, phrase: NounPhrase, name: str, person: Person) -> list[Property]:
+def _from_person(predicate: Predicate, phrase: NounPhrase, name: str, person: Person) -> list[Property]:
     """Return the properties that stand for a relation to a person: *closest to you*, *in front of me*."""
     word = FROM_PERSON.get(name)
     sides = [word for word in phrase.head.casefold().split() if word in {"left", "right"}]
     sides += [one.word for one in phrase.adjectives if one.word in {"left", "right"}]
     if word is None and not sides:
         return []
-    rank = None if said.value is None else said.value.rank
-    degree = str(said.degree)
-    return [Property("position", side, degree, rank, said.positive, person) for side in sides or [word or "near"]]
+    rank = None if predicate.value is None else predicate.value.rank
+    degree = str(predicate.degree)
+    return [Property("position", side, degree, rank, predicate.positive, person) for side in sides or [word or "near"]]
 
 
-def _is_chosen(wall: Description, said: Predicate) -> bool:
+def _is_chosen(wall: Description, predicate: Predicate) -> bool:
     """Return whether one wall is meant (*the green wall*, *closest to the wall*) rather than any."""
-    return bool(wall.properties) or str(said.degree) != "plain"
+    return bool(wall.properties) or str(predicate.degree) != "plain"
 
 
 def _surface(relation: str, noun: str, positive: bool) -> list[Property]:
@@ -539,22 +557,22 @@ def _on_surface(surface: Description, positive: bool) -> list[Relation]:
     return [one for one in surface.relations if one.positive and not one.inverted] if positive else []
 
 
-def _place(said: Predicate) -> list[Property]:
+def _place(predicate: Predicate) -> list[Property]:
     """Return the properties of a predicate without a landmark: *on the left*, *red*, *second from the right*."""
-    if said.relation == "ordinal":
-        rank = said.value.rank if said.value is not None else 1
-        words = (said.part or "left").split()
-        return [Property("rank", words[-1], rank=rank, positive=said.positive)]
-    if said.value is not None:
-        return [replace(_property(said.value), positive=said.positive and said.value.positive)]
-    words = (said.part or "").split() if said.relation in {"part", "side", "end"} else [said.relation]
-    if said.relation in {"corner", "left", "right", "middle"} and said.part and said.part != "side":
-        words = [said.relation, *said.part.split()]
+    if predicate.relation == "ordinal":
+        rank = predicate.value.rank if predicate.value is not None else 1
+        words = (predicate.part or "left").split()
+        return [Property("rank", words[-1], rank=rank, positive=predicate.positive)]
+    if predicate.value is not None:
+        return [replace(_property(predicate.value), positive=predicate.positive and predicate.value.positive)]
+    words = (predicate.part or "").split() if predicate.relation in {"part", "side", "end"} else [predicate.relation]
+    if predicate.relation in {"corner", "left", "right", "middle"} and predicate.part and predicate.part != "side":
+        words = [predicate.relation, *predicate.part.split()]
     words = [part for word in words for part in (word.split("_") if word.startswith(("top_", "bottom_")) else [word])]
     known = {"in_front": "front", "behind": "back", "above": "high", "below": "low", "under": "low", "far": "far"}
-    degree, owner = str(said.degree), said.viewpoint.own if said.viewpoint is not None else None
+    degree, owner = str(predicate.degree), predicate.viewpoint.own if predicate.viewpoint is not None else None
     person = None if owner is None else _person(owner)
-    return [Property("position", known.get(word, word), degree, None, said.positive, person) for word in words]
+    return [Property("position", known.get(word, word), degree, None, predicate.positive, person) for word in words]
 
 
 def _viewers(sentence: Sentence) -> Iterator[Viewer]:
@@ -572,23 +590,27 @@ def _viewers(sentence: Sentence) -> Iterator[Viewer]:
                 yield Viewer("person", Description(""), person=person)
 
 
-def _viewer(said: Viewpoint) -> Viewer | None:
+def _viewer(viewpoint: Viewpoint) -> Viewer | None:
     """Return the viewer of a viewpoint; None for one that tells no direction."""
-    for phrase in (said.own, said.at):
+    for phrase in (viewpoint.own, viewpoint.at):
         if phrase is not None and (person := _person(phrase)) is not None:
             return Viewer("person", Description(""), person=person)
-    at = said.at if said.at is not None and _noun(said.at) not in SURROUNDINGS | {""} else None
-    facing = said.facing if said.facing is not None and _noun(said.facing) not in SURROUNDINGS | {""} else None
+    at = viewpoint.at if viewpoint.at is not None and _noun(viewpoint.at) not in SURROUNDINGS | {""} else None
+    facing = (
+        viewpoint.facing
+        if viewpoint.facing is not None and _noun(viewpoint.facing) not in SURROUNDINGS | {""}
+        else None
+    )
     if facing is not None:
-        if at is not None and not said.entering:
+        if at is not None and not viewpoint.entering:
             return Viewer("towards", _description(at, 1), _description(facing, 1))
         return Viewer("facing", _description(facing, 1))
-    if said.back is not None and _noun(said.back):
-        return Viewer("from", _description(said.back, 1))
+    if viewpoint.back is not None and _noun(viewpoint.back):
+        return Viewer("from", _description(viewpoint.back, 1))
     if at is not None:
-        return Viewer("entering" if said.entering else "from", _description(at, 1))
-    if said.own is not None and _noun(said.own):
-        return Viewer("own", _description(said.own, 1))
+        return Viewer("entering" if viewpoint.entering else "from", _description(at, 1))
+    if viewpoint.own is not None and _noun(viewpoint.own):
+        return Viewer("own", _description(viewpoint.own, 1))
     return None
 
 

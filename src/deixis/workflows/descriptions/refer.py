@@ -339,9 +339,9 @@ def _answer(
     from deixis.reasoning.grounding.reference.frames import frame_of
     from deixis.reasoning.grounding.reference.wording import paraphrase
 
-    said = paraphrase(query)
+    paraphrased = paraphrase(query)
     if not len(probabilities):
-        return Reference(text, None, 0.0, (), query.understood, said, notes=("the scene has no objects",))
+        return Reference(text, None, 0.0, (), query.understood, paraphrased, notes=("the scene has no objects",))
     order = np.argsort(-probabilities, kind="stable")
     listed = [(scene.ids[i], float(probabilities[i])) for i in order[1:] if probabilities[i] >= MIN_LISTED]
     frame: Frame | None = frame_of(query, scene.room, shipped_model())
@@ -351,7 +351,7 @@ def _answer(
         float(probabilities[order[0]]),
         tuple(listed),
         query.understood,
-        said,
+        paraphrased,
         frame,
         question,
         turns,

@@ -67,10 +67,12 @@ def remember_sentence(board: Blackboard, text: str, scene: Scene, target: str, b
     changes: list[Add] = []
     for word in phrase.words:
         for one, row in zip(examples, rows, strict=True):
-            said = json.dumps({"word": word, "label": one.label, "measures": row, "text": text})
+            entry = json.dumps({"word": word, "label": one.label, "measures": row, "text": text})
             predicate = CALLED if one.positive else NOT_CALLED
             id = board.new_id("attribute")
-            changes.append(Add(episodic(id, (f"{sentence}-{len(changes)}", predicate, said), start=now, source=source)))
+            changes.append(
+                Add(episodic(id, (f"{sentence}-{len(changes)}", predicate, entry), start=now, source=source))
+            )
     board.write(*changes, by=by)
     return sentence
 
@@ -91,10 +93,10 @@ def remembered_attributes(board: Blackboard) -> dict[str, Attribute]:
     found: dict[str, list[Example]] = {}
     for predicate, positive in ((CALLED, True), (NOT_CALLED, False)):
         for fluent in board.now(Pattern(predicate=predicate)):
-            said = json.loads(fluent.statement.object or "{}")
-            measures = np.array([np.nan if value is None else value for value in said["measures"]], dtype=np.float64)
+            entry = json.loads(fluent.statement.object or "{}")
+            measures = np.array([np.nan if value is None else value for value in entry["measures"]], dtype=np.float64)
             if len(measures) == len(MEASURES):
-                found.setdefault(said["word"], []).append(Example(measures, said["label"], positive))
+                found.setdefault(entry["word"], []).append(Example(measures, entry["label"], positive))
     return {word: Attribute(word, tuple(examples)) for word, examples in found.items()}
 
 

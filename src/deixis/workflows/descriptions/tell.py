@@ -115,20 +115,20 @@ def tell_layout(script: Script, all_facts: bool, deadline: Deadline) -> Telling:
     """
     stated = _stated(script)
     left_out, complete = ([], True) if all_facts else _implied(script, stated, deadline)
-    said = _without_numbers([fact for number, fact in enumerate(stated) if number not in set(left_out)])
+    facts = _without_numbers([fact for number, fact in enumerate(stated) if number not in set(left_out)])
     surface = (script.reading.surface if script.reading is not None else None) or "table"
-    names = list(dict.fromkeys(name for fact in said for name in objects_of(fact.content)))
-    plan = Plan(said, designations(names), surface.replace("_", " "), script.ontology)
+    names = list(dict.fromkeys(name for fact in facts for name in objects_of(fact.content)))
+    plan = Plan(facts, designations(names), surface.replace("_", " "), script.ontology)
     sentences = plan.readable(deadline)
     notes = [] if complete else ["time limit reached: more facts may follow from others"]
     notes += [] if plan.read_again else [NOT_READ]
     return Telling(
         script.file,
         sentences,
-        tuple(said),
+        tuple(facts),
         tuple(ToldObject(name, plan.words(name)) for name in names),
         tuple(fact for number in left_out if isinstance(fact := stated[number].content, Fact)),
-        tuple(said[number].content for number in sorted(plan.misread)),
+        tuple(facts[number].content for number in sorted(plan.misread)),
         tuple(notes),
     )
 

@@ -67,8 +67,8 @@ def tell_scene(scene: Scene, all_facts: bool, deadline: Deadline) -> Telling:
     attributes = _attributes(scene, ontology, deadline)
     order = list(reading_order(attributes))
     words = _designations(scene, attributes, order)
-    said = _descriptions(attributes, order, len(order) if all_facts else 1)
-    plan, sentences = _said(scene, attributes, words, order, said, ontology, deadline)
+    descriptions = _descriptions(attributes, order, len(order) if all_facts else 1)
+    plan, sentences = _sentences(scene, attributes, words, order, descriptions, ontology, deadline)
     found: dict[str, bool | None] = dict.fromkeys(scene.ids)
     notes: list[str] = []
     if len(order) > MAX_CHECKED:
@@ -81,12 +81,12 @@ def tell_scene(scene: Scene, all_facts: bool, deadline: Deadline) -> Telling:
             if not lost or attempt == MAX_MORE or deadline.left < MIN_TIME:
                 break
             for i in lost:
-                marks = [mark for mark in order if mark != i and mark not in {m for _, m in said[i].relations}]
-                count = len(said[i].relations) + 1
-                more = relate(replace(said[i], rivals=rivals[i]), attributes, marks, most=count)
+                marks = [mark for mark in order if mark != i and mark not in {m for _, m in descriptions[i].relations}]
+                count = len(descriptions[i].relations) + 1
+                more = relate(replace(descriptions[i], rivals=rivals[i]), attributes, marks, most=count)
                 same = len(more.relations) < count  # each relation fits the rivals as well: say the nearest one
-                said[i] = relate(said[i], attributes, marks, least=count) if same else more
-            plan, sentences = _said(scene, attributes, words, order, said, ontology, deadline)
+                descriptions[i] = relate(descriptions[i], attributes, marks, least=count) if same else more
+            plan, sentences = _sentences(scene, attributes, words, order, descriptions, ontology, deadline)
     everything = range(len(order))
     unique = [i for i in everything if not single_out(i, everything, attributes, ()).rivals]
     objects = [
@@ -151,20 +151,20 @@ def _designations(scene: Scene, attributes: Attributes, order: Sequence[int]) ->
 
 def _descriptions(attributes: Attributes, order: Sequence[int], least: int) -> dict[int, Description]:
     """Return what is said of each object: relations to earlier objects that fit no later object."""
-    said = {}
+    descriptions = {}
     for place, i in enumerate(order):
         plain = replace(single_out(i, order[place:], attributes, ()), colour=None, size=None)
         rivals = tuple(o for o in order[place + 1 :] if attributes.share(attributes.nouns, i, o))
-        said[i] = relate(replace(plain, rivals=rivals), attributes, order[:place], min(place, least))
-    return said
+        descriptions[i] = relate(replace(plain, rivals=rivals), attributes, order[:place], min(place, least))
+    return descriptions
 
 
-def _said(
+def _sentences(
     scene: Scene,
     attributes: Attributes,
     words: dict[str, Designation],
     order: Sequence[int],
-    said: dict[int, Description],
+    descriptions: dict[int, Description],
     ontology: Ontology,
     deadline: Deadline,
 ) -> tuple[Plan, tuple[ToldSentence, ...]]:
@@ -176,7 +176,7 @@ def _said(
         if rivals and attributes.sizes[first] > attributes.sizes[rivals].max():
             stated.append(Claim("largest", (scene.ids[first],)))
     for i in order:
-        for word, mark in said[i].relations:
+        for word, mark in descriptions[i].relations:
             stated.append(Fact(scene.ids[i], (ontology.relations[word],), scene.ids[mark]))
     facts = [StatedFact(content, 0, (0, 0)) for content in stated]
     names = {name: "_".join([*d.words.split(), *([str(d.number)] if d.number else [])]) for name, d in words.items()}
@@ -250,16 +250,18 @@ def _candidates(attributes: Attributes, target: int, unique: Sequence[int]) -> I
         yield _phrase(replace(chosen, relations=relations), attributes)
 
 
-def _phrase(said: Description, attributes: Attributes) -> str:
+def _phrase(description: Description, attributes: Attributes) -> str:
     """Return a description as a noun phrase."""
-    words = ["the", *(word for word in (said.size, said.colour) if word), said.noun or UNKNOWN]
-    related = [f"{_relation_words(word)} {_name(mark, attributes)}" for word, mark in said.relations]
+    words = ["the", *(word for word in (description.size, description.colour) if word), description.noun or UNKNOWN]
+    related = [f"{_relation_words(word)} {_name(mark, attributes)}" for word, mark in description.relations]
     return f"{' '.join(words)} {' and '.join(related)}".strip()
 
 
 def _name(mark: int, attributes: Attributes) -> str:
-    said = single_out(mark, range(len(attributes.sizes)), attributes, ())
-    return " ".join(["the", *(word for word in (said.size, said.colour) if word), said.noun or UNKNOWN])
+    description = single_out(mark, range(len(attributes.sizes)), attributes, ())
+    return " ".join(
+        ["the", *(word for word in (description.size, description.colour) if word), description.noun or UNKNOWN]
+    )
 
 
 def _relation_words(word: str) -> str:

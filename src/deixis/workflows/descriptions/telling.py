@@ -46,6 +46,15 @@ class Telling(Answer):
 
     ``facts`` are the facts that the sentences state; a sentence holds their indices. ``left_out`` are facts that
     follow from them, ``misread`` facts that the text states but that :func:`deixis.read_script` does not read in it.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> telling = deixis.tell(deixis.read_script(text="fork left of plate; napkin on plate"))
+    >>> telling.text
+    'The fork is left of the plate. The napkin is on the plate.'
+    >>> len(telling.sentences), [str(fact.content) for fact in telling.facts]
+    (2, ['left(fork, plate)', 'on(napkin, plate)'])
     """
 
     file: str

@@ -60,6 +60,22 @@ def ask(
     ------
     DeixisError
         For bad input, as :func:`deixis.ground`.
+
+    Examples
+    --------
+    >>> import io
+    >>> import deixis
+    >>> from deixis.workflows.grounding.dialogue import Oracle
+    >>> script = deixis.read_script(text="cup left of plate")
+    >>> scene = deixis.read_scene({"objects": [
+    ...     {"id": "o1", "min": [0.0, 0], "max": [0.1, 0.1]}, {"id": "o2", "min": [0.2, 0], "max": [0.3, 0.1]},
+    ...     {"id": "o3", "min": [0.4, 0], "max": [0.5, 0.1]}]})
+    >>> questions = io.StringIO()
+    >>> asked = ask(script, scene, lambda situation: Oracle({"cup": "o1", "plate": "o3"}, questions), questions)
+    >>> print(questions.getvalue().splitlines()[0])
+    1. Which one is the plate?   [1.32 bits]
+    >>> [(name, match.perceived) for name, match in asked.grounding.matches.items()]
+    [('cup', 'o1'), ('plate', 'o3')]
     """
     found = ground(script, scene, ask=Dialogue(source, out), meaning=meaning, time_limit=time_limit)
     return Asked(found, found.exchanges or ())

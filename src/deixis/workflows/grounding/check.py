@@ -39,7 +39,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Check(Answer):
-    """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for."""
+    """A table against a layout: the verdicts, and the same as a SHACL validation report, made when it is asked for.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> found = deixis.check(example("formal_dinner.layout"), example("place_setting.scene.json"))
+    >>> found.table.well, found.summary()
+    (True, "of 'formal_dinner': nothing wrong, 12 undetermined")
+    >>> found.to_text().splitlines()[-1]
+    'correct     0 of 12'
+    """
 
     layout: LayoutConcept
     table: TableCheck
@@ -100,6 +111,18 @@ def check(
     ------
     DeixisError
         If a file is invalid, or there is no layout of that name.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> found = deixis.check(example("formal_dinner.layout"), example("second_table.scene.json"))
+    >>> found
+    <Check of 'formal_dinner': not as described, 9 correct, 2 misplaced, 1 missing, 1 extra, 2 violated facts>
+    >>> [(one.perceived, one.reason) for one in found.table.extra]
+    [('p1', 'one napkin too many')]
+    >>> [one.role for one in found.table.roles if one.verdict == "missing"]
+    ['water_glass']
     """
     from deixis.learning.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table
@@ -110,8 +133,8 @@ def check(
     if isinstance(layout, Script) or is_script_file(layout):
         concept = layout_concept(as_script(layout, known), "script")
     elif knowledge is None:
-        told = f"layout must be a script or its file (.layout) where there is no memory, got the name '{layout}'"
-        raise SettingError(told)
+        message = f"layout must be a script or its file (.layout) where there is no memory, got the name '{layout}'"
+        raise SettingError(message)
     else:
         concept = knowledge.layout(str(layout))
     scene, graph = as_scene(scene), concept.graph(known.relations)

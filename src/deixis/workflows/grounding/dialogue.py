@@ -256,8 +256,8 @@ class Terminal:
             if found is not None:
                 return found
             near = nearest(line.strip(), allowed)
-            said = f"   '{shortened(line.strip())}' is not an answer"
-            print(visible_line(said + (f"; did you mean '{near}'?" if near else ".")), file=self.out)
+            message = f"   '{shortened(line.strip())}' is not an answer"
+            print(visible_line(message + (f"; did you mean '{near}'?" if near else ".")), file=self.out)
 
 
 def hint(question: Question, situation: Situation) -> str:

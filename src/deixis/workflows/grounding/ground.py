@@ -396,7 +396,7 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
             found = found.noting(notes)
         else:
             viewpoints = side.viewpoints.viewpoints if side.viewpoints else ()
-            found = replace(found.noting(side.notes + side.doubt), viewpoints=viewpoints)
+            found = replace(found.noting(side.notes + side.viewpoint_notes), viewpoints=viewpoints)
     else:
         select = Select(request.select)
         with stage("grounding"):

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.read import read_script
+from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
-from deixis.reasoning.comparison.likeness import Comparison, Described, Likeness, Seen, seen
+from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, Likeness, compared_scene
 from deixis.reasoning.comparison.retrieval import Progress, rank_layouts, rank_scenes
 from deixis.reasoning.grounding.evidence.labels import category_of
 from deixis.reasoning.grounding.evidence.meaning import Meaning
@@ -85,6 +85,14 @@ class Retrieval(Answer):
     """Layouts or scenes that are similar to a query, the most similar first.
 
     ``among`` is the number of those that were compared, ``least`` the similarity from which one counts.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import EXAMPLES, example
+    >>> found = deixis.retrieve(deixis.read_scene(example("place_setting.scene.json")), EXAMPLES, top=3)
+    >>> found.among, [each.name for each in found.found]
+    (8, ['formal_dinner.layout', 'script1.layout', 'script2.layout'])
     """
 
     found: tuple[Retrieved, ...]
@@ -142,11 +150,22 @@ def retrieve(
     ------
     DeixisError
         If nothing is known, or a file cannot be read.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import EXAMPLES, example
+    >>> found = deixis.retrieve(deixis.read_scene(example("place_setting.scene.json")), EXAMPLES, top=3)
+    >>> print(found.to_text())
+                          similarity  objects  relations
+    formal_dinner.layout       1.000    1.000      1.000
+    script1.layout             1.000    1.000      1.000
+    script2.layout             0.854    0.889      0.786
     """
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
     if isinstance(query, str | Path):
-        query = read_script(str(query)) if _is_script_file(str(query)) else read_scene(query)
+        query = read_script_file(str(query)) if _is_script_file(str(query)) else read_scene(query)
     if isinstance(query, Script):
         layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
         ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline, progress)
@@ -164,7 +183,7 @@ def _is_script_file(name: str) -> bool:
     return name.endswith(".layout") or (os.sep in name and not name.endswith(".json"))
 
 
-def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) -> Retrieved:
+def _retrieved(name: str, likeness: Likeness, layout: Described, scene: ComparedScene) -> Retrieved:
     pairs = zip(layout.graph.nodes, likeness.assignment.tolist(), strict=True)
     return Retrieved(
         name,
@@ -176,7 +195,7 @@ def _retrieved(name: str, likeness: Likeness, layout: Described, scene: Seen) ->
     )
 
 
-def _seen(name: str, scene: Scene) -> Seen:
+def _seen(name: str, scene: Scene) -> ComparedScene:
     """Return a scene ready for comparison; its kinds come from labels of sufficient confidence, or their categories."""
     ontology = default_ontology()
     kinds: list[str | None] = []
@@ -184,13 +203,15 @@ def _seen(name: str, scene: Scene) -> Seen:
         label = thing.label if thing.confidence >= MIN_LABEL_CONFIDENCE else None
         kind = ontology.of_name(label)[0] if label else None
         kinds.append(kind.iri if kind else category_of(label) if label else None)
-    return seen(name, replace(scene.relations(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m")
+    return compared_scene(
+        name, replace(scene.relations(ontology.relations), kinds=tuple(kinds)), metric=scene.unit == "m"
+    )
 
 
 def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, Described]:
     """Return the scripts of a folder and the layouts in memory; a name learned several times is listed by lesson."""
     paths = _files(among, "*.layout", "layout scripts") if among is not None else []
-    known = {path.name: Described(path.name, read_script(str(path)).graph()) for path in paths}
+    known = {path.name: Described(path.name, read_script_file(str(path)).graph()) for path in paths}
     layouts = memory.layouts() if memory is not None else ()
     names = [layout.name for layout in layouts]
     for layout in layouts:
@@ -201,7 +222,7 @@ def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, De
 
 def _known_scenes(
     memory: Knowledge | None, among: Path | None, hide_labels: bool, left_out: LeftOut | None
-) -> dict[str, Seen]:
+) -> dict[str, ComparedScene]:
     """Return the scenes of a folder and in memory; a scene in memory has the name of the first lesson that has it."""
     paths = _files(among, "*.scene.json", "scenes") if among is not None else []
     known = {path.name: read_scene(path) for path in paths}

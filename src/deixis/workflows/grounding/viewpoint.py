@@ -41,7 +41,7 @@ class ViewpointScene:
     evidence: Evidence | None = None  # as seen from this side, where it was worked out already
 
     @property
-    def doubt(self) -> tuple[str, ...]:
+    def viewpoint_notes(self) -> tuple[str, ...]:
         """Note on probabilities that hold only as seen from the most likely side; empty where the side is certain."""
         if self.share >= DECIDED:
             return ()

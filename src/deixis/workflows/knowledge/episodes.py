@@ -159,10 +159,14 @@ def fluent_to_dict(fluent: EpisodicFluent) -> dict[str, Any]:
     dict
         Its id, statement, times as in a file of fluents, certainty and source.
     """
-    said, source = fluent.statement, fluent.source
+    statement, source = fluent.statement, fluent.source
     return {
         "id": fluent.id,
-        "statement": [said.subject, said.predicate, *([] if said.object is None else [said.object])],
+        "statement": [
+            statement.subject,
+            statement.predicate,
+            *([] if statement.object is None else [statement.object]),
+        ],
         "start": bounds_to_json(fluent.start),
         "finish": bounds_to_json(fluent.finish),
         "certainty": fluent.certainty,
@@ -308,13 +312,13 @@ def _logical(fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: De
 
     triples = set(packaged()[GraphName.ONTOLOGY])
     for each in fluents:
-        said = each.statement
-        if said.predicate == "isA" and said.object is not None:
-            kind, _ = ontology.of_name(said.object)
+        statement = each.statement
+        if statement.predicate == "isA" and statement.object is not None:
+            kind, _ = ontology.of_name(statement.object)
             if kind is not None:
-                triples.add(ox.Triple(thing_iri(said.subject), TYPE, ox.NamedNode(kind.iri)))
-        elif said.object is not None and said.predicate in ontology.relations:
-            triples.add(statement_triple(said))
+                triples.add(ox.Triple(thing_iri(statement.subject), TYPE, ox.NamedNode(kind.iri)))
+        elif statement.object is not None and statement.predicate in ontology.relations:
+            triples.add(statement_triple(statement))
     text = (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
     if not entail(text, LogicEngine.RL, max(0.1, deadline.left)).consistent:
         kinds = "; ".join(sorted(str(each.statement) for each in fluents if each.statement.predicate == "isA"))
@@ -350,9 +354,9 @@ def known_classes(board: Blackboard, ontology: Ontology, under: str | None = Non
     broader = {kind.name: tuple(sorted(names[iri] for iri in kind.broader if iri in names)) for kind in ontology.kinds}
     members: dict[str, list[str]] = {}
     for each in board.now(Pattern(predicate="isA")):
-        said = str(each.statement.object)
-        kind, _ = ontology.of_name(said)
-        name = said if kind is None else kind.name
+        kind_name = str(each.statement.object)
+        kind, _ = ontology.of_name(kind_name)
+        name = kind_name if kind is None else kind.name
         broader.setdefault(name, ())
         members.setdefault(name, []).append(each.statement.subject)
     if under is not None:
@@ -430,12 +434,12 @@ def _box(text: str) -> tuple[float, ...] | None:
         return None
 
 
-def _understood(said: Sequence[str], session: _Learner) -> Script:
+def _understood(sentences: Sequence[str], session: _Learner) -> Script:
     """Return the script that words state, in the layout language or else in English."""
     from deixis.grammar.errors import ScriptError
     from deixis.workflows.layouts.read import read_script
 
-    text = "\n".join(said)
+    text = "\n".join(sentences)
     try:
         return read_script(text=text, ontology=session.ontology)
     except ScriptError:

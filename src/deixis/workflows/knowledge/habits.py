@@ -19,7 +19,14 @@ HABITS_TIME_LIMIT = 10.0
 
 @dataclass(frozen=True, repr=False)
 class Placements(Answer):
-    """Rules about where a person puts things, and the places of further things."""
+    """Rules about where a person puts things, and the places of further things.
+
+    Examples
+    --------
+    >>> found = habits({"sneakers": "rack", "boots": "rack", "sweater": "chair"}, ["sandals"])
+    >>> found, found.places, found.things[0].place
+    (<Placements 1 rule, 1 thing placed>, ('rack', 'chair'), 'rack')
+    """
 
     places: tuple[str, ...]
     rules: tuple[Rule, ...]

@@ -215,22 +215,22 @@ class _Remembering:
         relations = {relation.name for relation in ontology.relations.values()}
         related: set[str] = set()
         for each in board.holding():
-            said = each.statement
-            if said.predicate == EXPECTED:
-                self.expected[said.subject] = each.source.by
-            if said.predicate == SAME_AS and said.object is not None:
-                self.said_of[said.object] |= self.said_of[said.subject]
-            elif said.object is not None and said.predicate not in (AT, SAID, EXPECTED):
-                self.said_of[said.subject].add(said.object)
-            if said.predicate == IS_A and said.object is not None:
-                self.names[said.subject].append((each.start.lower, said.object))
-            if said.predicate in (AT, IS_A) or said.predicate in relations:
-                self.things.add(said.subject)
-                related.add(said.predicate)
-                if said.subject not in self.expected:
-                    self.predicates.add(said.predicate)
-            if said.predicate in relations and said.object is not None:
-                self.things.add(said.object)
+            statement = each.statement
+            if statement.predicate == EXPECTED:
+                self.expected[statement.subject] = each.source.by
+            if statement.predicate == SAME_AS and statement.object is not None:
+                self.said_of[statement.object] |= self.said_of[statement.subject]
+            elif statement.object is not None and statement.predicate not in (AT, SAID, EXPECTED):
+                self.said_of[statement.subject].add(statement.object)
+            if statement.predicate == IS_A and statement.object is not None:
+                self.names[statement.subject].append((each.start.lower, statement.object))
+            if statement.predicate in (AT, IS_A) or statement.predicate in relations:
+                self.things.add(statement.subject)
+                related.add(statement.predicate)
+                if statement.subject not in self.expected:
+                    self.predicates.add(statement.predicate)
+            if statement.predicate in relations and statement.object is not None:
+                self.things.add(statement.object)
         self.relations = frozenset(related & relations)
         self.places = frozenset({AT} if AT in self.predicates else self.predicates & relations)
 
@@ -387,9 +387,9 @@ class _Remembering:
         if asked.kind == "happened":
             return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
         if asked.kind == "said":
-            said = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
-            sentences = replace(said, predicates=frozenset({SAID}))
-            return sentences if sentences.run(self.board) else said
+            statement = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
+            sentences = replace(statement, predicates=frozenset({SAID}))
+            return sentences if sentences.run(self.board) else statement
         origins = frozenset({Origin.SHOWN, Origin.SAID} if asked.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, None, None, origins, by, Edge.STARTS, start, end, pick)
 
@@ -430,8 +430,8 @@ class _Remembering:
             return Recall(asked, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
         made = Recall(asked, self._named(found), search, "", None, self.asked, self.board.origin)
         if otherwise:
-            told = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
-            return replace(made, answer=f"No: {told}.")
+            sentences = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
+            return replace(made, answer=f"No: {sentences}.")
         return replace(made, answer=_sentence(made))
 
     def _named(self, found: Iterable[EpisodicFluent]) -> tuple[Recalled, ...]:
@@ -533,8 +533,8 @@ def _sentence(found: Recall) -> str:
     kind = asked.kind
     if kind == "whether_there" and all(fact.fluent.statement.predicate == EXPECTED for fact in facts):
         sure = max(fact.fluent.certainty for fact in facts)
-        said = "; ".join(_distinct(_fact(found, fact) for fact in facts))
-        return f"Probably{'' if sure >= 0.5 else ' not'}: {said}."
+        statement = "; ".join(_distinct(_fact(found, fact) for fact in facts))
+        return f"Probably{'' if sure >= 0.5 else ' not'}: {statement}."
     if kind in ("whether", "whether_there"):
         return f"Yes: {'; '.join(_fact(found, fact) for fact in facts)}."
     if kind == "how_many":
@@ -543,16 +543,16 @@ def _sentence(found: Recall) -> str:
     if kind in ("gone", "come", "moved", "when_did", "whether_did"):
         words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[asked.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
-        told = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
+        sentences = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
-        return f"Yes: {'; '.join(told)}." if kind == "whether_did" else _capital("; ".join(told))
+        return f"Yes: {'; '.join(sentences)}." if kind == "whether_did" else _capital("; ".join(sentences))
     if kind in ("shown", "who"):
-        told = _distinct(
+        sentences = _distinct(
             f"{fact.fluent.source.by} {'showed' if fact.fluent.source.origin is Origin.SHOWN else 'spoke of'} the "
             f"{fact.name} {_at(found, fact.fluent.start.lower, fact.fluent.start.upper)}"
             for fact in facts
         )
-        return _capital("; ".join(told))
+        return _capital("; ".join(sentences))
     return _capital("; ".join(_distinct(_fact(found, fact) for fact in facts)))
 
 
@@ -566,28 +566,28 @@ def _capital(text: str) -> str:
 
 def _fact(found: Recall, fact: Recalled) -> str:
     """Return a fluent in words: *the fork was on the plate from 12:00:01 to 12:03:05 (seen)*."""
-    said, fluent = fact.fluent.statement, fact.fluent
-    words = (said.object or "").rstrip(".!")
+    statement, fluent = fact.fluent.statement, fact.fluent
+    words = (statement.object or "").rstrip(".!")
     verb = "is" if fluent.is_open or fluent.finish.upper > found.asked else "was"
-    if said.predicate == SAID:
+    if statement.predicate == SAID:
         return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
-    elif said.predicate == EXPECTED:
+    elif statement.predicate == EXPECTED:
         told = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
         if not fluent.is_open:
             return f"{told}; expected to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
         return f"{told}; the {fact.name} was not seen yet, probability {fluent.certainty:.2g}"
-    elif said.predicate in (CONTRADICTED, SAME_AS):
+    elif statement.predicate in (CONTRADICTED, SAME_AS):
         then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
-        if said.predicate == CONTRADICTED:
-            return f"the {fact.name} was not there {then}: {said.object}{_source(fact)}"
-        return f"the {fact.name} was seen {then}: {said.object}{_source(fact)}"
-    elif said.predicate == AT:
+        if statement.predicate == CONTRADICTED:
+            return f"the {fact.name} was not there {then}: {statement.object}{_source(fact)}"
+        return f"the {fact.name} was seen {then}: {statement.object}{_source(fact)}"
+    elif statement.predicate == AT:
         text = f"the {fact.name} {verb} there"
-    elif said.predicate == IS_A:
-        text = f"{said.subject} {verb} a {fact.other}"
+    elif statement.predicate == IS_A:
+        text = f"{statement.subject} {verb} a {fact.other}"
     else:
-        relation = default_ontology().relations.get(said.predicate)
-        words = relation.phrase if relation is not None else said.predicate.replace("_", " ")
+        relation = default_ontology().relations.get(statement.predicate)
+        words = relation.phrase if relation is not None else statement.predicate.replace("_", " ")
         other = "" if fact.other is None else f" the {fact.other}"
         text = f"the {fact.name} {verb} {words}{other}"
     start = "" if math.isinf(fluent.start.lower) else f" from {_time(found, fluent.start.lower, fluent.start.upper)}"

@@ -325,15 +325,18 @@ class _Chosen:
 
     def holds_of_fluent(self, fluent: EpisodicFluent, moment: Callable[[float], datetime]) -> bool:
         """Return whether what a person said or showed is taken back; what was seen or inferred stays."""
-        wanted, said = self.all, fluent.statement
+        wanted, statement = self.all, fluent.statement
         if fluent.source.origin not in (Origin.SAID, Origin.SHOWN) or wanted.table is not None:
             return False
         if wanted.lesson is not None or wanted.view is not None:
             return False
         start = fluent.start.lower
         return (
-            (self.sentence is None or plain(_words(said)) == self.sentence)
-            and (self.label is None or (said.predicate in NAMED and category_name(said.object or "?") == self.label))
+            (self.sentence is None or plain(_words(statement)) == self.sentence)
+            and (
+                self.label is None
+                or (statement.predicate in NAMED and category_name(statement.object or "?") == self.label)
+            )
             and (wanted.teacher is None or wanted.teacher == fluent.source.by)
             and ((wanted.since is None and wanted.until is None) or (isfinite(start) and self._is_then(moment(start))))
         )
@@ -471,14 +474,16 @@ def _write(
 
     gone = [view for view, turns in after.items() if not turns]
     now = {view: prevailing(turns) for view, turns in after.items() if turns}
-    retold = {view: turn for view, turn in now.items() if turn != prevailing(before[view])}
+    changed = {view: turn for view, turn in now.items() if turn != prevailing(before[view])}
     links: dict[str, list[Link]] = {view: [] for view in after}
     owners: dict[str, str | None] = {}
     for view, turn in now.items():
-        told = () if turn.is_by_hand else dict.fromkeys(each.lesson for each in after[view] if each.lesson is not None)
-        links[view] = [Link(lesson, view, turn.category) for lesson in told]
-        owners[view] = turn.lesson or next(reversed(tuple(told)), None)
-    batch = batch_without(memory, gone, retold)
+        teaching_lessons = (
+            () if turn.is_by_hand else dict.fromkeys(each.lesson for each in after[view] if each.lesson is not None)
+        )
+        links[view] = [Link(lesson, view, turn.category) for lesson in teaching_lessons]
+        owners[view] = turn.lesson or next(reversed(tuple(teaching_lessons)), None)
+    batch = batch_without(memory, gone, changed)
     turns = {view: written(after[view]) for view in now}
     change = memory.writing(replace(batch, lessons=owners, teachings=turns))
     if knowledge.exists():

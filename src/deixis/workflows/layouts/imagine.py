@@ -86,7 +86,17 @@ class NoTable:
 
 @dataclass(frozen=True, repr=False)
 class Imagination(Answer):
-    """Example tables of a script, or why it has no table; neither where the time limit was reached before."""
+    """Example tables of a script, or why it has no table; neither where the time limit was reached before.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.imagine(deixis.read_script(text="fork left of plate; cup right of plate"), seed=1)
+    >>> found
+    <Imagination of <text>: 1 example table>
+    >>> [table.scene.ids for table in found.tables]
+    [('o1', 'o2', 'o3')]
+    """
 
     script: Script
     tables: tuple[ImaginedTable, ...] = ()

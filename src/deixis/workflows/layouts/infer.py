@@ -30,9 +30,10 @@ MAX_STEPS_LISTED = 12
 
 @dataclass(frozen=True, slots=True)
 class Inferred:
-    """A fact that follows, by what rule last, and from what: how many stated facts, and their lines unless too many.
+    """A fact that follows, the rule of its last step, and the stated facts that it follows from.
 
-    0 facts: which they are was not found out within the time limit.
+    ``steps`` is the number of these facts, 0 where the time limit was reached before they were found; ``lines`` are
+    their lines in the script, empty for a long derivation.
     """
 
     fact: Fact
@@ -47,6 +48,16 @@ class Inference(Answer):
 
     Where the time limit struck, ``decided`` is False if it is not known whether there is a conflict, and ``complete``
     if further facts may follow.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.infer(deixis.read_script(text="fork left of plate; plate left of knife"))
+    >>> found.consistent, found.complete
+    (True, True)
+    >>> first = found.inferred()[0]
+    >>> str(first.fact), str(first.rule), first.lines
+    ('left(fork, knife)', 'transitivity', (1,))
     """
 
     stated: tuple[Fact, ...]
@@ -263,6 +274,17 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     ------
     ScriptError
         If the script is invalid.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.infer(deixis.read_script(text="fork left of plate; plate left of knife"))
+    >>> found
+    <Inference 2 stated facts: consistent>
+    >>> [str(each.fact) for each in found.inferred() if each.steps > 1]
+    ['left(fork, knife)', 'right(knife, fork)']
+    >>> deixis.infer(deixis.read_script(text="fork left of plate; plate left of fork")).consistent
+    False
     """
     return inference_of(as_script(script), time_limit)
 

@@ -66,7 +66,15 @@ class Finding:
 
 @dataclass(frozen=True, repr=False)
 class Lint(Answer):
-    """Warnings about a script; ``complete`` is False if the time limit was reached before all were searched."""
+    """Warnings about a script; ``complete`` is False if the time limit was reached before all were searched.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> found = deixis.lint(deixis.read_script(text="fork left of plate; fork left of plate"))
+    >>> [(finding.code, finding.message) for finding in found.findings]
+    [('F001', 'left(fork, plate) was stated before, in <text>:1:1')]
+    """
 
     file: str
     findings: tuple[Finding, ...]
@@ -335,8 +343,8 @@ def _inferred_findings(script: Script, deadline: Deadline) -> tuple[list[Finding
             return [], False
         facts = conflict.facts
         where = ", ".join(str(_place(fact, script)) for fact in facts[:-1])
-        said = f"{conflict.reason} (with {where})" if where else conflict.reason
-        return [Finding("F003", _place(facts[-1], script), said)], True
+        message = f"{conflict.reason} (with {where})" if where else conflict.reason
+        return [Finding("F003", _place(facts[-1], script), message)], True
     connecting = _connecting(script)
     groups = list(_groups(script.objects, connecting))
     found = []

@@ -11,8 +11,7 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptFileError
 from deixis.grammar.parser import parse_script
-from deixis.grammar.read import is_english
-from deixis.grammar.read import read_script as read_script_file
+from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
 
@@ -60,6 +59,15 @@ def read_script(
         If the deadline passes.
     TypeError
         Unless exactly one of ``path`` and ``text`` is given.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> script = deixis.read_script(text="fork left of plate; napkin on plate")
+    >>> [str(fact) for fact in script.facts]
+    ['left(fork, plate)', 'on(napkin, plate)']
+    >>> deixis.read_script(text="The fork is left of the plate.", english=True).to_dict()["facts"][0]["subject"]
+    'fork'
     """
     if (path is None) == (text is None):
         raise TypeError("read_script takes a path or text=, and one of them only")

@@ -71,12 +71,14 @@ def sequence_of_episodes(board: Blackboard, start: float | None = None, end: flo
     return StepSequence.of(fluents)
 
 
-def ground(told: str | Activity, source: str | Path | StepSequence, time_limit: float = 10.0) -> ActivityGrounding:
+def ground(
+    activity_text: str | Activity, source: str | Path | StepSequence, time_limit: float = 10.0
+) -> ActivityGrounding:
     """Match an activity with the fluents of a sequence.
 
     Parameters
     ----------
-    told
+    activity_text
         The activity in words, as in ``first the plate, then the forks``, or a learned one.
     source
         A sequence, or a file of fluents.
@@ -89,7 +91,7 @@ def ground(told: str | Activity, source: str | Path | StepSequence, time_limit: 
         Which fluent each step is, what is missing, and what came in another order.
     """
     seen = sequence_of(source)
-    activity = told if isinstance(told, Activity) else told_activity(told, seen)
+    activity = activity_text if isinstance(activity_text, Activity) else told_activity(activity_text, seen)
     return ground_activity(activity, seen, Deadline.after(time_limit))
 
 

@@ -37,7 +37,7 @@ LAST_SHARE = 0.1
 
 
 @dataclass(frozen=True)
-class Wish:
+class SolveRequest:
     """Requests about each network besides the verdict.
 
     ``conflict`` asks for the reason of an inconsistency.
@@ -127,12 +127,15 @@ def calculi_named(text: str) -> tuple[tuple[Calculus, ...], tuple[str, ...]]:
     return calculi, ()
 
 
-Told = Callable[["SolvedNetwork"], None]
+OnSolved = Callable[["SolvedNetwork"], None]
 """Called with a network as soon as its verdict is known, before it is clear why."""
 
 
 def solve_text(
-    text: NetworkText, wish: Wish, progress: Progress | None = None, told: Told = lambda solved: None
+    text: NetworkText,
+    request: SolveRequest,
+    progress: Progress | None = None,
+    on_solved: OnSolved = lambda solved: None,
 ) -> SolvedNetwork:
     """Solve one network of a file.
 
@@ -140,11 +143,11 @@ def solve_text(
     ----------
     text
         The network with its place in the file.
-    wish
+    request
         What to compute, and the time limit.
     progress
         Called during the search.
-    told
+    on_solved
         Called with what is known so far, once the verdict is.
 
     Returns
@@ -158,16 +161,18 @@ def solve_text(
         If the network does not fit in memory.
     """
     solving = _solve_single if len(text.networks) == 1 else _solve_joint
-    return solving(text, wish, progress, told)
+    return solving(text, request, progress, on_solved)
 
 
-def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told: Told) -> SolvedNetwork:
-    started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
-    if wish.explain is not None:
-        require_pair(text.network, *wish.explain)
+def _solve_single(
+    text: NetworkText, request: SolveRequest, progress: Progress | None, on_solved: OnSolved
+) -> SolvedNetwork:
+    started, deadline = time.perf_counter(), Deadline.after(request.time_limit)
+    if request.explain is not None:
+        require_pair(text.network, *request.explain)
     small, things = text.network.compact()
     closure = close(small, deadline, progress)
-    found = solve(small, deadline, progress, wish.scenario)
+    found = solve(small, deadline, progress, request.scenario)
     verdict, reason, boxes = found.verdict, found.reason, None
     if (
         verdict is Verdict.UNDECIDED
@@ -178,42 +183,44 @@ def _solve_single(text: NetworkText, wish: Wish, progress: Progress | None, told
         witness = solve_jointly((small,), (), deadline, progress)
         verdict, reason, boxes = witness.verdict, witness.reason, witness.boxes
     seconds = time.perf_counter() - started
-    solved = SolvedNetwork(text, verdict, reason, closure.narrowed, seconds, asked=wish.explain)
-    solved = _with_boxes(solved, boxes, things.tolist(), wish)
-    told(solved)
-    if verdict is Verdict.INCONSISTENT and wish.conflict:
-        conflict = minimal_conflict(text.network, wish.extended(deadline), inconsistent=True)
+    solved = SolvedNetwork(text, verdict, reason, closure.narrowed, seconds, asked=request.explain)
+    solved = _with_boxes(solved, boxes, things.tolist(), request)
+    on_solved(solved)
+    if verdict is Verdict.INCONSISTENT and request.conflict:
+        conflict = minimal_conflict(text.network, request.extended(deadline), inconsistent=True)
         if conflict is not None:
             stated = tuple((text.network, c) for c in conflict.constraints)
             solved = replace(solved, conflict=stated, minimal=conflict.minimal)
-    elif wish.scenario and found.scenario is not None and boxes is None:
+    elif request.scenario and found.scenario is not None and boxes is None:
         solved = replace(solved, shown=(_renumbered(text.network, found.scenario.constraints, things.tolist()),))
-    elif wish.closure and closure.complete:
+    elif request.closure and closure.complete:
         relations = (Constraint(i, j, closure.relation(i, j)) for i, j in closure.known_pairs().tolist())
         solved = replace(solved, shown=(_renumbered(text.network, relations, things.tolist()),))
-    if wish.explain is not None and verdict is not Verdict.INCONSISTENT:
-        deadline = wish.extended(deadline)
-        step = explain(text.network, *wish.explain, deadline)
+    if request.explain is not None and verdict is not Verdict.INCONSISTENT:
+        deadline = request.extended(deadline)
+        step = explain(text.network, *request.explain, deadline)
         solved = replace(solved, step=step, explained=step is not None or not deadline.passed)
     return solved
 
 
-def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told: Told) -> SolvedNetwork:
-    started, deadline = time.perf_counter(), Deadline.after(wish.time_limit)
-    if wish.explain is not None:
+def _solve_joint(
+    text: NetworkText, request: SolveRequest, progress: Progress | None, on_solved: OnSolved
+) -> SolvedNetwork:
+    started, deadline = time.perf_counter(), Deadline.after(request.time_limit)
+    if request.explain is not None:
         raise DeixisError("--explain is for one calculus at a time")
     links: Sequence[Link] = links_between([network.calculus for network in text.networks])
     networks, things = compacted(text.networks)
-    found = solve_jointly(networks, links, deadline, progress, wish.scenario)
+    found = solve_jointly(networks, links, deadline, progress, request.scenario)
     contributions = found.closure.contributions
     narrowed = sum(each.pairs for each in contributions)
     seconds = time.perf_counter() - started
     solved = SolvedNetwork(text, found.verdict, found.reason, narrowed, seconds, contributions=contributions)
-    solved = _with_boxes(solved, found.boxes, things.tolist(), wish)
-    told(solved)
-    if found.verdict is Verdict.INCONSISTENT and wish.conflict:
-        solved = _with_conflict(solved, links, wish.extended(deadline))
-    elif wish.closure:
+    solved = _with_boxes(solved, found.boxes, things.tolist(), request)
+    on_solved(solved)
+    if found.verdict is Verdict.INCONSISTENT and request.conflict:
+        solved = _with_conflict(solved, links, request.extended(deadline))
+    elif request.closure:
         pairs = zip(text.networks, found.closure.states, strict=True)
         solved = replace(
             solved,
@@ -230,13 +237,13 @@ def _solve_joint(text: NetworkText, wish: Wish, progress: Progress | None, told:
 
 
 def _with_boxes(
-    solved: SolvedNetwork, boxes: NDArray[np.float64] | None, things: list[int], wish: Wish
+    solved: SolvedNetwork, boxes: NDArray[np.float64] | None, things: list[int], request: SolveRequest
 ) -> SolvedNetwork:
     """Add the boxes of things, shape (n, 2, 2), and their relations in each calculus if a scenario is requested."""
     if boxes is None:
         return solved
     solved = replace(solved, boxes=dict(zip(things, boxes, strict=True)))
-    if not wish.scenario:
+    if not request.scenario:
         return solved
     shown = []
     for network in solved.text.networks:

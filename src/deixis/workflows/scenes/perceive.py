@@ -67,6 +67,16 @@ def perceive(
         If the file is not a cloud, or has no point.
     SceneError
         If ``viewpoint`` is not a word.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> cloud = deixis.simulate(deixis.read_script(text="cup left of plate"), seed=1).cloud
+    >>> scene = deixis.perceive(cloud)
+    >>> scene
+    <Scene <cloud>: 2 objects, 3-D boxes in m, seen from the chair>
+    >>> scene.objects[0].cloud is not None
+    True
     """
     if settings is not None and not isinstance(settings, DetectionSettings):
         raise CloudError(f"`settings` must be DetectionSettings, got {settings!r:.60}")
@@ -110,6 +120,16 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     ------
     DeixisError
         If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import deixis
+    >>> scene = deixis.read_scene({"objects": [{"id": "o1", "min": [0, 0], "max": [0.03, 0.2]}]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     written = deixis.write_scene(scene, f"{folder}/table.scene.json")
+    ...     deixis.read_scene(f"{folder}/table.scene.json").ids
+    ('o1',)
     """
     if not isinstance(scene, Scene):
         raise SceneError(f"`scene` must be a Scene, got {type(scene).__name__}; read_scene makes one")

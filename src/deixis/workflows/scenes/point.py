@@ -85,7 +85,16 @@ class PointedLabel:
 
 @dataclass(frozen=True, repr=False)
 class Shown(Answer):
-    """Gestures with what they point at, and names with the things that they are taught to."""
+    """Gestures with what they point at, and names with the things that they are taught to.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> shown = deixis.point(example("showing.skeleton.jsonl"), example("showing.scene.json"))
+    >>> shown
+    <Shown 4 gestures, 0 names taught>
+    """
 
     pointings: tuple[Pointing, ...]
     labels: tuple[PointedLabel, ...]
@@ -139,6 +148,15 @@ def point(
     A name is evidence too: things of another size than the lexicon gives for it are less probable. The gesture is
     detected by :func:`deixis.perception.pointing.gesture.gestures` and compared with the things by
     :func:`deixis.perception.pointing.aim.pointed_at`.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.examples_data import example
+    >>> skeletons, scene = example("showing.skeleton.jsonl"), example("showing.scene.json")
+    >>> found = deixis.point(skeletons, scene, example("showing.said.jsonl"))
+    >>> [(label.utterance.text, label.target) for label in found.taught]
+    [('this is a plate', 'o1'), ('that one is called a fork', 'o2')]
     """
     notes: tuple[str, ...] = ()
     if isinstance(skeletons, str | Path):
@@ -147,7 +165,7 @@ def point(
     else:
         frames = tuple(skeletons)
     seen = as_scene(scene)
-    heard = read_utterances(said) if isinstance(said, str | Path) else tuple(sorted(said, key=lambda one: one.at))
+    utterances = read_utterances(said) if isinstance(said, str | Path) else tuple(sorted(said, key=lambda one: one.at))
     if frames and not arms_seen(frames):
         names = sorted({name for one in frames for name in one.joints})
         raise PointingError(
@@ -155,7 +173,7 @@ def point(
             f" 'right_wrist'; the joints are: {', '.join(names)[:200] or 'none'}"
         )
     pointings = tuple(pointed_at(gesture, seen, sure=sure) for gesture in gestures(frames))
-    labels, contradictions = taught_labels([pointed_label(one, pointings, seen, sure) for one in heard], seen)
+    labels, contradictions = taught_labels([pointed_label(one, pointings, seen, sure) for one in utterances], seen)
     return Shown(pointings, labels, contradictions, notes)
 
 
@@ -222,16 +240,16 @@ def pointed_label(
     PointedLabel
         The name and the thing, or why nothing is taught.
     """
-    said = spoken_name(utterance.text)
-    if said is None:
+    naming = spoken_name(utterance.text)
+    if naming is None:
         return PointedLabel(utterance, None, refused="names nothing that could be pointed at")
-    label = PointedLabel(utterance, said.name, said.positive)
+    label = PointedLabel(utterance, naming.name, naming.positive)
     if utterance.confidence < MIN_CONFIDENCE:
         return replace(label, refused=f"recognised with a confidence of {utterance.confidence:.2f} only")
     near = [one for one in pointings if overlap(utterance, one.gesture) >= -SAME_MOMENT]
     if not near:
         return replace(label, refused=f"no gesture within {SAME_MOMENT:g} s of the words")
-    weights = size_weights(said.name, scene) if said.positive else None
+    weights = size_weights(naming.name, scene) if naming.positive else None
     read = [pointed_at(one.gesture, scene, prior=weights, sure=sure) for one in near]
     useful = [one for one in read if one.none < 0.5] or read
     most = max(overlap(utterance, one.gesture) for one in useful)
@@ -335,14 +353,14 @@ def taught_labels(labels: Sequence[PointedLabel], scene: Scene) -> tuple[tuple[P
     for place, label in enumerate(labels):
         if label.target is None or label.refused is not None or label.name is None:
             continue
-        said = spoken_name(label.utterance.text)
+        naming = spoken_name(label.utterance.text)
         for earlier in range(place):
             other = result[earlier]
             if other.target != label.target or other.refused is not None or other.name is None:
                 continue
             alike = lexicon.relation(label.name, other.name) in agree
             if (label.positive and other.positive and not alike) or (label.positive != other.positive and alike):
-                if said is not None and said.corrects:
+                if naming is not None and naming.corrects:
                     result[earlier] = replace(other, refused=f"taken back at {label.utterance.at:g} s")
                     continue
                 who = "" if label.utterance.speaker == other.utterance.speaker else f" by {other.utterance.speaker}"

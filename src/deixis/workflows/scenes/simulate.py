@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.grammar.read import read_script
+from deixis.grammar.read import read_script_file
 from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.depth import Intrinsics
@@ -94,7 +94,7 @@ def simulate(layout: LaidScript | Script | str | Path, view: CameraSetup | None 
     if isinstance(layout, LaidScript):
         laid = layout
     else:
-        laid = lay_script(layout if isinstance(layout, Script) else read_script(str(layout)), seed)
+        laid = lay_script(layout if isinstance(layout, Script) else read_script_file(str(layout)), seed)
     camera = chair_camera(laid.table, view.height, view.back, view.azimuth, view.lens)
     cloud = see(laid.table, camera, view.sensor, seed)
     return Simulation(laid, camera, cloud, truth_scene(laid.table, laid.viewpoint))

@@ -230,7 +230,7 @@ def test_an_uncertain_viewpoint_limits_probabilities_to_one_side(tmp_path: Path)
         sides = [Viewpoint(0.0, False, probability, 0.0, np.zeros(1, np.int64))]
         sides += [Viewpoint(math.pi, False, 1 - probability, -1.0, np.zeros(1, np.int64))]
         return "; ".join(
-            ViewpointScene(read_scene(SCENE), Viewpoints(tuple(sides), exact=True), share=probability).doubt
+            ViewpointScene(read_scene(SCENE), Viewpoints(tuple(sides), exact=True), share=probability).viewpoint_notes
         )
 
     assert "hold as seen from this side" in doubt(0.6)

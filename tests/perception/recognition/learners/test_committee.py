@@ -44,13 +44,13 @@ def test_success_is_forgotten_outside_the_window() -> None:
     committee = Committee([Stubborn("a", "cup")], window=2)
     for category in ("cup", "cup", "fork", "fork"):
         committee.correct(category, VIEW)
-    assert committee.outlook["a"] == pytest.approx(1 / 4)
+    assert committee.accuracies["a"] == pytest.approx(1 / 4)
 
 
 def test_only_the_best_members_are_combined() -> None:
     committee = Committee([Stubborn("a", "cup"), Stubborn("b", "fork"), Stubborn("c", "fork")], best=1)
     committee.correct("cup", VIEW)
-    assert committee._opinions(VIEW)[VOTE].ranked == (("cup", 1.0),)
+    assert committee._predictions(VIEW)[VOTE].ranked == (("cup", 1.0),)
 
 
 def test_members_are_asked_once_per_corrected_view() -> None:
