@@ -17,9 +17,7 @@ from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import cross_relations
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.facts import SIDE, SaidFacts
-
-PLACES_PER_THING, MIN_PLACES, MAX_PLACES = 3.0, 200, 900
-"""Approximate number of places for each thing of a scene, and minimum and maximum number for the scene."""
+from deixis.reasoning.grounding.matching.problem import MAX_PLACES, MIN_PLACES, PLACES_PER_THING
 
 
 def place_boxes(boxes: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -22,6 +22,9 @@ from deixis.errors import DeixisError
 UNMATCHED = -1
 """Thing of an object that is left out, in an assignment."""
 
+PLACES_PER_THING, MIN_PLACES, MAX_PLACES = 3.0, 200, 900
+"""Approximate number of places of absent objects for each thing of a scene, and their minimum and maximum number."""
+
 
 class MatchingError(DeixisError, ValueError):
     """Error for arrays that are not a valid matching problem, or not a valid map of it."""
