@@ -151,10 +151,12 @@ def read_activities(path: str | Path) -> tuple[Activity, ...]:
     ActivityTextError
         If the file is not one of activities.
     """
+    data = parse_json(read_text(Path(path), str(path)), str(path), ActivityTextError, "is not a number")
     try:
-        data = parse_json(read_text(Path(path), str(path)), str(path), ActivityTextError, "is not a number")
         return tuple(_activity(entry) for entry in data["activities"])
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except KeyError as error:
+        raise ActivityTextError(f"{path}: not a file of activities: the key {error} is missing") from error
+    except (TypeError, ValueError, IndexError) as error:
         raise ActivityTextError(f"{path}: not a file of activities ({str(error).splitlines()[0]})") from error
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from deixis.memory.episodes.changes import Logged
+from deixis.memory.folder import one_line
 
 Callback = Callable[[Logged], object]
 """Function that is called with each change."""
@@ -169,7 +170,7 @@ class Subscription:
                 if self._concerns(change):
                     self._callback(change)
             except Exception as error:  # whatever a module raises must not end the subscription
-                first, self._error = self._error is None, f"{type(error).__name__}: {error}"
+                first, self._error = self._error is None, f"{type(error).__name__}: {one_line(error)}"
                 self._called = None
                 if first:
                     self._trouble(str(self.state))

@@ -144,10 +144,10 @@ class FolderSource:
         quiet_since = time.monotonic()
         while time.monotonic() - quiet_since < self._patience:
             now = time.time()
-            new = [file for file in self._files() if file not in seen and now - file.stat().st_mtime > SETTLE_SECONDS]
-            for file in new:
+            dates = {file: _written_at(file) for file in self._files() if file not in seen}
+            new = {file: at for file, at in dates.items() if at is not None and abs(now - at) > SETTLE_SECONDS}
+            for file, written in new.items():
                 seen.add(file)
-                written = file.stat().st_mtime
                 first = written if first is None else first
                 yield _read(file, self._intrinsics, written - first, len(seen) - 1)
                 quiet_since = time.monotonic()
@@ -156,6 +156,14 @@ class FolderSource:
 
     def _files(self) -> list[Path]:
         return sorted(file for file in self._folder.iterdir() if file.suffix.lower() in CLOUD_SUFFIXES)
+
+
+def _written_at(file: Path) -> float | None:
+    """Return when a file was written, which is later than now if the clock was set back; None if it is gone."""
+    try:
+        return file.stat().st_mtime
+    except OSError:
+        return None
 
 
 def _read(file: str | Path, intrinsics: str | Path | Intrinsics | None, at: float, number: int) -> Frame:

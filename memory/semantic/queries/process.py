@@ -28,7 +28,7 @@ from deixis.memory.semantic.queries.limits import QueryLimits, in_words
 class QueryProcess:
     """One process with a store open for reading. Only one thread at a time may use it."""
 
-    def __init__(self, path: Path, deadline: Deadline) -> None:
+    def __init__(self, path: Path, deadline: Deadline, limits: QueryLimits) -> None:
         command = [sys.executable, "-I", "-S", worker.__file__]
         try:
             self._process = subprocess.Popen(
@@ -44,14 +44,14 @@ class QueryProcess:
         self.end = weakref.finalize(self, _end, self._process, os.getpid())
         _processes.add(self)
         self._send(sys.path)
-        self.open(path, deadline)
+        self.open(path, deadline, limits)
 
     @property
     def alive(self) -> bool:
         """True if the process can be used."""
         return self.end.alive and self._process.poll() is None
 
-    def open(self, path: Path, deadline: Deadline) -> None:
+    def open(self, path: Path, deadline: Deadline, limits: QueryLimits) -> None:
         """Open a store instead of the open one.
 
         Parameters
@@ -60,13 +60,17 @@ class QueryProcess:
             The store.
         deadline
             Time limit.
+        limits
+            Limits of the query for which it is opened, which an error names.
 
         Raises
         ------
         MemoryWriteError
             If it cannot be read.
+        QueryTimeoutError
+            If the time limit is reached.
         """
-        kind, content = self._answer({"open": str(path)}, deadline, QueryLimits())
+        kind, content = self._answer({"open": str(path)}, deadline, limits)
         if kind != worker.READY:
             raise MemoryWriteError(f"{path}: cannot be opened for queries: {content.decode()}")
 

@@ -62,7 +62,7 @@ class SnapshotQueries(Closing):
         if not self._turn.acquire(timeout=min(limits.time, threading.TIMEOUT_MAX)):
             raise time_error(limits)
         try:
-            return self._ready(store, deadline).ask(request, limits, deadline)
+            return self._ready(store, deadline, limits).ask(request, limits, deadline)
         finally:
             self._turn.release()
 
@@ -79,7 +79,7 @@ class SnapshotQueries(Closing):
             shutil.rmtree(self._place, ignore_errors=True)
             self._place, self._kept = None, -1
 
-    def _ready(self, store: ox.Store, deadline: Deadline) -> QueryProcess:
+    def _ready(self, store: ox.Store, deadline: Deadline, limits: QueryLimits) -> QueryProcess:
         """Return a process that has the present content of the store open."""
         process = self._process if self._process is not None and self._process.alive else None
         changes = self._changes
@@ -89,9 +89,9 @@ class SnapshotQueries(Closing):
             store.backup(self._place)
             self._kept = changes
             if process is not None:
-                process.open(self._place, deadline)
+                process.open(self._place, deadline, limits)
         if process is None:
-            process = self._process = QueryProcess(self._place, deadline)
+            process = self._process = QueryProcess(self._place, deadline, limits)
         return process
 
 

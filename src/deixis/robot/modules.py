@@ -29,6 +29,7 @@ from deixis.errors import DeixisError
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Change, Logged, Update
 from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.folder import one_line
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
 PAUSE = 0.2
@@ -403,12 +404,15 @@ def run_until_stopped(module: Module, board: Board, stopped: threading.Event, re
     report
         Called with one line for each error.
     """
-    pause = PAUSE
+    pause, told = PAUSE, ""
     while not stopped.is_set():
         try:
             return module.run(board, stopped)
         except Exception as error:  # whatever a module raises, the robot goes on
-            report(f"the module '{module.name}' failed and is run again: {type(error).__name__}: {error}")
+            line = f"the module '{module.name}' failed and is run again: {type(error).__name__}: {one_line(error)}"
+            if line != told:
+                report(line)
+            told = line
             stopped.wait(pause)
             pause = min(2 * pause, 10.0)
 

@@ -1,5 +1,6 @@
 """Streams of clouds: folders, recordings, and live sources whose late frames are dropped."""
 
+import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -57,6 +58,15 @@ def test_growing_folder_yields_files_that_come_later(tmp_path: Path) -> None:
     first = next(frames)
     write_cloud(tmp_path / "b.pcd", cloud(2))
     assert [float(frame.cloud.points[0, 0]) for frame in (first, *frames)] == [1.0, 2.0]
+
+
+def test_growing_folder_may_lose_files_and_be_of_the_future(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_cloud(tmp_path / f"{name}.pcd", cloud(ord(name)))
+        os.utime(tmp_path / f"{name}.pcd", (4e9, 4e9))  # the clock was set back after it was written
+    (tmp_path / "gone.pcd").symlink_to(tmp_path / "nowhere.pcd")  # as if deleted after the folder was listed
+    found = [float(frame.cloud.points[0, 0]) for frame in FolderSource(tmp_path, grows=True, patience=0.3).frames()]
+    assert found == [97.0, 98.0]
 
 
 @pytest.mark.parametrize("text", ["file,seconds\na.pcd,soon\n", "file,seconds\n../a.pcd,1\n"])

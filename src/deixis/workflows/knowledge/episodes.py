@@ -427,11 +427,15 @@ def scene_of(fluents: Sequence[EpisodicFluent], at: float) -> Scene | None:
 
 
 def _box(text: str) -> tuple[float, ...] | None:
+    """Return the corners in a text, flat or as the lower and the upper one; None if it has no box."""
+    import numpy as np
+
     try:
-        corners = json.loads(text)
-        return tuple(map(float, corners)) if len(corners) in (4, 6) else None
-    except (ValueError, TypeError, KeyError):
+        corners = np.array(json.loads(text), dtype=np.float64).reshape(2, -1)
+    except (ValueError, TypeError, RecursionError):
         return None
+    fits = corners.shape[1] in (2, 3) and np.isfinite(corners).all() and (corners[0] <= corners[1]).all()
+    return tuple(corners.ravel().tolist()) if fits else None
 
 
 def _understood(sentences: Sequence[str], session: _Learner) -> Script:

@@ -27,6 +27,7 @@ from deixis.workflows.knowledge.episodes import (
     fluents_of_text,
     known_classes,
     memory_lines,
+    scene_of,
     text_of_fluents,
 )
 
@@ -149,3 +150,22 @@ def test_finished_experience_is_consolidated_in_the_background(board: Blackboard
     finish_recording(board, "lunch", 3.0, by="test")
     assert task.wait(board.sequence, BUSY_SECONDS)
     assert [result.lessons for result in results] == [{"lunch": "lesson-1"}]
+
+
+@pytest.mark.parametrize(
+    ("text", "corners"),
+    [
+        ("[0, 0, 0, 0.2, 0.3, 0.1]", ((0, 0, 0), (0.2, 0.3, 0.1))),
+        ("[[0, 0, 0], [0.2, 0.3, 0.1]]", ((0, 0, 0), (0.2, 0.3, 0.1))),
+        ("[[0, 0], [0.2, 0.3]]", ((0, 0), (0.2, 0.3))),
+        *(
+            (text, None)
+            for text in ("no box", "3", "{}", "[]", "[[0], [1]]", "[0, 0, 0, 1, 1, NaN]", "[0, 0, 0, 1, 1, 1e999]")
+        ),
+        *((text, None) for text in ("[0, 0, 0, -1, 1, 1]", "[[0, 0], [1]]", '["a", 0, 0, 1, 1, 1]', "[" * 100_000)),
+    ],
+    ids=lambda value: str(value)[:30],
+)
+def test_a_place_without_a_box_is_no_thing_of_a_scene(text: str, corners: tuple[tuple[float, ...], ...] | None) -> None:
+    scene = scene_of([episodic("p", ("t1", "at", text), start=0.0, source=SEEN)], 1.0)
+    assert (None if scene is None else (scene.objects[0].minimum, scene.objects[0].maximum)) == corners

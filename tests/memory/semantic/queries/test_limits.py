@@ -68,6 +68,13 @@ def test_the_time_limit_ends_a_query(filled: SemanticMemory, query: str) -> None
     assert len(filled.query(SMALL).rows) == 1
 
 
+def test_time_for_opening_the_store_counts_too(tmp_path: Path) -> None:
+    with SemanticMemory.open(tmp_path / "memory", create=True) as memory:
+        with pytest.raises(QueryTimeoutError, match=r"within the time limit of 1e-06 s"):
+            memory.query(SMALL, time_limit=1e-6)
+        assert len(memory.query("SELECT * {}").rows) == 1
+
+
 def test_the_memory_limit_ends_a_query(filled: SemanticMemory) -> None:
     assert filled.query(nested_replace(3)).rows[0][0] == ox.Literal(512)
     with pytest.raises(QueryMemoryError, match="more than the memory limit of 64 MiB"):

@@ -19,7 +19,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Iterator[deixis.Session]
     """A session that learned one layout."""
     script = deixis.read_script(example("formal_dinner.layout"))
     with deixis.Session(tmp_path_factory.mktemp("terms") / "memory") as session:
-        session.learn(script, deixis.read_scene(example("place_setting.scene.json")))
+        session.learn(script, deixis.read_scene(example("place_setting.scene.json")), time_limit=60.0)
         yield session
 
 
