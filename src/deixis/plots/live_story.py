@@ -29,7 +29,7 @@ SHADES = 96
 LINE = 62
 """Number of characters of a line below a picture."""
 
-LETTER = (9.0, 20.0)
+LETTER = (10.5, 20.0)
 """Width and height of a letter, in pixels of the camera's image."""
 
 MAX_LINES, MAX_SAID = 7, 3

@@ -103,7 +103,7 @@ class Robot:
         self.expected: list[ExpectedObject] = []
         self._sightings: dict[str, Sighting] = {}
         self._seen_at = 0.0
-        self._known_at = 0.0  # when it last saw, was shown or was told something
+        self._known_at = 0.0  # when it last saw, or learned from a person
         self._resumed: Scene | None = None  # the last table that an earlier run kept
         self.layouts: dict[str, LearnedLayout] = {}
         self.lessons: list[TableLesson] = []

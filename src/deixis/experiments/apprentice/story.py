@@ -104,7 +104,7 @@ def _teaching(
         known = robot.lessons[lesson.number]
         taught = {settled.thing: role for role, settled in known.settled.items()}
         names = {id: (taught[id].replace("_", " "), RIGHT) if id in taught else ("?", INK) for id in known.scene.ids}
-        asked = f", and asks {lesson.questions} question(s)" if lesson.questions else ""
+        asked = f", and asks {lesson.questions} time{'s' * (lesson.questions > 1)}" if lesson.questions else ""
         title = lesson.layout.replace("_", " ")
         keep(known.scene, names, f"The teacher describes: {title}. The robot learns {len(taught)} things{asked}.")
 

@@ -21,7 +21,7 @@ from deixis.robot.live.story import StorySettings
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
 from deixis.scratch import scratch_folder
-from deixis.workflows.knowledge.recall import IS_A
+from deixis.workflows.knowledge.recall import IS_A, MOMENT
 
 STATES = (AT, TABLE, TYPED, DROPPED, BEGAN, ENDED, DONE)
 """Predicates of the senses' fluents that hold at present; the robot ends its own conclusions."""
@@ -235,6 +235,7 @@ def _end_earlier(board: Blackboard) -> None:
     """End what an earlier run left as the present: it ceased to hold at an unknown time before now."""
     now = board.seconds()
     left = [each for predicate in STATES for each in board.now(Pattern(predicate=predicate))]
-    changes = [Finish(each.id, Bounds(each.start.upper, max(now, each.start.upper))) for each in left]
+    ends = [(each.id, each.start.upper + MOMENT) for each in left]
+    changes = [Finish(id, Bounds(first, max(now, first))) for id, first in ends]
     if changes:
         board.write(*changes, by="robot")

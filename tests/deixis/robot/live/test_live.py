@@ -81,7 +81,7 @@ def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
 
 def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
     assert heard(ran, "user: what did the teacher say?")
-    assert heard(ran, "robot: Teacher said", "This is a fork.")
+    assert heard(ran, "robot: Teacher said", "This is a fork")
     assert heard(ran, "robot: I see: t3 is a bowl.")
     assert heard(ran, "there is no t99 on the table")
 
