@@ -38,6 +38,13 @@ class Relation:
     heights decide nothing. ``broader`` names the relations that this one implies, ``index`` is its bit in a relation
     set. The atoms of a relation in the graded reading are necessary for it, not sufficient. ``by_model`` is True
     if only its graded model decides whether it holds, since no exact relation implies it.
+
+    Examples
+    --------
+    >>> from deixis.ontology.tbox import default_ontology
+    >>> left = default_ontology().relations["left"]
+    >>> left.word, left.phrase, str(left.reading)
+    ('left', 'left of', 'wide')
     """
 
     name: str  # 'top_left', 'exactly_top_left'

@@ -177,6 +177,13 @@ class PerceivedObject:
     heading
         Direction of its head or handle, as measured in its cloud; None if it has neither or it is unknown. A handle is
         the front of a thing without another one.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> scene = deixis.read_scene({"objects": [{"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]}]})
+    >>> scene.objects[0].id, scene.objects[0].label
+    ('o1', 'fork')
     """
 
     id: str
@@ -275,6 +282,13 @@ class Scene(Answer):
         If the viewer stands in the middle of the scene, two objects share an id, a corner is not finite, a lower corner
         is above the upper one, a colour or a confidence is out of range, a front has no direction, or 2-D and 3-D boxes
         are mixed.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> scene = deixis.read_scene({"objects": [{"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]}]})
+    >>> scene.ids, scene.unit, scene.viewpoint
+    (('o1',), 'm', 'chair')
     """
 
     objects: tuple[PerceivedObject, ...]

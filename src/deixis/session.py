@@ -99,7 +99,7 @@ class Session(Closing):
     (['supper'], True, False)
     >>> session.check("supper", scene)
     <Check of 'supper': nothing wrong, 3 correct>
-    >>> print(session.show("supper"))
+    >>> print(session.show("supper").strip())
     layout supper
     <BLANKLINE>
     fork left of plate
