@@ -90,9 +90,7 @@ def test_a_broken_file_of_activities_is_refused(tmp_path: Path) -> None:
         '{"activities": [{"name": "x", "steps": [["a"]], "counts": [], "present": [], "examples": 1}]}',
     ):
         (tmp_path / "known.json").write_text(text)
-        with pytest.raises(
-            ActivityTextError, match=r"not a file of activities|json:1:2: this is not valid JSON"
-        ):
+        with pytest.raises(ActivityTextError, match=r"not a file of activities|json:1:2: this is not valid JSON"):
             read_activities(tmp_path / "known.json")
 
 

@@ -15,7 +15,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evid
 from deixis.reasoning.grounding.evidence.facts import FactEvidence
 from deixis.reasoning.grounding.evidence.latent_places import place_boxes, place_ratios
 from deixis.reasoning.grounding.matching.belief_propagation import beliefs_with_places
-from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.matching.problem import MIN_PLACES, UNMATCHED
 
 
 def evidence_of(objects: int, seed: int, facts: float = 5.0, missing: int = 0) -> tuple[Evidence, np.ndarray]:
@@ -45,7 +45,7 @@ def test_places_cover_the_scene_and_are_no_smaller_than_a_point(depth: int) -> N
     low = np.random.default_rng(depth).uniform(0, 3, (40, 1, depth))
     boxes = np.concatenate([low, low + 0.1], axis=1)
     places = place_boxes(boxes)
-    assert places.shape[1:] == (2, depth) and module.MIN_PLACES <= len(places) <= 2 * module.MIN_PLACES
+    assert places.shape[1:] == (2, depth) and MIN_PLACES <= len(places) <= 2 * MIN_PLACES
     for axis in (0, 1):
         centres = boxes.mean(axis=1)[:, axis]
         assert places[:, 0, axis].min() < centres.min() and places[:, 1, axis].max() > centres.max()
