@@ -63,6 +63,31 @@ def visible_line(text: str) -> str:
     return visible(re.sub(r"[\n\r\t]", lambda found: _SHORT[found[0]], text))
 
 
+def printed_line(text: str, limit: int = MAX_MESSAGE) -> str:
+    r"""Return a text as one line of printable characters: blanks of all kinds become spaces, others a replacement.
+
+    Parameters
+    ----------
+    text
+        The text.
+    limit
+        Maximum number of characters.
+
+    Returns
+    -------
+    str
+        The text; an ellipsis where nothing is left of it, or where it is cut.
+
+    Examples
+    --------
+    >>> print(printed_line("what is\n wrong\x07?"), printed_line("\n"))
+    what is wrong�? …
+    """
+    words = " ".join(text.split())
+    shown = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in words)
+    return shortened(shown, limit) or "…"
+
+
 def shortened(text: str, limit: int = MAX_MESSAGE) -> str:
     """Return a text of limited length: the beginning and the end of a longer one.
 

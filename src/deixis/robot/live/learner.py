@@ -12,12 +12,15 @@ from deixis.errors import DeixisError
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
+from deixis.memory.errors import MemoryWriteError
 from deixis.perception.formats.scene_json import read_scene
+from deixis.printable import printed_line
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
-from deixis.robot.live.senses import CALLED, ENDED, SAID, TABLE, WATCHED, named
+from deixis.robot.live.outbox import Outbox
+from deixis.robot.live.senses import CALLED, ENDED, MOMENT, SAID, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
@@ -43,6 +46,12 @@ _NAME = re.compile(
 )
 """Answer to the question for the name of a layout: a name of up to four words, or that it has none."""
 
+NOT_SEEN = "I have not seen a table yet."
+"""Answer to what is said of a table before the first one lay still."""
+
+MAX_SAID = 5000
+"""Maximum number of characters of what the robot says."""
+
 
 class Learner(Module):
     """Module that holds the robot's concepts and its memory of views.
@@ -59,6 +68,8 @@ class Learner(Module):
     def __init__(self, memory: str) -> None:
         self._memory = memory
         self._robot: Robot | None = None
+        self._outbox = Outbox()
+        self._handled: int | None = None
         self._asked: Question | None = None
         self._announced: dict[str, Standing] = {}  # what was said about each expected object
         self._named: LayoutQuestion | None = None  # the question for a name that was asked
@@ -90,22 +101,38 @@ class Learner(Module):
         """
         if change.after is None:
             return
+        self._outbox.new_id(board)
+        if change.sequence != self._handled:  # else only what the robot says is still to be written
+            waiting, at = len(self._outbox), change.after.start.lower
+            try:
+                self._react(change, change.after, board)
+            except MemoryWriteError:
+                self._outbox.cut(waiting)
+                raise  # the change comes again, until the disk has room
+            except Exception as error:
+                reason = str(error) if isinstance(error, DeixisError) else f"{type(error).__name__}: {error}"
+                self._say(f"I could not use {change.after.statement}: {reason}", at, board)
+            self._handled = change.sequence
+        self._outbox.flush(board)
+
+    def _react(self, change: Logged, fluent: EpisodicFluent, board: Board) -> None:
+        """Decide what follows from a change."""
         if self._robot is None:  # the memory is opened when it is first needed
             self._robot = Robot(self._memory, board)
-        said, at = change.after.statement, change.after.start.lower
+        said, at = fluent.statement, fluent.start.lower
         if said.predicate == WATCHED:
-            self.robot.watches(change.after.finish.lower)
-            self._announce(change.after.finish.lower, board)
-        elif said.predicate == RECORDED and not change.after.is_open:
-            self._consolidate(change.after.finish.upper, board)
+            self.robot.watches(fluent.finish.lower)
+            self._announce(fluent.finish.lower, board)
+        elif said.predicate == RECORDED and not fluent.is_open:
+            self._consolidate(fluent.finish.upper, board)
         if change.kind != "add":
             return
         if said.predicate == TABLE and said.object is not None:
             self._look(Path(said.object), at, board)
         elif said.predicate == CALLED and said.object is not None:
-            self._shown(said.object, said.subject, change.after.source.by, at, board)
+            self._shown(said.object, said.subject, fluent.source.by, at, board)
         elif said.predicate == SAID and said.object is not None:
-            self._heard(said.object, change.after, board)
+            self._heard(said.object, fluent, board)
         elif said.predicate == ENDED:
             self._add((self.name, DONE, "story"), at, board)
 
@@ -143,13 +170,16 @@ class Learner(Module):
         given = _NAME.fullmatch(text.strip())
         if given is None:
             return False
-        question, self._named = self._named, None
-        name = given["name"]
+        question, name = self._named, given["name"]
         try:
             lessons = self.robot.name_layout(question, name, by)
+        except MemoryWriteError:
+            raise
         except DeixisError as error:
             self._say(f"I could not learn '{name}': {str(error).splitlines()[0]}", at, board)
+            self._named = None
             return True
+        self._named = None
         told = f"Thank you: I know '{name}' from {len(lessons)} tables." if name else "I will not ask for it again."
         self._say(told, at, board)
         self._understand(board, at)
@@ -170,6 +200,8 @@ class Learner(Module):
     def _shown(self, label: str, thing: str, by: str, at: float, board: Board) -> None:
         try:
             self.robot.shown(label, thing, by, at)
+        except MemoryWriteError:
+            raise
         except DeixisError as error:
             self._say(f"I could not learn '{label}': {error}", at, board)
             return
@@ -194,8 +226,11 @@ class Learner(Module):
             return
         try:
             told = self.robot.told(text, by, at, fluent.source.event)
+        except MemoryWriteError:
+            raise
         except DeixisError as error:
-            self._say(f"I did not understand: {str(error).splitlines()[0]}", at, board)
+            seen = self.robot.sees_a_table
+            self._say(f"I did not understand: {str(error).splitlines()[0]}" if seen else NOT_SEEN, at, board)
             return
         if isinstance(told, Told):
             taught = _listed(told.taught) or "nothing new"
@@ -221,8 +256,9 @@ class Learner(Module):
         given = next((thing for thing in things if re.search(rf"\b{re.escape(thing)}\b", text)), None)
         if given is None and not re.match(r"\s*(none|no)\b", text, re.IGNORECASE):
             return False
-        question, self._asked = self._asked, None
+        question = self._asked
         self.robot.answers(question, given, by)
+        self._asked = None
         name = question.role.replace("_", " ")
         self._understand(board, at)
         self._say(f"Thank you: {given} is the {name}." if given else f"Then the {name} is not here.", at, board)
@@ -240,7 +276,7 @@ class Learner(Module):
             except DeixisError as error:
                 return f"I did not understand: {str(error).splitlines()[0]}"
         if not self.robot.sees_a_table:
-            return "I do not see a table yet."
+            return NOT_SEEN
         look = self.robot.look()
         if look.layout is None:
             return "I do not know how this table should be laid."
@@ -250,11 +286,11 @@ class Learner(Module):
         return f"This is '{look.layout}'; " + "; ".join(map(str, faults)) + "."
 
     def _say(self, text: str, at: float, board: Board) -> None:
-        self._add((self.name, SAYS, text), at, board, finish=at + 1e-3)
+        self._add((self.name, SAYS, printed_line(text, MAX_SAID)), at, board, finish=at + MOMENT)
 
     def _add(self, statement: tuple[str, str, str], at: float, board: Board, finish: float | None = None) -> None:
         source = Source(Origin.INFERRED, self.name)
-        board.write(Add(episodic(board.new_id("f"), statement, start=at, finish=finish, source=source)))
+        self._outbox.add(Add(episodic(self._outbox.new_id(board), statement, start=at, finish=finish, source=source)))
 
 
 def _listed(names: Iterable[str]) -> str:

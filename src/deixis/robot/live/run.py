@@ -8,20 +8,21 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from deixis.grammar.utterances import Utterance
+from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Finish, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE, SAYS
-from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, NOTICED, SAID, TABLE, TYPED
+from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, MOMENT, NOTICED, SAID, TABLE, TYPED
 from deixis.robot.live.story import StorySettings
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
 from deixis.scratch import scratch_folder
-from deixis.workflows.knowledge.recall import IS_A, MOMENT
+from deixis.workflows.knowledge.recall import IS_A
 
 STATES = (AT, TABLE, TYPED, DROPPED, BEGAN, ENDED, DONE)
 """Predicates of the senses' fluents that hold at present; the robot ends its own conclusions."""
@@ -121,11 +122,14 @@ class LiveRobot:
             Name of the person.
         """
         said = Utterance(text, 0.0, speaker=speaker)  # checked here, so that the caller gets the error
-        at = self.board.seconds()
+        by, at = printed_line(speaker), self.board.seconds()
         typed = episodic(
-            self.board.new_id("f"), (speaker, TYPED, said.text), start=at, source=Source(Origin.SAID, speaker)
+            self.board.new_id("f"),
+            (by, TYPED, printed_line(said.text, MAX_CHARACTERS)),
+            start=at,
+            source=Source(Origin.SAID, by),
         )
-        self.board.write(Add(typed), by=speaker)
+        self.board.write(Add(typed), by=by)
 
     def wait(self, seconds: float | None = None) -> bool:
         """Wait until the robot has dealt with the whole story.

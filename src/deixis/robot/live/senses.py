@@ -13,9 +13,10 @@ import math
 import re
 import threading
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from typing import Any, ClassVar
@@ -24,9 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
-from deixis.grammar.utterances import Utterance
+from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import Pointing, pointed_at
 from deixis.perception.pointing.gesture import Gesture, GestureDetector
@@ -35,8 +37,11 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.perception.tracking.frame import Frame
 from deixis.perception.tracking.thing import Situation, TrackedThing
 from deixis.perception.tracking.tracker import Tracker
+from deixis.printable import printed_line
+from deixis.reasoning.temporal.bounds import to_ticks
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.live.story import StorySettings
+from deixis.robot.live.outbox import Outbox
+from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
 from deixis.workflows.scenes.point import (
@@ -64,6 +69,15 @@ WATCH = 1.0
 
 PAUSE = 0.5
 """Seconds without a skeleton after which a gesture has ended."""
+
+MOMENT = 1e-3
+"""Shortest time in seconds that a statement holds."""
+
+LONGEST_PAUSE = 86_400.0
+"""Seconds up to which the clock of the story follows words and skeletons ahead of the clouds."""
+
+MAX_NOTES = 1000
+"""Number of different notes, after which no more are written."""
 
 HELD_GESTURES = 20
 """Number of gestures that are kept for words that come later."""
@@ -96,8 +110,22 @@ class Senses(Module):
     )
 
     def __init__(self, story: Mapping[str, Any], folder: str) -> None:
-        self._story, self._folder = StorySettings(**story), Path(folder)
+        self._settings, self._folder = StorySettings(**story), Path(folder)
         self._typed: SimpleQueue[EpisodicFluent] = SimpleQueue()
+        self._tracker = Tracker()
+        self._writer: _Writer | None = None
+        self._story: Story | None = None
+        self._events: Iterator[Event] | None = None
+
+    def story(self) -> Story:
+        """Return the story that the senses take in.
+
+        Returns
+        -------
+        Story
+            Frames, words and skeletons.
+        """
+        return self._settings.story()
 
     def changed(self, change: Logged, board: Board) -> None:
         """Hear what is typed.
@@ -122,22 +150,34 @@ class Senses(Module):
         stopped
             Set when the module must end.
         """
-        with Tracker() as tracker:
-            writer = _Writer(board, tracker, self._folder)
-            try:
-                story = self._story.story()
-                for event in story.events():
-                    if stopped.is_set():
-                        return
-                    writer.take(event, story.dropped)
-                    while not self._typed.empty():
-                        writer.hear(self._typed.get())
-                writer.finish()
-            except Exception as error:  # the story would begin again, which would only repeat the error
-                writer.fail(f"{type(error).__name__}: {error}" if not isinstance(error, DeixisError) else str(error))
-            while not stopped.is_set():
-                with suppress(Empty):
-                    writer.hear(self._typed.get(timeout=POLL), at_once=True)
+        if self._writer is None:
+            self._writer = _Writer(board, self._tracker, self._folder)
+        self._writer.flush()
+        if not self._writer.ended:
+            self._take_in(self._writer, stopped)
+        while not stopped.is_set():
+            with suppress(Empty):
+                self._writer.hear(self._typed.get(timeout=POLL), at_once=True)
+        self._story = self._events = None
+        self._tracker.close()
+
+    def _take_in(self, writer: _Writer, stopped: threading.Event) -> None:
+        """Take in what is left of the story; what is typed meanwhile is heard between its events."""
+        try:
+            if self._story is None or self._events is None:
+                self._story = self.story()
+                self._events = self._story.events()
+            for event in self._events:
+                if stopped.is_set():
+                    return
+                writer.take(event, self._story.dropped)
+                while not self._typed.empty():
+                    writer.hear(self._typed.get())
+            writer.finish()
+        except MemoryWriteError:
+            raise  # the runtime reports it, and calls run() again, which goes on with the next event
+        except Exception as error:  # the story would begin again, which would only repeat the error
+            writer.fail(_reason(error))
 
 
 class _Writer:
@@ -147,92 +187,170 @@ class _Writer:
         self._board, self._tracker, self._folder = board, tracker, folder
         self._origin: float | None = None
         self._ids: dict[str, str] = {}
+        self._outbox = Outbox()
+        self._outbox.new_id(board)
+        self._undone: Callable[[], None] | None = None  # what waits for ids, which a full disk does not give
+        self._last_steps = deque((self._finish_gestures, self._look_at_end, self._hear_all))
+        self.ended = False
         self._places: dict[str, tuple[str, float]] = {}  # fluent of the place by thing, and since when it is there
-        self._table: str | None = None
+        self._table: tuple[str, float] | None = None  # fluent of the scene, and since when
         self._written: tuple[tuple[str, float, str], ...] | None = None
         self._watched: tuple[str, float] | None = None  # fluent that the written table is in view, and its finish
         self._moved_at = -math.inf
         self._situation = Situation(0.0, 0)
         self._things = Scene(())  # of the situation, with the names on the blackboard
-        self._cloud: PointCloud | None = None
+        self._cloud: PointCloud | None = None  # of the last frame that was used, and its time
+        self._seen_at = math.nan
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
         self._waiting: list[tuple[Utterance, str | None]] = []  # words, and the fluent of those that were typed
         self._notes: set[str] = set()
-        self._dropped: tuple[int, str | None] = (0, None)  # number of late frames, and its fluent
+        self._dropped: tuple[int, str | None, float] = (
+            0,
+            None,
+            0.0,
+        )  # number of late frames, its fluent, and since when
         self._frames = itertools.count(1)
         self._at = 0.0
 
-    def take(self, event: Frame | Skeleton | Utterance, dropped: int = 0) -> None:
-        """Take in one event; ``dropped`` is the number of frames that came too late."""
-        if event.at - self._watched_at > PAUSE:
-            self._watched_at = math.inf
-            self._point(self._detector.finish())
-        self._at = event.at
+    def take(self, event: Event, dropped: int = 0) -> None:
+        """Take in one event; one that cannot be used is named in a note, and the robot goes on.
+
+        ``dropped`` is the number of frames that came too late.
+        """
         self._begin()
-        if isinstance(event, Frame):
-            self._cloud = event.cloud
-            self._see(self._tracker.update(event.cloud, event.at), event.problem)
-            self._count(dropped)
-        elif isinstance(event, Skeleton):
-            self._watch(event)
-        else:
-            self._waiting.append((event, None))
-        self._hear(event.at)
+        self._attempt(lambda: self._take_event(event, dropped), f"what came at {event.at:g} s could not be used")
+        self.flush()
 
     def hear(self, typed: EpisodicFluent, at_once: bool = False) -> None:
         """Take in typed words, which are said at the present time of the story."""
         self._begin()
-        said = Utterance(typed.statement.object or "", self._at, speaker=typed.statement.subject)
+        said = Utterance(
+            printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
+        )
         self._waiting.append((said, typed.id))
         if at_once:
             self._hear(math.inf)
+        self.flush()
 
     def finish(self) -> None:
         """Write what waits for the end of the story."""
         self._begin()
-        self._point(self._detector.finish())
-        if self._cloud is not None and self._situation.frame is not None:
-            self._look()
-        self._hear(math.inf)
-        self._write([self._add(("story", ENDED), self._at, Source(Origin.SEEN, "senses"))])
+        while self._last_steps:
+            self._attempt(self._last_steps.popleft(), "the end of the story could not be used")
+        self._end()
 
     def fail(self, reason: str) -> None:
         """Write that the story cannot go on."""
         self._begin()
-        self._write([self._add(("story", ENDED, reason), self._at, Source(Origin.SEEN, "senses"))])
+        self._end(printed_line(reason))
+
+    def flush(self) -> None:
+        """Write what waits; after a full disk, also what was seen and decided before."""
+        work, self._undone = self._undone, None
+        if work is not None:
+            self._attempt(work, "what was seen before could not be used")
+        for reason in self._outbox.flush(self._board):
+            self._note("senses", f"a change was refused: {reason}")
+        self._outbox.flush(self._board)
+
+    def _attempt(self, work: Callable[[], None], trouble: str) -> None:
+        try:
+            work()
+        except MemoryWriteError:
+            raise
+        except Exception as error:
+            self._note("senses", f"{trouble}: {_reason(error)}")
+
+    def _take_event(self, event: Event, dropped: int) -> None:
+        if math.isfinite(event.at):
+            to_ticks(self._time(event.at))  # raises if the blackboard has no such time
+        if event.at - self._watched_at > PAUSE:
+            self._watched_at = math.inf
+            self._point(self._detector.finish())
+        if isinstance(event, Frame):
+            self._take_frame(event)
+            self._count(dropped)
+        else:
+            if 0 <= event.at - self._at <= LONGEST_PAUSE:
+                self._at = event.at
+            if isinstance(event, Skeleton):
+                self._watch(event)
+            else:
+                self._waiting.append((event, None))
+        self._hear(event.at)
+
+    def _take_frame(self, frame: Frame) -> None:
+        if frame.problem is not None:
+            self._note("camera", f"{frame.problem}; the frame is left out")
+            return
+        situation = self._tracker.update(frame.cloud, frame.at)
+        if not math.isfinite(situation.at):
+            for note in situation.notes:
+                self._note("camera", note)
+            return
+        self._at = max(self._at, situation.at)
+        if situation.at == frame.at != self._seen_at:  # else the frame was left out
+            self._seen_at, self._cloud = frame.at, frame.cloud
+        self._see(situation)
 
     def _begin(self) -> None:
         """Write the beginning of the story before all else."""
         if self._origin is None:
-            self._write([self._add(("story", BEGAN), 0.0, Source(Origin.SEEN, "senses"))])
+            self._outbox.add(self._add(("story", BEGAN), 0.0, Source(Origin.SEEN, "senses")))
+
+    def _finish_gestures(self) -> None:
+        self._point(self._detector.finish())
+
+    def _look_at_end(self) -> None:
+        if self._cloud is not None and self._situation.frame is not None:
+            self._look()
+
+    def _hear_all(self) -> None:
+        self._hear(math.inf)
+
+    def _end(self, reason: str | None = None) -> None:
+        """Write that the story has ended, once."""
+        if not self.ended:
+            self.ended = True
+            said = ("story", ENDED) if reason is None else ("story", ENDED, reason)
+            self._outbox.add(self._add(said, self._at, Source(Origin.SEEN, "senses")))
+        self.flush()
+
+    def _note(self, about: str, text: str) -> None:
+        """Write what was noticed, once."""
+        if text not in self._notes and len(self._notes) < MAX_NOTES:
+            self._notes.add(text)
+            source = Source(Origin.SEEN, "senses")
+            self._outbox.add(self._add((about, NOTICED, printed_line(text)), self._at, source))
 
     # ---- seeing
 
-    def _see(self, situation: Situation, problem: str | None) -> None:
+    def _see(self, situation: Situation) -> None:
+        """Write where things are; look at the whole table once it lies still."""
+        self._undone = lambda: self._see(situation)
+        self._name(situation)
+        self._undone = None
         seen = Source(Origin.SEEN, "tracker", f"frame {next(self._frames)}")
-        changes: list[Change] = []
-        for thing in situation.went:
-            fluent, _ = self._places.pop(thing.id, (None, 0.0))
-            if fluent is not None:
-                changes.append(Finish(fluent, self._time(max(thing.seen_at, 0.0))))
-        changes += self._places_of(situation, seen)
-        for note in (*situation.notes, *([problem] if problem else [])):
-            if note not in self._notes:
-                self._notes.add(note)
-                changes.append(self._add(("camera", NOTICED, note), self._at, seen))
-        self._write(changes)
+        self._outbox.add(*(self._left(thing, thing.seen_at) for thing in situation.went if thing.id in self._places))
+        self._outbox.add(*self._places_of(situation, seen))
+        for note in situation.notes:
+            self._note("camera", note)
         if situation.busy or any(thing.moving for thing in situation.things) or situation.went or situation.came:
             self._moved_at = situation.at
         self._take(situation)
-        key = tuple((thing.id, thing.since, thing.state) for thing in situation.things)
         if situation.frame is None or situation.at - self._moved_at < STILL:
             return
-        if key != self._written:
+        if _states(situation) != self._written:
             self._look()
         else:
             self._write_watched(situation.at)
+
+    def _name(self, situation: Situation) -> None:
+        """Give each thing its name on the blackboard."""
+        for thing in situation.things:
+            self._id(thing.id)
 
     def _take(self, situation: Situation) -> None:
         """Take a situation as the present one."""
@@ -242,11 +360,13 @@ class _Writer:
 
     def _count(self, dropped: int) -> None:
         """Write how many frames came too late, if there are more."""
-        known, fluent = self._dropped
+        known, fluent, since = self._dropped
         if dropped > known:
             added = self._add(("camera", DROPPED, str(dropped)), self._at, Source(Origin.SEEN, "senses"))
-            self._write([added] if fluent is None else [Finish(fluent, self._time(self._at)), added])
-            self._dropped = dropped, added.fluent.id
+            if fluent is not None:
+                self._outbox.add(self._finished(fluent, since, self._at))
+            self._outbox.add(added)
+            self._dropped = dropped, added.fluent.id, self._at
 
     def _places_of(self, situation: Situation, seen: Source) -> list[Change]:
         """Return the changes by which the blackboard has the places of all things that rest."""
@@ -256,7 +376,7 @@ class _Writer:
             if thing.moving or (known is not None and known[1] == thing.since):
                 continue
             if known is not None:
-                changes.append(Finish(known[0], self._time(thing.since)))
+                changes.append(self._left(thing, thing.since))
             changes.append(self._place(thing, seen))
         return changes
 
@@ -267,49 +387,46 @@ class _Writer:
         self._places[thing.id] = (added.fluent.id, thing.since)
         return added
 
+    def _left(self, thing: TrackedThing, at: float) -> Change:
+        """Return that a thing is no longer where it was."""
+        return self._finished(*self._places.pop(thing.id), at)
+
+    def _finished(self, fluent: str, since: float, at: float) -> Change:
+        """Return that a fluent ceased to hold; it held for a moment at least."""
+        return Finish(fluent, self._time(max(at, since + MOMENT)))
+
     def _look(self) -> None:
         """Detect everything on the table that lies still, correct what is tracked by it, and write it as a scene.
 
         The tracker segments only what changed; a look at the whole table, as at one that is seen for the first time, is
         what the robot learns from and compares with.
         """
-        from deixis.workflows.scenes.perceive import write_scene
-
-        scene = self._detected()
-        situation = self._situation
-        self._written = tuple((thing.id, thing.since, thing.state) for thing in situation.things)
-        self._watched = None
-        seen = Source(Origin.SEEN, "tracker")
+        self._undone = self._look
         file = self._folder / f"{self._board.new_id('table')}.scene.json"
-        write_scene(scene, file)
-        self._write_view(file.with_suffix("").with_suffix(VIEW))
-        added = self._add(("table", TABLE, str(file)), self._at, seen)
-        changes: list[Change] = [] if self._table is None else [Finish(self._table, self._time(self._at))]
-        self._table = added.fluent.id
-        self._write([*changes, added])
+        self._undone = None
+        found = self._detected()
+        if found is None:
+            self._write_table(self._things, file)
+        else:
+            self._correct(found, *self._tracker.look_again(found), file)
 
-    def _write_watched(self, at: float) -> None:
-        """Write that the table is still in view and looks as before, at most once in ``WATCH`` seconds."""
-        if self._watched is None:
-            added = self._add(("table", WATCHED), at, Source(Origin.SEEN, "tracker"), finish=at + 1e-3)
-            self._watched = added.fluent.id, at
-            self._write([added])
-        elif at - self._watched[1] >= WATCH:
-            self._watched = self._watched[0], at
-            self._write([Update(self._watched[0], finish=self._time(at))])
-
-    def _detected(self) -> Scene:
-        """Return the things of the whole table with the names of those that are tracked."""
+    def _detected(self) -> Scene | None:
+        """Return the things of the whole table; None where it is not found."""
         try:
             found = None if self._cloud is None else perceived(self._cloud)
         except DeixisError:
-            found = None
-        if found is None or found.detection is None or found.detection.table is None:
-            return self._things
-        situation, ids = self._tracker.look_again(found)
-        seen = Source(Origin.SEEN, "tracker", "look at the whole table")
+            return None
+        return None if found is None or found.detection is None or found.detection.table is None else found
+
+    def _correct(self, found: Scene, situation: Situation, ids: Mapping[str, str], file: Path) -> None:
+        """Take over what a look at the whole table corrected, and write the table as a scene."""
+        self._undone = lambda: self._correct(found, situation, ids, file)
+        self._name(situation)
+        self._undone = None
+        assert found.detection is not None
         parts = [self._places.pop(thing.id, None) for thing in situation.merged]
-        self._write([Delete(part[0]) for part in parts if part is not None] + self._places_of(situation, seen))
+        self._outbox.add(*(Delete(part[0]) for part in parts if part is not None))
+        self._outbox.add(*self._places_of(situation, Source(Origin.SEEN, "tracker", "look at the whole table")))
         self._take(situation)
         things = [replace(thing, id=self._id(ids[thing.id])) for thing in found.objects if thing.id in ids]
         onto = found.detection.frame @ np.linalg.inv(_required(situation.frame))
@@ -318,7 +435,30 @@ class _Writer:
             for thing in situation.things
             if thing.id not in ids.values() and thing.state == "hidden" and not thing.moving
         ]
-        return replace(found, objects=tuple(things), detection=None)
+        self._write_table(replace(found, objects=tuple(things), detection=None), file)
+
+    def _write_table(self, scene: Scene, file: Path) -> None:
+        """Write the present table as a scene."""
+        from deixis.workflows.scenes.perceive import write_scene
+
+        write_scene(scene, file)
+        self._write_view(file.with_suffix("").with_suffix(VIEW))
+        added = self._add(("table", TABLE, str(file)), self._at, Source(Origin.SEEN, "tracker"))
+        if self._table is not None:
+            self._outbox.add(self._finished(*self._table, self._at))
+        self._table, self._watched = (added.fluent.id, self._at), None
+        self._written = _states(self._situation)
+        self._outbox.add(added)
+
+    def _write_watched(self, at: float) -> None:
+        """Write that the table is still in view and looks as before, at most once in ``WATCH`` seconds."""
+        if self._watched is None:
+            added = self._add(("table", WATCHED), at, Source(Origin.SEEN, "tracker"), finish=at + MOMENT)
+            self._watched = added.fluent.id, at
+            self._outbox.add(added)
+        elif at - self._watched[1] >= WATCH:
+            self._watched = self._watched[0], at
+            self._outbox.add(Update(self._watched[0], finish=self._time(at)))
 
     def _write_view(self, file: Path) -> None:
         """Write the camera's image, and the thing that each of its pixels shows."""
@@ -349,32 +489,37 @@ class _Writer:
             pointing = pointed_at(gesture, self._things)
             self._pointings.append(pointing)
             if pointing.decided is not None:
-                source = Source(Origin.SHOWN, gesture.person, f"gesture at {gesture.at:.1f} s")
+                source = Source(Origin.SHOWN, printed_line(gesture.person), f"gesture at {gesture.at:.1f} s")
                 probability = pointing.probabilities[pointing.decided]
-                statement = (gesture.person, POINTED_AT, pointing.decided)
+                statement = (printed_line(gesture.person), POINTED_AT, pointing.decided)
                 added = self._add(statement, gesture.start, source, probability, gesture.finish)
-                self._write([added])
+                self._outbox.add(added)
 
     def _hear(self, now: float) -> None:
         """Write the words of which the moment, in which people may still point, has passed."""
         while self._waiting and now > self._waiting[0][0].end + SAME_MOMENT + STILL:
             said, typed = self._waiting.pop(0)
-            source = Source(Origin.SAID, said.speaker, f"words at {said.at:.1f} s")
-            finish = said.end if said.end > said.at else said.at + 1e-3
-            changes: list[Change] = [
-                self._add((said.speaker, SAID, said.text), said.at, source, max(said.confidence, 0.01), finish)
-            ]
-            shown = replace(source, origin=Origin.SHOWN)
-            for label in self._labels(said):
-                if label.target is not None and label.refused is None and label.name is not None:
-                    what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
-                    changes.append(self._add(what, said.at, shown, label.probability))
-                elif label.name is not None and label.refused is not None:
-                    noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
-                    changes.append(self._add((said.speaker, NOTICED, noticed), said.at, shown))
+            self._attempt(
+                partial(self._write_said, _printable(said)), f"what was said at {said.at:g} s could not be used"
+            )
             if typed is not None:
-                changes.append(Finish(typed, max(self._board.seconds(), self._time(said.at))))
-            self._write(changes)
+                self._outbox.add(Finish(typed, max(self._board.seconds(), self._time(said.at))))
+
+    def _write_said(self, said: Utterance) -> None:
+        """Write words, and what they name."""
+        source = Source(Origin.SAID, said.speaker, f"words at {said.at:.1f} s")
+        finish = said.end if said.end > said.at else said.at + MOMENT
+        self._outbox.add(
+            self._add((said.speaker, SAID, said.text), said.at, source, max(said.confidence, 0.01), finish)
+        )
+        shown = replace(source, origin=Origin.SHOWN)
+        for label in self._labels(said):
+            if label.target is not None and label.refused is None and label.name is not None:
+                what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
+                self._outbox.add(self._add(what, said.at, shown, label.probability))
+            elif label.name is not None and label.refused is not None:
+                noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
+                self._outbox.add(self._add((said.speaker, NOTICED, noticed), said.at, shown))
 
     def _labels(self, said: Utterance) -> Sequence[PointedLabel]:
         """Return what words name: the thing whose id they have (*t3 is a fork*), or what is pointed at meanwhile."""
@@ -412,7 +557,7 @@ class _Writer:
         ends = None if finish is None else self._time(finish)
         return Add(
             episodic(
-                self._board.new_id("f"),
+                self._outbox.new_id(self._board),
                 statement,
                 start=self._time(start),
                 finish=ends,
@@ -421,9 +566,18 @@ class _Writer:
             )
         )
 
-    def _write(self, changes: list[Change]) -> None:
-        if changes:
-            self._board.write(*changes)
+
+def _states(situation: Situation) -> tuple[tuple[str, float, str], ...]:
+    return tuple((thing.id, thing.since, thing.state) for thing in situation.things)
+
+
+def _printable(said: Utterance) -> Utterance:
+    """Return words with the characters that the blackboard keeps."""
+    return replace(said, text=printed_line(said.text, MAX_CHARACTERS), speaker=printed_line(said.speaker))
+
+
+def _reason(error: Exception) -> str:
+    return str(error) if isinstance(error, DeixisError) else f"{type(error).__name__}: {error}"
 
 
 def named(text: str) -> tuple[str | None, SpokenName | None]:

@@ -1,0 +1,206 @@
+"""Trouble of the live robot: events that cannot be used, words at the wrong time, and a full disk."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from timing import BUSY_SECONDS, until
+
+from deixis.grammar.utterances import Utterance
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.changes import Add, Change, Finish
+from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.errors import MemoryWriteError
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.pointing.skeleton import Skeleton
+from deixis.perception.tracking.frame import Frame
+from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.live.learner import NOT_SEEN, SAYS, Learner
+from deixis.robot.live.outbox import Outbox
+from deixis.robot.live.senses import ENDED, NOTICED, SAID, TABLE, Senses
+from deixis.robot.live.story import Event, Story
+from deixis.robot.modules import Module, ModuleBoard, run_until_stopped
+
+EMPTY = PointCloud(np.zeros((0, 3), np.float32))
+SEEN = Source(Origin.SEEN, "test")
+
+
+class FullDisk(ModuleBoard):
+    """Board whose first writes fail."""
+
+    def __init__(self, board: Blackboard, module: Module, failures: int) -> None:
+        super().__init__(board, module)
+        self.failures = failures
+
+    def write(self, *changes: Change) -> int:
+        self.failures -= 1
+        if self.failures >= 0:
+            raise MemoryWriteError("no space left on device")
+        return super().write(*changes)
+
+
+class StoryOf(Senses):
+    """Senses that take in given events."""
+
+    def __init__(self, folder: Path, *events: Event) -> None:
+        super().__init__({"source": "given"}, str(folder))
+        self.given = events
+
+    def story(self) -> Story:
+        return Story(self.frames())
+
+    def frames(self) -> Iterator[Frame]:
+        yield from self.given  # type: ignore[misc]  # a story is any sequence of events
+
+
+def noted(board: Blackboard, predicate: str) -> list[str | None]:
+    """Return the objects of all statements with a predicate."""
+    return [each.statement.object for each in board.holding(Pattern(predicate=predicate))]
+
+
+def take_in(senses: Senses, board: Blackboard, own: FullDisk | None = None, failures: int = 0) -> list[str]:
+    """Run the senses until the story has ended, and return what the runtime reports."""
+    stopped, lines = threading.Event(), list[str]()
+    arguments = (senses, own or FullDisk(board, senses, failures), stopped, lines.append)
+    thread = threading.Thread(target=run_until_stopped, args=arguments)
+    thread.start()
+    ended = until(lambda: bool(board.now(Pattern(predicate=ENDED))))
+    stopped.set()
+    thread.join(BUSY_SECONDS)
+    assert ended and not thread.is_alive()
+    return lines
+
+
+def test_the_robot_goes_on_after_events_that_cannot_be_used(tmp_path: Path) -> None:
+    senses = StoryOf(
+        tmp_path,
+        Frame(EMPTY, 0.0, 0, "a.pcd: damaged"),
+        Frame(EMPTY, 0.1, 1),
+        Utterance("one", -5e9),
+        Utterance("two\n\u202e\x1b[2J", 0.3, speaker="ada\nbob"),
+        Skeleton(1e300, {}),
+        Utterance("three", 0.4),
+        Frame(EMPTY, float("nan"), 2),
+    )
+    with Blackboard.transient() as board:
+        assert take_in(senses, board) == []
+        assert noted(board, SAID) == ["two \N{REPLACEMENT CHARACTER}\N{REPLACEMENT CHARACTER}[2J", "three"]
+        notes = noted(board, NOTICED)
+    assert "a.pcd: damaged; the frame is left out" in notes
+    assert any("could not be used: a time of" in str(note) for note in notes)
+    assert len(notes) == len(set(notes)) < 8
+
+
+def test_a_full_disk_is_reported_once_and_nothing_is_lost(tmp_path: Path) -> None:
+    words = [Utterance(f"word {number}", 3.0 * number) for number in range(4)]
+    with Blackboard.transient() as board:
+        (line,) = take_in(StoryOf(tmp_path, *words), board, failures=3)
+        assert noted(board, SAID) == [word.text for word in words]
+        assert len(board.holding(Pattern(predicate=ENDED))) == 1
+    assert "no space left on device" in line
+
+
+class NoIds(FullDisk):
+    """Board that gives every second id of a thing or a scene only when it is asked again."""
+
+    refused = False
+
+    def new_id(self, prefix: str) -> str:
+        self.refused = prefix in {"t", "table"} and not self.refused
+        if self.refused:
+            raise MemoryWriteError("no space left on device")
+        return super().new_id(prefix)
+
+
+def test_a_full_disk_during_a_look_loses_no_thing_and_no_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("deixis.robot.modules.PAUSE", 0.001)
+    script = tmp_path / "pair.layout"
+    script.write_text("layout pair\nfork left of plate\n", encoding="utf-8")
+    seen = []
+    for full in (False, True):
+        folder = tmp_path / str(full)
+        folder.mkdir()
+        senses = Senses({"source": "simulator", "layout": str(script), "seed": 2, "rate": 0.5}, str(folder))
+        with Blackboard.transient() as board:
+            own = (NoIds if full else FullDisk)(board, senses, 0)
+            take_in(senses, board, own)
+            statements = [each.statement for each in board.holding()]
+        seen.append([each for each in statements if each.predicate != TABLE])
+        tables = [each for each in statements if each.predicate == TABLE]
+        assert len(tables) == len(list(folder.glob("*.scene.json"))) >= 2
+    assert seen[0] == seen[1]
+
+
+def told(board: Blackboard, learner: Learner, *statements: tuple[str, str, str], failures: int = 0) -> list[str | None]:
+    """Give statements to a learner as the runtime does, and return what it says."""
+    own = FullDisk(board, learner, failures)
+    for number, statement in enumerate(statements):
+        board.write(Add(episodic(f"f{number}", statement, start=float(number), source=SEEN)), by="test")
+    for change in list(board.changes()):
+        for _ in range(failures + 1):  # as often as it raises
+            try:
+                learner.changed(change, own)
+                break
+            except MemoryWriteError:
+                continue
+    return noted(board, SAYS)
+
+
+def test_what_is_said_before_a_table_is_seen_gets_an_answer(tmp_path: Path) -> None:
+    with Blackboard.transient() as board:
+        words = ("ada", SAID, "what is wrong?"), ("ada", SAID, "fork left of plate")
+        assert told(board, Learner(str(tmp_path / "memory")), *words) == [NOT_SEEN, NOT_SEEN]
+
+
+def test_a_table_that_cannot_be_read_blocks_nothing(tmp_path: Path) -> None:
+    scene = tmp_path / "a.scene.json"
+    scene.write_text('{"objects": [\n1]}', encoding="utf-8")
+    with Blackboard.transient() as board:
+        said = told(
+            board, Learner(str(tmp_path / "memory")), ("table", TABLE, str(scene)), ("ada", SAID, "what is wrong?")
+        )
+    assert said[1:] == [NOT_SEEN]
+    assert str(said[0]).startswith("I could not use lookedLike(table, ")
+
+
+@pytest.mark.parametrize("failures", [1, 4])
+def test_a_full_disk_makes_the_learner_say_things_once(tmp_path: Path, failures: int) -> None:
+    with Blackboard.transient() as board:
+        said = told(board, Learner(str(tmp_path / "m")), ("ada", SAID, "what is wrong?"), failures=failures)
+    assert said == [NOT_SEEN]
+
+
+class Writer(Module):
+    """Module that writes what it likes."""
+
+    name = "writer"
+    writes = (Pattern(),)
+
+
+@given(st.lists(st.sampled_from(["add", "refused", "flush", "full"]), max_size=20))
+def test_an_outbox_writes_each_change_once_in_order(steps: list[str]) -> None:
+    outbox, added, refused = Outbox(), list[str](), 0
+    with Blackboard.transient() as board:
+        own = FullDisk(board, Writer(), 0)
+        for step in (*steps, "flush"):
+            if step == "add":
+                added.append(outbox.new_id(own))
+                outbox.add(Add(episodic(added[-1], ("t", "on", "table"), start=1.0, source=SEEN)))
+            elif step == "refused":
+                outbox.add(Finish("nothing", 2.0))
+                refused += 1
+            else:
+                own.failures = int(step == "full")
+                try:
+                    refused -= len(outbox.flush(own))
+                except MemoryWriteError:
+                    assert step == "full"
+                own.failures = 0
+        assert [change.id for change in board.changes()] == added
+    assert refused == 0
