@@ -51,7 +51,7 @@ def completed(words: str, monkeypatch: pytest.MonkeyPatch, shell: str = "bash") 
     ("words", "expected"),
     [
         ("deixis gr", ["ground"]),
-        ("deixis re", ["read", "recognise", "relate", "refer", "retrieve", "relation", "recall", "reason"]),
+        ("deixis re", ["read", "recognise", "relate", "retrieve", "refer", "relation", "recall", "reason"]),
         ("deixis memory ", ["export", "import", "stats", "verify", "forget"]),
         ("deixis ground --eng", ["--engine"]),
         ("deixis ground --engine s", ["scalable", "similarity"]),

@@ -89,8 +89,10 @@ def test_what_is_no_memory_limit_is_refused(limit: float) -> None:
 def test_the_time_limit_holds_from_reading_on(objects: int, tmp_path: Path) -> None:
     compile_grounding("exact")
     script, scene = written(objects, tmp_path)
-    with processor_time_below(1.5):
-        found = package.ground(script, scene, time_limit=1.0)
+    started, worked = time.monotonic(), time.process_time()
+    found = package.ground(script, scene, time_limit=1.0)
+    shared = max(1.0, (time.monotonic() - started) / max(time.process_time() - worked, 1e-3))  # with other processes
+    assert time.monotonic() - started < 1.0 + 0.5 * shared
     assert len(found.matches) > objects / 2
 
 
