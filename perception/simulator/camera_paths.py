@@ -96,7 +96,7 @@ class Walk:
     --------
     >>> from deixis.perception.simulator.camera import looking_pose
     >>> camera = Camera(looking_pose((0.0, -0.6, 0.7), (0.0, 0.0, 0.0)))
-    >>> Walk(np.pi / 2, 10.0, sway=None).moved(camera, 10.0).eye.round(3).tolist()
+    >>> (Walk(np.pi / 2, 10.0, sway=None).moved(camera, 10.0).eye.round(3) + 0.0).tolist()
     [0.6, 0.0, 0.7]
     """
 
