@@ -30,6 +30,9 @@ NODE_GROWTH, ERROR_FALL = 5.0, 15.0  # approximate factors of nodes and error fr
 SMALL_SEARCH_RATIO = 100  # a search with fewer nodes than the maximum over this ratio is not extrapolated
 SUM_CELLS, FACTOR_CELLS = 6e7, 4e6  # maximum work of sums, and cells of facts; beyond, maps are sampled
 
+MIN_PLACED_THINGS = 50
+"""Minimum number of things for which absent objects have places: in small scenes they cost more than they decide."""
+
 SECONDS_PER_PLACED_THING, MAX_PLACED_THINGS, PLACES_SHARE = 1e-6, 300, 0.3
 """Approximate seconds for the evidence of the places of absent objects, per table and pair of things; number of things
 beyond which their number does not grow; and share of the time that they may take, without which they are left out."""
@@ -146,7 +149,7 @@ def posterior(
     if not chains:
         return Posterior(believed_marginals(problem.compiled, deadline)[0], False, math.inf, is_propagated=True)
     places = None
-    if problem.places is not None and len(problem.ends):
+    if problem.places is not None and len(problem.ends) and n2 >= MIN_PLACED_THINGS:
         needed = SECONDS_PER_PLACED_THING * len(problem.tables) * n2 * min(n2, MAX_PLACED_THINGS)
         places = problem.places() if needed < PLACES_SHARE * deadline.left else None
     marginals, errors = sampled_marginals(problem.compiled, exchangeable(problem), deadline, seed, places)

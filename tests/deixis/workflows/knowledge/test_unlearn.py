@@ -325,6 +325,7 @@ def killing_deletions(write: Callable[..., int]) -> Callable[..., int]:
     return writing
 
 
+@pytest.mark.kills
 @pytest.mark.parametrize("killed", ["before", "after"])
 @pytest.mark.parametrize("seen", [False, True], ids=["lesson", "lesson and views"])
 def test_kill_at_the_commit_leaves_all_memories_in_step(
