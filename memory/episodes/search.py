@@ -15,39 +15,21 @@ from enum import Enum
 from typing import Protocol
 
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.experiences import Holding
 from deixis.memory.episodes.rdf import EP, SOSA, predicate_iri, resource_iri, thing_iri
 from deixis.memory.semantic.rdf.graphs import FLUENTS
-from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
+from deixis.reasoning.temporal.fluent import Pattern
 
 MAX_LOOKUPS = 20
 """Number of subjects up to which their fluents are looked up one by one, rather than in one pass over all."""
 
 
-class Episodes(Protocol):
+class Episodes(Holding, Protocol):
     """Fluents of a memory: a blackboard, or the board of a module."""
 
     @property
     def origin(self) -> datetime:
         """Time from which the memory counts seconds."""
-        ...
-
-    def holding(
-        self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
-    ) -> tuple[EpisodicFluent, ...]:
-        """Return the fluents that may have held in a window of time.
-
-        Parameters
-        ----------
-        pattern
-            Subject, predicate and object; None matches everything.
-        start, end
-            Ends of the window in seconds; by default it has no end on that side.
-
-        Returns
-        -------
-        tuple of EpisodicFluent
-            The fluents in the order of their earliest starts.
-        """
         ...
 
 

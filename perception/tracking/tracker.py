@@ -267,12 +267,9 @@ class Tracker:
         optics = optics_of(cloud)
         if optics is None:
             return self._situation(at, number, notes=("the cloud is not the image of a pinhole camera at its origin",))
-        try:
-            found = detect(cloud, self.settings.detection)
-        except CloudError as error:
-            return self._situation(at, number, notes=(str(error),))
-        if found.table is None:
-            return self._situation(at, number, notes=("; ".join(found.notes) or "no table was found",))
+        found = self._detected_table(cloud)
+        if isinstance(found, str):
+            return self._situation(at, number, notes=(found,))
         self._optics, self._frame, self._motion = optics, found.frame, CameraMotion(found.frame, at)
         image = image_of(cloud, optics, self.settings.stride)
         self._view = table_view(image.optics, found.frame, image.depth.shape)
@@ -336,6 +333,14 @@ class Tracker:
 
     # Looks at the whole table
 
+    def _detected_table(self, cloud: PointCloud) -> Detection | str:
+        """Return what a look at the whole table finds, or why it finds no table."""
+        try:
+            found = detect(cloud, self.settings.detection)
+        except CloudError as error:
+            return str(error)
+        return found if found.table is not None else "; ".join(found.notes) or "no table was found"
+
     def _is_laid_anew(self, changes: Changes) -> bool:
         """Return True if most things that were at rest left their places at once."""
         resting = [thing for thing in self._things if not thing.active]
@@ -344,12 +349,9 @@ class Tracker:
 
     def _begin_anew(self, cloud: PointCloud, image: FrameImage, changes: Changes, at: float, number: int) -> Situation:
         """Look at the whole table again: things that are not at their places are gone, and others are new."""
-        try:
-            found = detect(cloud, self.settings.detection)
-        except CloudError as error:
-            return self._situation(at, number, notes=(str(error),))
-        if found.table is None:
-            return self._situation(at, number, notes=("; ".join(found.notes) or "no table was found",))
+        found = self._detected_table(cloud)
+        if isinstance(found, str):
+            return self._situation(at, number, notes=(found,))
         there = [thing for thing in self._things if not thing.active and not self._has_left(thing, changes)]
         kept = self._matches(self._shown(found.labels, cloud), len(found.boxes), image, there)
         went = tuple(thing for thing in self._things if thing not in kept.values())
