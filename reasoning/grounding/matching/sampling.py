@@ -307,6 +307,7 @@ def _walk(labels, holder, problem, guide, coldness, steps):  # type: ignore[no-u
 def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
     """Return the changes of v - r and r if object i gets thing p, and j, which had p (-1: none), gets i's thing."""
     old, out = labels[i], problem.unary.shape[1] - 1
+    tables, placed = problem.tables, len(problem.away) > 0
     gained, paid = 0.0, 0.0
     if p == out:
         paid += problem.unary[i, out]
@@ -320,9 +321,13 @@ def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
         other = problem.other[slot]
         q = labels[other]
         if other == j:
-            gained += _of_fact(problem, slot, p, old) - _of_fact(problem, slot, old, p)
+            q, r = old, p  # the other object takes the place that this one leaves
         else:
-            gained += _of_fact(problem, slot, p, q) - _of_fact(problem, slot, old, q)
+            r = q
+        if placed:
+            gained += _of_fact(problem, slot, p, q) - _of_fact(problem, slot, old, r)
+        else:
+            gained += tables[problem.kind[slot], p, q] - tables[problem.kind[slot], old, r]
     if j < 0:
         return gained, paid
     if old == out:
@@ -333,5 +338,8 @@ def _change(i, p, j, labels, problem):  # type: ignore[no-untyped-def]
     for slot in range(problem.first[j], problem.first[j + 1]):
         if problem.other[slot] != i:
             q = labels[problem.other[slot]]
-            gained += _of_fact(problem, slot, old, q) - _of_fact(problem, slot, p, q)
+            if placed:
+                gained += _of_fact(problem, slot, old, q) - _of_fact(problem, slot, p, q)
+            else:
+                gained += tables[problem.kind[slot], old, q] - tables[problem.kind[slot], p, q]
     return gained, paid
