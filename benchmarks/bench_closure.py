@@ -28,7 +28,7 @@ from deixis.grammar.formats.networks import write_networks
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.closure import Closure, close
+from deixis.reasoning.qualitative.networks.closure.algebraic import Closure, close
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, on_axes
 
 ALLEN = cast(TableCalculus, calculus("allen"))

@@ -29,16 +29,16 @@ from peers import lccp_pcl
 from records import command_line, mean, recorded, share
 
 from deixis.experiments.open_ended.things import FOLDER, listed_meshes
-from deixis.grammar.parser import read_layout
+from deixis.grammar.layout.parser import read_layout
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.detection.detect import detect
 from deixis.perception.detection.shown import Shows
-from deixis.perception.simulator import tableware
-from deixis.perception.simulator.blocks import block
-from deixis.perception.simulator.size import Size
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes import tableware
+from deixis.perception.simulator.meshes.blocks import block
+from deixis.perception.simulator.meshes.size import Size
 from deixis.workflows.layouts.lay_table import lay_script
 from deixis.workflows.scenes.simulate import Simulation, simulate
 

@@ -33,8 +33,8 @@ from deixis.learning.views import FORM, UPRIGHT
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.recognition.calibration import SHIPPED_JOINT, auroc
-from deixis.perception.simulator.solids import joined, moved, ringed, thick_sheet, tube
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.solids import joined, moved, ringed, thick_sheet, tube
 
 Array = NDArray[np.float64]
 THINGS, EACH = 8, 2

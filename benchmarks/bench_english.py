@@ -72,6 +72,8 @@ class Names:
         self.wordings = {
             thing["id"]: {words(phrase) for phrase in (thing["id"], *thing["mentions"])} for thing in read["objects"]
         }
+        for name in read["absent"]:
+            self.wordings.setdefault(name, {words(name)})
         if read.get("surface"):
             self.wordings.setdefault(read["surface"], {words(read["surface"])})
 

@@ -20,9 +20,9 @@ from records import command_line, recorded, share
 from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.bridges import links_between
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.boxes import satisfies
 from deixis.reasoning.qualitative.networks.combination import close_jointly, solve_jointly
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
+from deixis.reasoning.qualitative.networks.realisation.boxes import satisfies
 from deixis.reasoning.qualitative.relate import relate
 
 COMBINATIONS = (

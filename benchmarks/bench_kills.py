@@ -1,10 +1,13 @@
-"""Kill writes over both stores, and check that each write is afterwards either complete or absent.
+"""Kill writes over several stores, and check that each write is afterwards either complete or absent.
 
-Every write (learn, learn a batch, teach, forget a lesson or a category, rename, merge, import concepts and views) is
-killed by SIGKILL, in ``--kills`` (300) children: half of them at a random step, before or after a call that changes the
-disk, and half at a random moment. ``--every-step`` kills each write once at each of its steps instead. After each kill
-the memory is opened again: ``verify`` must find nothing, also in the inferred triples, and all lessons, views and
-inferred triples must be those before the write or those after it. Exits 1 otherwise.
+Every write (what persons tell and show a robot, consolidate, learn, learn a batch, teach, forget a lesson or a
+category, take back a table or a teacher, rename, merge, import concepts and views) is killed by SIGKILL, in ``--kills``
+(300) children: half of them at a random step, before or after a call that changes the disk, and half at a random
+moment. ``--every-step`` kills each write once at each of its steps instead. After each kill the memory is opened again:
+``verify`` must find nothing, also in the inferred triples, and all lessons, views, inferred triples and episodes must
+be those before the write or those after it. Then ``--owners`` (100) robots, each the owner of its memory, are killed at
+random moments while they see and learn from what persons say and show: nothing that they acknowledged may be missing,
+and ``verify`` must find nothing. Exits 1 otherwise.
 """
 
 from __future__ import annotations
@@ -19,9 +22,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
-from both_stores import Example, example_in, findings, state
-from killing import KilledAtSteps, killed_at_steps
+from all_stores import TEA, Example, example_in, findings, state
+from killing import KilledAtSteps, forks_of, killed_at_steps
 from records import command_line, count, recorded
+
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.session import Session
 
 
 class Writes:
@@ -58,12 +64,69 @@ class Writes:
         return "before" if found == before else "after" if found == complete else "neither before nor after"
 
 
+OWNER = """
+import os, random
+import deixis
+from deixis.examples_data import example
+from deixis.robot.robot import Robot
+
+deixis.ground(example("formal_dinner.layout"), example("second_table.scene.json"))  # everything is compiled once
+
+def work(folder, seed):
+    random.seed(int(seed))
+    robot, tables = Robot(folder), [deixis.read_scene(file) for file in TABLES]
+    for turn in range(1000):
+        robot.sees(random.choice(tables))
+        if turn % 2:
+            event = f"utterance{turn}"
+            told = robot.told(TEA, "Ada", event=event)
+            os.write(1, f"lesson {told.learned.lesson.id} {event}\\n".encode())
+        else:
+            event = f"showing{turn}"
+            taught = robot.shown("gizmo", "o1", "Ada", event=event)
+            os.write(1, f"view {taught.view} {event}\\n".encode())
+"""
+"""Program of a robot that owns its memory, and prints each lesson and view once it is acknowledged."""
+
+
+def missing(memory: Path, acknowledged: list[str]) -> list[str]:
+    """Return what a robot acknowledged and its memory lacks, and what ``verify`` finds."""
+    wrong = list(findings(memory))
+    with Session(memory) as session, Blackboard.open(memory) as board:
+        known = set(session.memory().lessons()) if session.remembers() else set()
+        views = {key.id for key in session.views().listing()} if session.has_views() else set()
+        events = {each.source.event for each in board.holding()}
+        for line in acknowledged:
+            kind, id, event = line.split()
+            if id not in (known if kind == "lesson" else views) or event not in events:
+                wrong.append(f"missing: {line}")
+    return wrong
+
+
+def kill_owners(example: Example, number: int, rng: random.Random, scratch: Path) -> int:
+    """Kill robots at random moments, and return how many lost something or left their memory out of step."""
+    program = f"TEA = {TEA!r}\nTABLES = {[example.scene(seed) for seed in (3, 4, 5)]!r}\n{OWNER}"
+    wrong = total = 0
+    with forks_of(program) as robots:
+        for seed in range(number):
+            memory = scratch / f"owner {seed}"
+            lines = robots.kill_after(memory, seed, rng.randrange(1, 6), rng.uniform(0, 1.5))
+            total += len(lines)
+            for problem in missing(memory, lines):
+                print(f"owner {seed}: {problem}")
+                wrong += 1
+            shutil.rmtree(memory)
+    print(f"{number} owners killed, {total} writes acknowledged, {wrong} of them lost or out of step")
+    return wrong
+
+
 def main() -> None:
     parser = command_line(__file__, __doc__)
+    parser.add_argument("--owners", type=int, default=100)
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--every-step", action="store_true")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--quick", action="store_true", help="20 kills")
+    parser.add_argument("--quick", action="store_true", help="20 kills, 5 owners")
     with recorded(parser) as options:
         rng = random.Random(options.seed)
         outcomes: dict[str, Counter[str]] = {}
@@ -83,6 +146,8 @@ def main() -> None:
                 ]
             for write, step, after in jobs:
                 outcomes.setdefault(write, Counter())[writes.outcome(write, step, after)] += 1
+            owners = 5 if options.quick else options.owners
+            lost = kill_owners(writes.example, owners, rng, Path(scratch))
         for write, counts in outcomes.items():
             print(
                 f"{write} ({writes.steps[write]} steps): "
@@ -91,8 +156,10 @@ def main() -> None:
         wrong = sum(n for counts in outcomes.values() for what, n in counts.items() if what not in ("before", "after"))
         count("kills", len(jobs))
         count("writes left half done", wrong)
+        count("owners killed", owners)
+        count("owners' writes lost or out of step", lost)
         print(f"{len(jobs)} kills, {wrong} of them wrong")
-        if wrong:
+        if wrong or lost:
             sys.exit(1)
 
 

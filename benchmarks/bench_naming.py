@@ -57,7 +57,7 @@ from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, PAPER, RecognitionSettings
 from deixis.perception.recognition.spread import Width, spreads
 from deixis.perception.recognition.views import PackedViews
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
 
 Array = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]

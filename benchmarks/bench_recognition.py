@@ -27,7 +27,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist
 
 from deixis.examples_data import example
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.learning import views as recognising
 from deixis.learning.views import known_by
 from deixis.perception.clouds.cloud import PointCloud
@@ -40,8 +40,8 @@ from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.joint import JointRecogniser
 from deixis.perception.recognition.settings import DEFAULT, MIN_LABEL_PROBABILITY, PAPER, RecognitionSettings
 from deixis.perception.recognition.views import PackedViews, open_views, write_views
-from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.tableware import make
 from deixis.workflows.grounding.ground import ground
 from deixis.workflows.layouts.lay_table import lay_script
 from deixis.workflows.scenes.perceive import perceive

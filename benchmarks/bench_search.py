@@ -34,9 +34,9 @@ from deixis.grammar.formats.networks import read_networks, write_networks
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.calculi.tractable import RCC8_C8, RCC8_HORN, RCC8_Q8
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Solution, Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Solution, Verdict, solve
 
 TIME_LIMIT = 60.0  # seconds for a network
 START = """

@@ -31,13 +31,13 @@ from records import command_line, figure, recorded, share
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
-from deixis.perception.simulator.camera_paths import CAMERA_PATHS, camera_path
-from deixis.perception.simulator.motion import FilmedFrame
-from deixis.perception.simulator.stories import random_film
+from deixis.perception.simulator.films.camera_paths import CAMERA_PATHS, camera_path
+from deixis.perception.simulator.films.motion import FilmedFrame
+from deixis.perception.simulator.films.stories import random_film
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.tracker import Tracker
 
-THINGS = (1, 2, 4, 6, 9, 12)
+THINGS = (1, 2, 4, 8, 12)
 FIRST, NEAR, CLOSE = 0.04, 0.05, 0.01
 """Distances in metres: of a track from the thing that gets it, of a kept one, and of a right one."""
 
@@ -69,11 +69,8 @@ class Score:
         for thing in frame.things:
             if not thing.held and thing.visible:
                 self._since.setdefault(thing.name, frame.at)
-            free = [name for name in places if name not in self._tracks.values()]
-            if thing.name not in self._tracks and thing.name in self._since and not thing.held:
-                near = [(float(np.linalg.norm(places[name] - thing.centre)), name) for name in free]
-                if near and min(near)[0] < FIRST:
-                    self._tracks[thing.name] = min(near)[1]
+        self._assign(frame, places)
+        for thing in frame.things:
             if not thing.visible or frame.at < self._since.get(thing.name, np.inf) + SETTLING:
                 continue
             self.frames += 1
@@ -82,6 +79,23 @@ class Score:
             if away < NEAR:
                 self.kept += 1
                 self.errors.append(away)
+
+    def _assign(self, frame: FilmedFrame, places: Tracks) -> None:
+        """Give things without a track the free ones within ``FIRST``, so that the sum of distances is least."""
+        from scipy.optimize import linear_sum_assignment
+
+        new = [
+            thing
+            for thing in frame.things
+            if thing.name not in self._tracks and thing.name in self._since and not thing.held
+        ]
+        free = [name for name in places if name not in self._tracks.values()]
+        if not new or not free:
+            return
+        apart = np.array([[np.linalg.norm(places[name] - thing.centre) for name in free] for thing in new])
+        for row, column in zip(*linear_sum_assignment(np.minimum(apart, 10 * FIRST)), strict=True):
+            if apart[row, column] < FIRST:
+                self._tracks[new[row].name] = free[column]
 
 
 class Association:
@@ -137,6 +151,8 @@ def main() -> None:
     parser.add_argument("--cameras", nargs="+", choices=CAMERA_PATHS, default=CAMERA_PATHS, help="paths of the camera")
     parser.add_argument("--peer-every", type=int, default=5, help="frames of which the peer gets one; 0: no peer")
     with recorded(parser) as arguments:
+        short = argparse.Namespace(actions=1, scale=0.25, peer_every=0)
+        _run(arguments.cameras[-1], 1, 0, short, Score(), Score())  # compiles everything before times are measured
         peer = Score()
         for camera in arguments.cameras:
             scores: dict[int, Score] = {}
@@ -150,6 +166,8 @@ def main() -> None:
                 figure(
                     f"{camera} camera, {things} things: processor time of a frame", float(np.mean(score.seconds)), "s"
                 )
+            if len(scores) > 2:
+                _linear_load(camera, scores)
             everything = Score(
                 sum(score.kept for score in scores.values()),
                 sum(score.frames for score in scores.values()),
@@ -187,6 +205,20 @@ def _run(camera: str, things: int, seed: int, arguments: argparse.Namespace, sco
                 tracks = association(frame.cloud, frame.at)
                 peer.seconds.append(time.process_time() - started)
                 peer.add(frame, tracks)
+
+
+def _linear_load(camera: str, scores: Mapping[int, Score]) -> None:
+    """Print the straight line through the processor times of a frame by the number of things at the start."""
+    counts = np.array(sorted(scores), dtype=np.float64)
+    times = np.array([np.mean(scores[int(count)].seconds) for count in counts])
+    slope, base = np.polyfit(counts, times, 1)
+    off = float(np.abs(base + slope * counts - times).max() / times.max())
+    print(
+        f"{camera}, load: {1000 * base:.1f} ms a frame and {1000 * slope:.2f} ms more for each thing;"
+        f" largest difference from this line {off:.2f} of the largest time"
+    )
+    figure(f"{camera} camera: processor time of a frame for each further thing", float(slope), "s")
+    figure(f"{camera} camera: difference of the load from a straight line", off, "share of the largest time")
 
 
 def _line(score: Score) -> str:

@@ -13,16 +13,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.grammar.parser import read_layout
+from deixis.grammar.layout.parser import read_layout
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.mesh import Mesh
-from deixis.perception.simulator.camera import KINECT, Camera, chair_camera, looking_pose
-from deixis.perception.simulator.depth import DepthSensor, look, see
+from deixis.perception.simulator.cameras.camera import KINECT, Camera, chair_camera, looking_pose
+from deixis.perception.simulator.cameras.depth import DepthSensor, look, see
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
-from deixis.perception.simulator.rays import RayCaster
+from deixis.perception.simulator.meshes.rays import RayCaster
 from deixis.workflows.layouts.lay_table import lay_random, lay_script
 
 LAYOUT = Path(__file__).parent.parent / "examples" / "formal_dinner.layout"
+TEA = LAYOUT.with_name("tea.layout")
 LEAST = 200
 """Minimum number of visible points of a thing that detection should find."""
 
@@ -38,6 +39,12 @@ class Case:
 def formal(seed: int) -> Case:
     """Return a table laid for a formal dinner, seen from the chair."""
     table = lay_script(read_layout(LAYOUT), seed, cloth=bool(seed % 2)).table
+    return _case(see(table, chair_camera(table), seed=seed))
+
+
+def pots(seed: int) -> Case:
+    """Return a table with a lidded pot, a jug and a covered bowl, whose parts meet in concave creases, and a cup."""
+    table = lay_script(read_layout(TEA), seed, cloth=bool(seed % 2)).table
     return _case(see(table, chair_camera(table), seed=seed))
 
 
@@ -175,6 +182,7 @@ def odd_clouds(seed: int) -> dict[str, PointCloud]:
 
 CASES: dict[str, Callable[[int], Case]] = {
     "formal": formal,
+    "pots and jugs": pots,
     "pile across the table": pile,
     "clutter of boxes": clutter,
     "room with jitter": room,

@@ -170,23 +170,28 @@ class Figure:
 
 @dataclass
 class Recording:
-    """The figures of one run, with the commit, the date and the class of machine."""
+    """The figures of one run, with the commit, the date and the class of machine.
+
+    ``number`` counts the commits up to and with this one, so that the page can say which are old; 0 if unknown.
+    """
 
     commit: str
     date: str
     machine: str
     figures: list[Figure] = field(default_factory=list)
+    number: int = 0
 
     def to_dict(self) -> dict[str, Any]:
         """Return the JSON object."""
         figures = [figure.to_dict() for figure in self.figures]
-        return {"commit": self.commit, "date": self.date, "machine": self.machine, "figures": figures}
+        place = {"commit": self.commit, "number": self.number}
+        return {**place, "date": self.date, "machine": self.machine, "figures": figures}
 
     @classmethod
     def from_dict(cls, entry: dict[str, Any]) -> Recording:
         """Return the recording of a JSON object."""
         figures = [Figure.from_dict(each) for each in entry["figures"]]
-        return cls(entry["commit"], entry["date"], entry["machine"], figures)
+        return cls(entry["commit"], entry["date"], entry["machine"], figures, entry.get("number", 0))
 
 
 _current: ContextVar[list[Figure] | None] = ContextVar("figures of the running benchmark", default=None)
@@ -225,7 +230,8 @@ def recorded(parser: argparse.ArgumentParser, arguments: Sequence[str] | None = 
         _current.reset(token)
     kept = [each for each in figures if not (busy and each.unit in ("s", "ms"))]
     if run is not None and kept:
-        write(run, Recording(commit, datetime.date.today().isoformat(), machine_class(), kept))
+        today = datetime.date.today().isoformat()
+        write(run, Recording(commit, today, machine_class(), kept, commit_number(commit)))
 
 
 def run_of(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Run | None:
@@ -308,6 +314,12 @@ def measured_commit() -> str:
     return git("log", "-1", "--format=%h")
 
 
+def commit_number(commit: str) -> int:
+    """Return the number of commits up to and with a commit, 0 if git does not know it."""
+    done = subprocess.run(["git", "rev-list", "--count", commit], cwd=ROOT, capture_output=True, text=True, check=False)
+    return int(done.stdout) if done.returncode == 0 else 0
+
+
 def read(run: Run) -> list[Recording]:
     """Return the recordings of a run, the last one first."""
     if not run.record.exists():
@@ -336,29 +348,36 @@ def page() -> str:
         "names its folder ([which data](explanation/figures.md)). Brackets hold 95 per cent intervals. *Times as long*",
         "is the time of the named peer over that of Deixis in the same run. Times in seconds are recorded only on a",
         "machine that does nothing else. The last column shows the change since the recording before.",
+        "",
+        "*Old* marks a record that is older than the newest one on this page, with the number of commits between them;",
+        "the code that it measures may have changed since. `git diff --stat COMMIT` shows what did.",
     ]
+    recordings = {run.name: read(run) for run in RUNS}
+    newest = max((each[0].number for each in recordings.values() if each), default=0)
     for area in dict.fromkeys(run.area for run in RUNS):
         lines += ["", f"## {area}"]
         for run in (each for each in RUNS if each.area == area):
             lines += ["", f"### {run.measures[0].upper()}{run.measures[1:]}", ""]
-            lines += [f"`{run.command}`{' *' if run.data else ''}", "", *_table(read(run))]
+            lines += [f"`{run.command}`{' *' if run.data else ''}", "", *_table(recordings[run.name], newest)]
     return "\n".join(lines) + "\n"
 
 
-def _table(recordings: list[Recording]) -> list[str]:
+def _table(recordings: list[Recording], newest: int) -> list[str]:
     if not recordings:
         return ["Not recorded yet."]
     last = recordings[0]
     before = {(figure.name, figure.unit): figure for figure in recordings[1].figures} if len(recordings) > 1 else {}
     since = f"change since `{recordings[1].commit}`" if before else "change"
-    lines = [f"Commit `{last.commit}`, {last.date}, {last.machine}.", ""]
+    age = newest - last.number
+    old = f" *Old*, by {age} commit{'s' if age > 1 else ''}." if last.number and age else ""
+    lines = [f"Commit `{last.commit}`, {last.date}, {last.machine}.{old}", ""]
     lines += [f"| figure | value | {since} |", "|---|---|---|"]
     for each in last.figures:
         interval = "" if each.interval is None else " ({} to {})".format(*map(_shown, each.interval))
         peer = "" if each.peer is None else f", {each.peer}"
         unit = "" if each.unit in ("share", "count") else f" {each.unit}"
-        old = before.get((each.name, each.unit))
-        change = "" if old is None else _signed(each.value - old.value)
+        earlier = before.get((each.name, each.unit))
+        change = "" if earlier is None else _signed(each.value - earlier.value)
         lines.append(f"| {each.name}{peer} | {_shown(each.value)}{interval}{unit} | {change} |")
     return lines
 

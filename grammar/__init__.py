@@ -1,5 +1,5 @@
 """The layout language: scripts are read into a tree, and written from it.
 
-:mod:`deixis.grammar.parser` reads a script into the tree of :mod:`deixis.grammar.script`, and
-:mod:`deixis.grammar.format` writes the tree as text. :mod:`deixis.grammar.errors` holds the errors.
+:mod:`deixis.grammar.layout.parser` reads a script into the tree of :mod:`deixis.grammar.script`, and
+:mod:`deixis.grammar.layout.format` writes the tree as text. :mod:`deixis.grammar.errors` holds the errors.
 """

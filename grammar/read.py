@@ -65,7 +65,7 @@ def read_script_file(
         If the time limit is reached.
     """
     if not is_english(path):
-        from deixis.grammar.parser import read_layout
+        from deixis.grammar.layout.parser import read_layout
 
         return read_layout(path, ontology, deadline)
     from deixis.grammar.english.reader import read_english

@@ -157,12 +157,23 @@ def _fact(subject: str, relations: tuple[Relation, ...], thing: str, statement: 
 class Script(Answer):
     """A layout script: its statements, and the objects, facts, kinds and colours that they state.
 
-    >>> from deixis.grammar.parser import parse_script
+    Examples
+    --------
+    >>> from deixis.grammar.layout.parser import parse_script
     >>> script = parse_script("soup_spoon is a Spoon; soup spoon right of the plate")
     >>> script.objects
     ('soup_spoon', 'plate')
     >>> [str(fact) for fact in script.facts]
     ['right(soup_spoon, plate)']
+    >>> [type(statement).__name__ for statement in script.all_statements()]
+    ['Declaration', 'RelationStatement']
+    >>> {name: kind.label for name, kind in script.kinds.items()}
+    {'soup_spoon': 'spoon'}
+    >>> script = parse_script("fork between plate and knife; plate left of knife")
+    >>> [str(statement) for statement in script.stated] == [str(script.claims[0]), str(script.facts[0])]
+    True
+    >>> script.uncounted
+    ()
     """
 
     file: str
@@ -243,7 +254,7 @@ class Script(Answer):
     def colours(self) -> dict[str, Colour]:
         """Colours by object: the declared or claimed colour, or else the colour word at the start of the name.
 
-        >>> from deixis.grammar.parser import parse_script
+        >>> from deixis.grammar.layout.parser import parse_script
         >>> script = parse_script("the red mug left of the plate; plate is white")
         >>> {name: colour.label for name, colour in script.colours.items()}
         {'red_mug': 'red', 'plate': 'white'}
@@ -272,7 +283,7 @@ class Script(Answer):
 
         Examples
         --------
-        >>> from deixis.grammar.parser import parse_script
+        >>> from deixis.grammar.layout.parser import parse_script
         >>> graph = parse_script("2 wine_glass right of the red thingummy").graph()
         >>> [kind and kind.rpartition("#")[2] for kind in graph.kinds]
         ['WineGlass', 'WineGlass', None]

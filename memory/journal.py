@@ -1,14 +1,15 @@
-"""Journal of a write over both stores: the batch for the perceptual store, applied if the semantic store commits.
+"""Writes over several stores: all of them have the write, or none, also after a kill.
 
-The commit of the semantic store decides such a write. Before it, the batch for the perceptual store is written to the
-journal and synced. Its transaction stores the id of the journal in the semantic store. After it, the batch is applied,
-and the journal is removed. So an opening that finds a journal applies it if the semantic store has its id, and drops it
-if not: both stores then have all of the write, or none of it.
+The commit of the semantic store decides such a write. Before it, each other store that takes part writes what it will
+write to its journal, which is synced. The transaction stores the id of the write in the semantic store, for each of
+these stores. After it, they carry out what their journals hold, and remove them (:func:`write_together`). So a store
+whose opening finds a journal carries it out if the semantic store has its id, and drops it if not.
 
 An import of views that takes several batches has a journal too, which lists the new views. It is rolled back unless the
 last batch, which has the id, was written.
 
-The journal is in the folder of the perceptual store, and only the owner of that store reads, writes or removes it.
+A journal is in the folder of its store, the perceptual one or the episodes, and only the owner of that store reads,
+writes or removes it.
 
 >>> import tempfile
 >>> folder = Path(tempfile.mkdtemp())
@@ -22,15 +23,17 @@ True
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import secrets
 import struct
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, Protocol
 
 import pyoxigraph as ox
 
@@ -42,9 +45,13 @@ JOURNAL = "journal"
 NEW_JOURNAL = JOURNAL + ".new"
 
 MARKS = ox.NamedNode("https://w3id.org/deixis/graph/journal")
-"""Graph of the semantic store with the id of the last write over both stores; queries and exports leave it out."""
+"""Graph of the semantic store with the last writes over several stores; queries and exports leave it out."""
 
-COMMITTED = ox.NamedNode("https://w3id.org/deixis/graph/journal/committed")
+_COMMITTED = {
+    files.PERCEPTUAL: ox.NamedNode("https://w3id.org/deixis/graph/journal/committed"),
+    files.EPISODES: ox.NamedNode("https://w3id.org/deixis/graph/journal/committed/episodes"),
+}
+"""Predicates of the id of the last committed write that a store took part in, by the folder of the store."""
 
 READ_ATTEMPTS, READ_PAUSE = 10, 0.1
 """Number of attempts to read a store that is open in this process, and seconds between them: while it is compacted, a
@@ -59,8 +66,9 @@ _SUM = hashlib.sha256().digest_size
 class JournalEntry:
     """One write in progress.
 
-    ``pairs`` are keys of the perceptual store with their new values, None to delete. ``views`` is the change in the
-    number of views. ``undo`` are the ids of the views to forget if the write was interrupted.
+    ``pairs`` are keys of the perceptual store with their new values, None to delete; for the episodes, they are names
+    of writers with encoded changes, in order. ``views`` is the change in the number of views. ``undo`` are the ids of
+    the views to forget if the write was interrupted.
     """
 
     id: str
@@ -69,8 +77,83 @@ class JournalEntry:
     undo: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class JointWrite:
+    """A write over several stores: its id, and the folders of the stores that take part beside the semantic one."""
+
+    id: str
+    stores: tuple[str, ...]
+
+
+Commit = Callable[[JointWrite | None], None]
+"""A function that commits a prepared change of the semantic store; its argument is the write that this decides."""
+
+
+class Part(Protocol):
+    """The part that one store beside the semantic one takes in a write."""
+
+    store: str
+
+    def prepare(self, id: str) -> None:
+        """Check that the store can write its part, and write its journal.
+
+        Parameters
+        ----------
+        id
+            Id of the write.
+        """
+        ...
+
+    def complete(self) -> None:
+        """Write the part, which the semantic store has committed, and remove the journal."""
+        ...
+
+    def settle(self) -> None:
+        """Complete the part if the semantic store has committed the write, and else drop it with its journal."""
+        ...
+
+
+def write_together(commit: Commit, parts: Sequence[Part]) -> None:
+    """Write to several stores: all of them have the write, or none, also after a kill.
+
+    Parameters
+    ----------
+    commit
+        Function that commits the change of the semantic store, which decides.
+    parts
+        Parts of the other stores. Without any, only the semantic store is written.
+
+    Raises
+    ------
+    DeixisError
+        If a store refuses the write; none has it then. If a store cannot write what was committed, it does so when it
+        is next opened and can be written.
+    """
+    if not parts:
+        commit(None)
+        return
+    write = JointWrite(secrets.token_hex(8), tuple(part.store for part in parts))
+    prepared: list[Part] = []
+    try:
+        for part in parts:
+            part.prepare(write.id)
+            prepared.append(part)
+        commit(write)
+    except BaseException:
+        _each(prepared, "settle")
+        raise
+    _each(prepared, "complete")
+
+
+def _each(parts: Sequence[Part], method: Literal["settle", "complete"]) -> None:
+    """Call a method of each part, also where it raises for some; then raise the first error."""
+    with contextlib.ExitStack() as calls:
+        for part in reversed(parts):
+            calls.callback(getattr(part, method))
+
+
 def new_id() -> str:
-    """Return a new unique id for a journal.
+    """Return a new unique id for the journal of an import.
 
     Returns
     -------
@@ -78,6 +161,22 @@ def new_id() -> str:
         The id.
     """
     return secrets.token_hex(8)
+
+
+def marked(write: JointWrite) -> dict[ox.NamedNode, ox.Literal]:
+    """Return what the semantic store keeps of a write over several stores.
+
+    Parameters
+    ----------
+    write
+        The write.
+
+    Returns
+    -------
+    dict
+        The id by the predicate of each store that takes part.
+    """
+    return {_COMMITTED[store]: ox.Literal(write.id) for store in write.stores}
 
 
 def write_journal(folder: Path, entry: JournalEntry) -> None:
@@ -156,13 +255,15 @@ def clear_journal(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def has_committed(memory: Path, id: str) -> bool:
+def has_committed(memory: Path, store: str, id: str) -> bool:
     """Say whether the semantic store has committed a write, by reading it only.
 
     Parameters
     ----------
     memory
         The folder of the memory.
+    store
+        Folder of the store that takes part in the write.
     id
         Id of the write.
 
@@ -176,12 +277,13 @@ def has_committed(memory: Path, id: str) -> bool:
     MemoryFormatError
         If the store cannot be read.
     """
-    store = files.store_in(memory)
-    if not store.is_dir():
+    semantic = files.store_in(memory)
+    if not semantic.is_dir():
         return False
     for attempt in range(READ_ATTEMPTS):
         try:
-            found = list(ox.Store.read_only(str(store)).quads_for_pattern(MARKS, COMMITTED, None, MARKS))
+            reading = ox.Store.read_only(str(semantic))
+            found = list(reading.quads_for_pattern(MARKS, _COMMITTED[store], None, MARKS))
             break
         except (OSError, RuntimeError) as error:
             if attempt + 1 < READ_ATTEMPTS:

@@ -1,9 +1,10 @@
 """Verify a memory: read all of it and list what differs from what was written. ``deixis memory verify`` calls it.
 
 The semantic store is opened for reading only, and read through each of its indexes; RocksDB checks the checksum of
-every block that it reads. A memory without lessons, or without views, has only one of the two stores and is complete.
-At last the two stores are compared: the views that lessons taught exist, in the categories that the lessons name, and
-the lessons of the views exist. An interrupted write over both stores is completed or rolled back first.
+every block that it reads. A memory without lessons, views or episodes lacks a store and is complete.
+At last the stores are compared: the views that lessons taught exist, in the categories that the lessons name, and the
+lessons of the views exist; the episodes have what was said when lessons and views were taught, and experiences name
+lessons that exist. An interrupted write over several stores is completed or rolled back first.
 
 >>> import tempfile
 >>> from deixis.memory.semantic.store import SemanticMemory
@@ -15,7 +16,8 @@ Verified(semantic=True, perceptual=False, findings=())
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -24,13 +26,16 @@ import pyoxigraph as ox
 
 from deixis.memory import folder as files
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+from deixis.memory.episodes.episode import EVENT
+from deixis.memory.episodes.experiences import CONSOLIDATED
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState
 from deixis.memory.owner import OwnerLock, ReaderLock
 from deixis.memory.perceptual.in_folder import has_views, open_in
 from deixis.memory.perceptual.protocol import Finding, Progress
 from deixis.memory.semantic.rdf import ledger
-from deixis.memory.semantic.rdf.links import all_links
+from deixis.memory.semantic.rdf.links import all_links, events_of_lessons
+from deixis.reasoning.temporal.fluent import Pattern
 
 _INDEXES = {
     "subject": (0,),
@@ -49,7 +54,7 @@ Stale = Callable[[ox.Store], Iterable[str]]
 
 @dataclass(frozen=True)
 class Verified:
-    """Result of :func:`verify`: which of the two stores exist, and the findings in them."""
+    """Result of :func:`verify`: whether there are lessons and views, and the findings in all stores."""
 
     semantic: bool
     perceptual: bool
@@ -57,7 +62,7 @@ class Verified:
 
 
 def verify(memory: Path, progress: Progress | None = None, stale: Stale | None = None) -> Verified:
-    """Read both stores of a memory completely, without changing their content.
+    """Read all stores of a memory completely, without changing their content.
 
     Parameters
     ----------
@@ -83,7 +88,8 @@ def verify(memory: Path, progress: Progress | None = None, stale: Stale | None =
     """
     semantic = files.inspect(memory) not in (FolderState.ABSENT, FolderState.EMPTY)
     perceptual = has_views(memory)
-    views = _verify_views(memory, progress) if perceptual else _Views({}, {}, ())
+    events, episodes = _verify_episodes(memory)
+    views = _verify_views(memory, progress) if perceptual else _Views({}, {}, {}, ())
     findings: list[Finding] = []
     if semantic:
         lock = _lock(memory)
@@ -94,24 +100,62 @@ def verify(memory: Path, progress: Progress | None = None, stale: Stale | None =
             if not findings:
                 findings += (Finding(files.STORE, line) for line in (stale(store) if stale is not None else ()))
                 findings += () if views.categories is None else _disagreements(store, views.categories, views.lessons)
+                findings += () if events is None else _unrecorded(store, events)
         except MemoryFormatError as error:
             findings.append(Finding(files.STORE, files.one_line(error)))
         finally:
             lock.release(undo=True)
     else:
         findings += (_lessonless(view, lesson) for view, lesson in sorted(views.lessons.items()))
-    return Verified(semantic, perceptual, (*findings, *views.findings, *_verify_episodes(memory)))
+    if events is not None:
+        findings += _unshown(views.events, events)
+    return Verified(semantic, perceptual, (*findings, *views.findings, *episodes))
 
 
-def _verify_episodes(memory: Path) -> Iterator[Finding]:
-    """Find where the log, the fluents and the index of times of the blackboard disagree, if there is one."""
+class _Events(NamedTuple):
+    """The events that the log of the blackboard ever had, and the lessons that experiences name."""
+
+    origin: str
+    known: Set[str]
+    consolidated: Mapping[str, str]
+
+
+def _verify_episodes(memory: Path) -> tuple[_Events | None, tuple[Finding, ...]]:
+    """Find where the log, the fluents and the index of times of the blackboard disagree, if there is one.
+
+    The events are None where they could not all be read; without a blackboard there are none.
+    """
     if not has_episodes(memory):
-        return
+        return _Events("", frozenset(), {}), ()
     try:
         with Blackboard.open(memory) as board:
-            yield from (Finding(files.EPISODES, line) for line in board.verify())
+            found = tuple(Finding(files.EPISODES, line) for line in board.verify())
+            marks = board.holding(Pattern(predicate=CONSOLIDATED))
+            named = {
+                said.subject: said.object for said in (each.statement for each in marks) if said.object is not None
+            }
+            return None if found else _Events(board.origin.isoformat(), board.events(), named), found
     except DamagedMemoryError as error:
-        yield Finding(files.EPISODES, files.one_line(error))
+        return None, (Finding(files.EPISODES, files.one_line(error)),)
+
+
+def _unrecorded(store: ox.Store, events: _Events) -> Iterator[Finding]:
+    """Find lessons that were taught by what the episodes never had, and experiences whose lesson is missing."""
+    for lesson, taught in events_of_lessons(store).items():
+        for event in taught:
+            if event not in events.known:
+                yield Finding(f"lesson '{lesson}'", f"it was taught by '{event}', which the episodes never had")
+    for name, lesson in sorted(events.consolidated.items()):
+        if not ledger.knows(store, lesson):
+            yield Finding(f"experience '{name}'", f"it taught the lesson '{lesson}', which is missing")
+
+
+def _unshown(views: Mapping[str, Set[str]], events: _Events) -> Iterator[Finding]:
+    """Find views that were shown in events of this blackboard which the episodes never had."""
+    for view, shown in sorted(views.items()):
+        for origin, _, event in (each.partition(" ") for each in sorted(shown)):
+            if origin == events.origin and event not in events.known:
+                yield Finding(f"view '{view}'", f"it was shown in '{event}', which the episodes never had")
 
 
 def _lock(memory: Path) -> OwnerLock | ReaderLock:
@@ -122,13 +166,14 @@ def _lock(memory: Path) -> OwnerLock | ReaderLock:
 
 
 class _Views(NamedTuple):
-    """Category and lesson of each view in the perceptual store, by the view's id, and the findings in the store.
+    """Category, lesson and events of each view in the perceptual store, by the view's id, and the findings in it.
 
     ``categories`` is None where not all views could be read; then the stores are not compared.
     """
 
     categories: Mapping[str, str] | None
     lessons: Mapping[str, str]
+    events: Mapping[str, Set[str]]
     findings: tuple[Finding, ...]
 
 
@@ -137,10 +182,20 @@ def _verify_views(memory: Path, progress: Progress | None) -> _Views:
         with open_in(memory) as views:
             found = views.verify(progress)
             if found:
-                return _Views(None, {}, found)
-            return _Views({key.id: key.category for key in views.listing()}, views.lessons_of_views(), ())
+                return _Views(None, {}, {}, found)
+            events = {view.id: _events(view.metadata) for view in views.headers()}
+            for view, turns in views.teachings().items():
+                events[view] = events.get(view, set()).union(*(_events(turn["metadata"]) for turn in turns))
+            return _Views({key.id: key.category for key in views.listing()}, views.lessons_of_views(), events, ())
     except DamagedMemoryError as error:
-        return _Views(None, {}, (Finding(files.PERCEPTUAL, files.one_line(error)),))
+        return _Views(None, {}, {}, (Finding(files.PERCEPTUAL, files.one_line(error)),))
+
+
+def _events(metadata: object) -> set[str]:
+    """Return the event of the metadata of a view, which are given as JSON or parsed."""
+    values = json.loads(metadata) if isinstance(metadata, str | bytes) else metadata
+    event = values.get(EVENT) if isinstance(values, dict) else None
+    return {event} if isinstance(event, str) else set()
 
 
 def _disagreements(store: ox.Store, categories: Mapping[str, str], lessons: Mapping[str, str]) -> Iterator[Finding]:

@@ -33,10 +33,15 @@ class Fact:
     ``weight`` is above 0 and at most 1, and below 0.5 for a fact that is rarely true. An ``optional`` fact need not
     hold. ``source`` is the place where the fact was written.
 
+    Examples
+    --------
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> print(Fact("fork", (r["left"], r["top_left"]), "plate", weight=0.8))
     left or top_left(fork, plate)
+    >>> fact = Fact("fork", (r["left"],), "plate", weight=0.2)
+    >>> fact.rare, fact.affirmed_weight, fact.plain, fact.relation_set == r["left"].bit
+    (True, 0.8, False, True)
     """
 
     subject: str

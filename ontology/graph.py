@@ -266,7 +266,7 @@ class RelationGraph:
         Examples
         --------
         >>> import networkx as nx
-        >>> from deixis.grammar.parser import parse_script
+        >>> from deixis.grammar.layout.parser import parse_script
         >>> graph = parse_script("fork left or above plate; cup right of saucer").graph().to_networkx()
         >>> graph["fork"]["plate"][0]["relations"]
         ('left', 'top')

@@ -45,6 +45,8 @@ class Relation:
     >>> left = default_ontology().relations["left"]
     >>> left.word, left.phrase, str(left.reading)
     ('left', 'left of', 'wide')
+    >>> left.symmetric, left.bit == 1 << left.index, left.admits().shape
+    (False, True, (13, 13))
     """
 
     name: str  # 'top_left', 'exactly_top_left'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import Counter
 from typing import Any
 
@@ -71,11 +72,91 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
             object_pairs_hook=without_repeats,
         )
     except json.JSONDecodeError as wrong:
-        raise error(f"{file}:{wrong.lineno}:{wrong.colno}: this is not valid JSON: {wrong.msg}") from wrong
+        place = f"{file}:{wrong.lineno}:{wrong.colno}"
+        raise error(f"{place}: this is not valid JSON: {json_mistake(wrong.doc, wrong.pos, wrong.msg)}") from wrong
     except RecursionError as wrong:
         raise error(f"{file}: the JSON is nested too deeply") from wrong
     except ValueError as wrong:
         raise error(f"{file}: {wrong}") from wrong
+
+
+CLOSING = {"{": "}", "[": "]"}
+"""Closing bracket of each opening one."""
+
+STRING_OR_BRACKET = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\]]')
+
+MISTAKES = {
+    "Expecting value": "a value is expected here",
+    "Expecting property name enclosed in double quotes": "a key in double quotes is expected here",
+    "Expecting ':' delimiter": "a ':' is missing between the key and its value",
+    "Extra data": "there is more text after the end of the JSON",
+    "Invalid control character at": "a string must be closed by '\"' on its own line",
+}
+"""Wording for the messages of Python's reader that leave open what to do."""
+
+
+def json_mistake(text: str, position: int, message: str) -> str:
+    """Say what is wrong at the place where reading JSON failed, and what to do.
+
+    Parameters
+    ----------
+    text
+        The JSON text.
+    position
+        Index of the character at which reading failed.
+    message
+        Message of Python's reader, for mistakes that are not recognised here.
+
+    Returns
+    -------
+    str
+        A sentence without a full stop; it names the line and column of a bracket that is not closed.
+
+    Examples
+    --------
+    >>> json_mistake('{"objects": [{"id": "a"]}', 23, "Expecting ',' delimiter")
+    "the '{' at 1:14 is not closed; add '}' before this ']'"
+    >>> json_mistake('[1, 2,]', 6, "Expecting value")
+    "remove the ',' before this ']'"
+    """
+    if not text.strip():
+        return "the text is empty"
+    rest, before = text[position:].lstrip(), text[:position].rstrip()
+    here = rest[:1]
+    opened = _open_brackets(before)
+    if opened and (message.startswith("Expecting") or not here):
+        start = opened[-1]
+        closing = CLOSING[text[start]]
+        line = text.count("\n", 0, start) + 1
+        bracket = f"the '{text[start]}' at {line}:{start - text.rfind(chr(10), 0, start)}"
+        if not here:
+            return f"{bracket} is not closed; add '{closing}' at the end"
+        if here in "]}" and here != closing:
+            return f"{bracket} is not closed; add '{closing}' before this '{here}'"
+        if here == "{" == text[start] and before.endswith(","):
+            return f"{bracket} is not closed; add '{closing}' before the ',' that precedes this '{{'"
+        if here == closing and before.endswith(","):
+            return f"remove the ',' before this '{here}'"
+    if here == "'":
+        return 'write strings in double quotes ("), not in single ones'
+    if message == "Expecting ',' delimiter":
+        return (
+            "a ',' is missing before this"
+            if here in '{["-0123456789'
+            else "a ',' or a closing bracket is expected here"
+        )
+    return MISTAKES.get(message, message)
+
+
+def _open_brackets(text: str) -> list[int]:
+    """Return the positions of the brackets that a text opens and does not close, the outermost first."""
+    opened: list[int] = []
+    for found in STRING_OR_BRACKET.finditer(text):
+        if found[0] in CLOSING:
+            opened.append(found.start())
+        elif found[0] in "}]" and opened:
+            opened.pop()
+    return opened
 
 
 def json_type(data: Any) -> str:

@@ -97,6 +97,7 @@ class DX(StrEnum):
     LINE = BASE + "line"
     POSITION = BASE + "position"
     KIND_DECLARED = BASE + "kindDeclared"
+    IS_GROUP = BASE + "isGroup"
     DESCRIBED_FROM = BASE + "describedFrom"
     IN_LAYOUT = BASE + "inLayout"
     OF_KIND = BASE + "ofKind"

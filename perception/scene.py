@@ -46,6 +46,8 @@ class OrientedBox:
     >>> knife = OrientedBox((0.3, 0.2, 0.005), np.pi / 2, (0.22, 0.02, 0.01))
     >>> knife.axes.round(3).tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    >>> knife.rounded(1)
+    OrientedBox(centre=(0.3, 0.2, 0.0), yaw=1.6, extents=(0.2, 0.0, 0.0))
     """
 
     centre: tuple[float, float, float]
@@ -85,6 +87,11 @@ class OrientedBox:
         ------
         MissingExtraError
             If Open3D is not installed.
+
+        Examples
+        --------
+        >>> OrientedBox((0.3, 0.2, 0.0), 0.5, (0.2, 0.1, 0.1)).to_open3d().extent.tolist()
+        [0.2, 0.1, 0.1]
         """
         from deixis.perception.open3d import open3d
 
@@ -115,9 +122,10 @@ MAX_COORDINATE = 1e9
 """Maximum absolute value of a coordinate, in metres or pixels."""
 
 UNKNOWN_VIEWPOINT = "unknown"
+"""Viewpoint of a scene whose x axis does not point to the right of any viewer."""
+
 PLACED_VIEWER = "viewer"
 """Viewpoint of a scene that says where its viewer stands."""
-"""Viewpoint of a scene whose x axis does not point to the right of any viewer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,6 +218,11 @@ class PerceivedObject:
         ------
         MissingExtraError
             If Open3D is not installed.
+
+        Examples
+        --------
+        >>> PerceivedObject("o1", (0.0, 0.0, 0.0), (0.2, 0.1, 0.1)).to_open3d().get_extent().tolist()
+        [0.2, 0.1, 0.1]
         """
         from deixis.perception.open3d import open3d
 
@@ -289,6 +302,21 @@ class Scene(Answer):
     >>> scene = deixis.read_scene({"objects": [{"id": "o1", "label": "fork", "min": [0, 0], "max": [0.03, 0.2]}]})
     >>> scene.ids, scene.unit, scene.viewpoint
     (('o1',), 'm', 'chair')
+    >>> scene.boxes.tolist(), scene.summary()
+    ([[[0.0, 0.0], [0.03, 0.2]]], '<scene>: 1 object, 1 labelled, 2-D boxes in m, seen from the chair')
+    >>> scene.without_labels()["o1"].label is None
+    True
+
+    Properties of all objects are arrays, with NaN for what is unknown:
+
+    >>> lying = OrientedBox((0.1, 0.1, 0.05), 0.5, (0.2, 0.1, 0.1))
+    >>> chair = PerceivedObject("o1", (0, 0, 0), (0.2, 0.2, 0.1), colour=(255, 0, 0), front=(0, -2), oriented=lying)
+    >>> spoon = PerceivedObject("o2", (0.5, 0.0, 0.0), (0.7, 0.1, 0.1), heading=Heading("head", (3.0, 0.0)))
+    >>> scene = Scene((chair, spoon))
+    >>> scene.colours.tolist(), scene.fronts.tolist(), scene.heads.tolist()
+    ([[255.0, 0.0, 0.0], [nan, nan, nan]], [[0.0, -1.0], [nan, nan]], [[nan, nan], [1.0, 0.0]])
+    >>> scene.poses.axes.shape, scene.room.ids
+    ((2, 2), ('o1', 'o2'))
     """
 
     objects: tuple[PerceivedObject, ...]
@@ -427,6 +455,13 @@ class Scene(Answer):
         ------
         SceneError
             If a geometry is empty, or the numbers of ids or labels do not agree.
+
+        Examples
+        --------
+        >>> scene = Scene((PerceivedObject("o1", (0.0, 0.0, 0.0), (0.2, 0.1, 0.1)),))
+        >>> shapes = scene.to_open3d()
+        >>> Scene.from_open3d(shapes, labels=["cup"])["o1"].maximum
+        (0.2, 0.1, 0.1)
         """
         from deixis.perception.open3d import open3d
 
@@ -460,6 +495,15 @@ class Scene(Answer):
         ------
         SceneError
             If the annotations are invalid, or the image is not among them.
+
+        Examples
+        --------
+        >>> annotations = {
+        ...     "images": [{"id": 1, "file_name": "table.jpg", "width": 640, "height": 480}],
+        ...     "categories": [{"id": 1, "name": "cup"}],
+        ...     "annotations": [{"id": 7, "image_id": 1, "category_id": 1, "bbox": [10, 20, 30, 40]}]}
+        >>> Scene.from_coco(annotations)["o1"].minimum
+        (10.0, 420.0)
         """
         read: Callable[..., Scene] = _format("scene_json").read_scene
         return read(source, image)
@@ -485,6 +529,13 @@ class Scene(Answer):
         ------
         SceneError
             If a field is missing or has another type.
+
+        Examples
+        --------
+        >>> scene = Scene.from_boxes(min=np.zeros((1, 3)), max=np.full((1, 3), 0.1), labels=["cup"])
+        >>> message = scene.to_detections3d()
+        >>> sorted(message), Scene.from_detections3d(message)["o1"].label
+        (['detections', 'header'], 'cup')
         """
         read: Callable[..., Scene] = _format("detections3d").scene_from_detections3d
         return read(message, viewpoint=viewpoint)
@@ -620,6 +671,12 @@ class Scene(Answer):
         -------
         Scene
             The scene without oriented boxes; the places of people stay.
+
+        Examples
+        --------
+        >>> scene = Scene((PerceivedObject("o1", (0.0, 0.0), (2.0, 1.0)),))
+        >>> scene.turned(math.pi / 2)["o1"].maximum
+        (0.0, 2.0)
         """
         from deixis.reasoning.geometry.turning import turned
 
@@ -662,6 +719,12 @@ class Scene(Answer):
         ------
         SceneError
             If the scene has no such object, the object has no points, or its file cannot be read.
+
+        Examples
+        --------
+        >>> cup = PerceivedObject("o1", (0, 0, 0), (1, 1, 1), cloud=PointCloud(np.eye(3, dtype=np.float32)))
+        >>> len(Scene((cup,)).cloud_of("o1"))
+        3
         """
         if id not in self.ids:
             raise SceneError(f"{self.file}: there is no object '{id}'; there are: {', '.join(self.ids) or 'none'}")
@@ -730,6 +793,16 @@ class Scene(Answer):
         ------
         OutOfTimeError
             If the deadline passes.
+
+        Examples
+        --------
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> scene = Scene((PerceivedObject("o1", (0, 0), (1, 1)), PerceivedObject("o2", (2, 0), (3, 1))))
+        >>> words = default_ontology().relations
+        >>> scene.relations(words).relation(0, 1)
+        <Relation exactly_left (exact)>
+        >>> [str(fact) for fact in scene.graph(words).facts()]
+        ['exactly_left(o1, o2)', 'exactly_right(o2, o1)']
         """
         key = (id(vocabulary), tolerance)
         if key not in self._relations:
@@ -779,6 +852,12 @@ class Scene(Answer):
         -------
         Scene
             The scene.
+
+        Examples
+        --------
+        >>> scene = Scene((PerceivedObject("o1", (0, 0), (1, 1)), PerceivedObject("o2", (2, 0), (3, 1))))
+        >>> scene.reordered([1, 0]).ids
+        ('o2', 'o1')
         """
         return replace(self, objects=tuple(self.objects[i] for i in order), detection=None)
 

@@ -2,18 +2,23 @@
 
 Loading numba and compiled code takes about half a second of processor time; a script of a dozen objects runs some
 milliseconds of such loops in Python. So a kernel whose work can be estimated is interpreted while there is little to
-do. Both ways run the same function and give the same answer. The clock of all deadlines stands still while code is
+do. Both ways run the same function and give the same answer. Kernels of grounding, which always have much to do, run
+machine code that is loaded without numba (``native``). The clock of all deadlines stands still while code is
 compiled, which happens once after an installation: compiling uses up no time limit. Loading compiled code does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache, cached_property
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import CLOCK
+
+if TYPE_CHECKING:
+    from deixis.reasoning.native import NativeKernel
 
 MAX_GIVEN = 100_000
 """Maximum number of steps of one interpreted call; a step takes at most half a microsecond."""
@@ -47,10 +52,16 @@ class Kernel:
     A kernel with ``steps`` is interpreted until a call takes more than ``MAX_GIVEN`` steps, or all calls together more
     than ``MAX_INTERPRETED``. From then on, every kernel of the process runs compiled; numba keeps the compiled code on
     disk. Kernels may call kernels. ``options`` are those of ``numba.njit``.
+
+    The machine code of some kernels is kept in files of our own too (:func:`keeping_machine_code`), and runs without
+    numba until numba has loaded the kernel for another reason.
     """
 
     interpreted = 0
     """Steps of all interpreted calls so far; above MAX_INTERPRETED, kernels run compiled."""
+
+    keeps_machine_code = False
+    """True to keep the machine code of every kernel that is called."""
 
     def __init__(self, function: Callable[..., Any], steps: Steps | None, **options: Any) -> None:
         self.function, self.steps, self.options = function, steps, options
@@ -64,7 +75,38 @@ class Kernel:
             Kernel.interpreted += steps if steps <= MAX_GIVEN else MAX_INTERPRETED + 1
             if interprets():
                 return self.interpretation(*arguments)
-        return (self.dispatcher or self.load())(*arguments)
+        raised = False
+        if self.dispatcher is None and self.native is not None and not Kernel.keeps_machine_code:
+            ran, result = self.native.run(arguments)
+            if ran:
+                return result
+            raised = result is self.native.RAISED
+        result = (self.dispatcher or self.load())(*arguments)  # after an error, it is raised again by numba
+        if raised:
+            raise AssertionError(f"{self.__name__} raised an error, and then none with arguments that it had changed")
+        if Kernel.keeps_machine_code and self.native is not None:
+            self.native.keep(self.dispatcher, arguments)
+        return result
+
+    @cached_property
+    def native(self) -> NativeKernel | None:
+        """The kept machine code; None for kernels that numba does not keep either."""
+        from deixis.reasoning.native import NativeKernel
+
+        if not self.options.get("cache"):
+            return None
+        return NativeKernel(self.function, [other.function for other in self._all_called()], self.options)
+
+    def _all_called(self) -> list[Kernel]:
+        """Return the kernels that this one calls, and that these call, in a fixed order."""
+        found: dict[Kernel, None] = {}
+        waiting: list[Kernel] = [self]
+        for one in waiting:
+            for other in one._called().values():
+                if other not in found:
+                    found[other] = None
+                    waiting.append(other)
+        return list(found)
 
     @cached_property
     def interpretation(self) -> Callable[..., Any]:
@@ -85,9 +127,14 @@ class Kernel:
     def _calling(self, chosen: Callable[[Kernel], Callable[..., Any]]) -> Callable[..., Any]:
         """Return the function with each kernel that it calls replaced by ``chosen(kernel)``."""
         scope = self.function.__globals__
-        called = {name: scope.get(name) for name in self.function.__code__.co_names}
-        others = {name: chosen(other) for name, other in called.items() if isinstance(other, Kernel)}
+        others = {name: chosen(other) for name, other in self._called().items()}
         return FunctionType(self.function.__code__, {**scope, **others}) if others else self.function
+
+    def _called(self) -> dict[str, Kernel]:
+        """Return the kernels that the function calls, by the names that it has for them."""
+        scope = self.function.__globals__
+        named = {name: scope.get(name) for name in self.function.__code__.co_names}
+        return {name: other for name, other in named.items() if isinstance(other, Kernel)}
 
     def compiled(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return the compiled version of the function.
@@ -193,6 +240,22 @@ def interprets() -> bool:
 def load_compiled() -> None:
     """Run every kernel compiled from now on."""
     Kernel.interpreted = MAX_INTERPRETED + 1
+
+
+@contextmanager
+def keeping_machine_code() -> Iterator[None]:
+    """Keep the machine code of every kernel that is called in this context, so that it runs without numba later.
+
+    Yields
+    ------
+    None
+        Nothing.
+    """
+    Kernel.keeps_machine_code = True
+    try:
+        yield
+    finally:
+        Kernel.keeps_machine_code = False
 
 
 def when_compiling(tell: Callable[[], object]) -> None:

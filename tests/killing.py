@@ -60,8 +60,10 @@ import os, shutil, signal, sys
 import deixis
 from deixis.examples_data import example
 from deixis.learning import update as learning
+from deixis.memory.episodes.disk import DiskKeys
 from deixis.memory.perceptual import exchange, handle
 from deixis.memory.semantic.rdf import ledger
+from deixis.robot.robot import Robot
 from deixis.session import Session
 
 steps, last = [], [0]
@@ -85,6 +87,7 @@ for place, names in (
     (shutil, ("rmtree",)),
     (ledger, ("update", "update_in_bulk")),
     (handle.Handle, ("write",)),
+    (DiskKeys, ("write",)),
 ):
     for name in names:
         stepping(place, name)

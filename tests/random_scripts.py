@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from deixis.grammar.errors import ScriptError
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 

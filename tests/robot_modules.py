@@ -10,6 +10,7 @@ from typing import ClassVar
 
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.journal import write_together
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.modules import Board, Module
 
@@ -41,7 +42,7 @@ class Echo(Module):
     def _write(self, board: Board, words: str) -> None:
         source = Source(Origin.INFERRED, self.name)
         fluent = episodic(board.new_id("h"), (self.name, "heard", words), start=board.seconds(), source=source)
-        board.write(Add(fluent))
+        write_together(lambda _: None, [board.part(Add(fluent))])
 
 
 class Trespasser(Module):

@@ -26,7 +26,7 @@ from calculus_files import write_calculus
 
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 RCC8 = calculus("rcc8")
 _APART = [f"{first}{second}{touch}" for first in "IPO" for second in "IPO" for touch in "ED"]

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from deixis.grammar.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN
-from deixis.grammar.words import BETWEEN, IS, NUMBERS, VERBS, chains
+from deixis.grammar.layout.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN
+from deixis.grammar.layout.words import BETWEEN, IS, NUMBERS, VERBS, chains
 from deixis.ontology.relation import plain_phrase
 from deixis.ontology.tbox import Ontology, default_ontology
 

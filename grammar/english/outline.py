@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from deixis.grammar.english.tokens import LITERAL
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate, Sentence, Viewpoint
+from deixis.grammar.english.vocabulary.tables import LITERAL
 
 _DEGREES = {Degree.PLAIN: "", Degree.COMPARATIVE: "+", Degree.SUPERLATIVE: "++"}
 _MOODS = {Mood.STATEMENT: "", Mood.COMMAND: "!", Mood.QUESTION: "?"}

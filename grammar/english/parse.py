@@ -7,19 +7,21 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
-from deixis.grammar.english.assemble import Assembly, Found
-from deixis.grammar.english.build import Builder
-from deixis.grammar.english.built import Built, notes
-from deixis.grammar.english.chunks import Chunk, Chunker, VerbGroup
+from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.chunker import Chunker
+from deixis.grammar.english.chunking.noun_positions import is_known
+from deixis.grammar.english.clauses.assemble import Assembly, Found
+from deixis.grammar.english.clauses.build import Builder
+from deixis.grammar.english.clauses.built import Built, notes
+from deixis.grammar.english.clauses.joints import Segment, classify, segments
+from deixis.grammar.english.clauses.rewriting import rewritten
 from deixis.grammar.english.confidence import Guess
-from deixis.grammar.english.joints import JOINTS, Segment, classify, segments
-from deixis.grammar.english.known_nouns import KnownNouns, known_nouns
-from deixis.grammar.english.nouns import HOLDERS, SURFACES, VESSELS, last_word
-from deixis.grammar.english.phrases import is_known
-from deixis.grammar.english.rewriting import rewritten
-from deixis.grammar.english.tokens import LITERAL, MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
+from deixis.grammar.english.tokens import MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
-from deixis.grammar.english.words import APPROXIMATE, HEDGES
+from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
+from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
+from deixis.grammar.english.vocabulary.nouns import HOLDERS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.tables import LITERAL
 from deixis.grammar.errors import ScriptTimeError
 from deixis.ontology.tbox import Ontology, default_ontology
 
@@ -189,7 +191,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
     while at < len(chunks):
         built, end = _longest(chunks, at)
         if built is None:
-            if chunks[at].type not in JOINTS and chunks[at].type not in ("NJ", "PJ", "VJ", "FJ"):
+            if chunks[at].type not in JOINT_TYPES and chunks[at].type not in ("NJ", "PJ", "VJ", "FJ"):
                 skipped.append(chunks[at])
             at += 1
             continue
@@ -259,7 +261,7 @@ def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | N
 def _parser() -> Lark:
     from lark import Lark
 
-    from deixis.grammar.language import NoLexer
+    from deixis.grammar.layout.language import NoLexer
 
     return Lark.open(
         "english.lark", rel_to=__file__, parser="lalr", lexer=NoLexer, start="clause", transformer=Builder(),

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 from deixis.deadline import Deadline
 from deixis.grammar.english.confidence import Guess, confidence, is_doubtful
-from deixis.grammar.english.discourse import Discourse
-from deixis.grammar.english.discourse import Draft as FactDraft
-from deixis.grammar.english.entities import Entity, Role, names_of
-from deixis.grammar.english.paraphrase import paraphrase
+from deixis.grammar.english.discourse.discourse import Discourse
+from deixis.grammar.english.discourse.drafts import Draft as FactDraft
+from deixis.grammar.english.discourse.entities import Entity, Role, names_of
 from deixis.grammar.english.parse import parse_english
+from deixis.grammar.english.telling.paraphrase import paraphrase
 from deixis.grammar.english.tree import Misunderstood, Mood, Sentence
 from deixis.grammar.errors import Diagnostic, ScriptError
 from deixis.grammar.reading import DoubtfulPronoun, Reading, ReadSentence, StatedFact, joined_choices
@@ -173,6 +173,8 @@ class _Writer:
     def _binary(self, draft: FactDraft, subject: str, thing: str) -> Fact | Claim:
         how = draft.how
         relation = self.ontology.relations.get(draft.relation)
+        if how.by_handle:
+            return self._claim(replace(draft, value="handle"), (subject,), (thing,))
         if relation is None or draft.metres is not None:
             return self._claim(draft, (subject,), (thing,))
         source = self.source(how.span)
@@ -194,7 +196,7 @@ class _Writer:
             for fact in facts
             if is_doubtful(Guess[name] for name in fact.guesses)
         ]
-        notes = sorted({*sentence.misunderstood, *doubted}, key=lambda note: note.span)
+        notes = sorted(dict.fromkeys((*sentence.misunderstood, *doubted)), key=lambda note: note.span)
         return ReadSentence(
             text=" ".join(sentence.text.split()),
             span=sentence.span,

@@ -8,19 +8,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deixis.grammar.english.tree import Degree, Span
-from deixis.grammar.english.words import (
-    DIRECTION_WORDS,
-    IS_FORMS,
-    ORDINALS,
-    PAST_FORMS,
-    PRONOUNS,
-    TYPOS,
-    adjectives,
-    degree_of,
-    prepositions,
-    verb_forms,
-    word_set,
-)
+from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
+from deixis.grammar.english.vocabulary.function_words import IS_FORMS, ORDINALS, PAST_FORMS, PRONOUNS, TYPOS
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, prepositions
+from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 
 MAX_LABEL_WORDS = 5
 """Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
@@ -93,9 +85,6 @@ _DENIALS = {
 _CONTRASTS = frozenset({("rather", "than"), ("instead", "of"), ("let", "alone"), ("opposed", "to")})
 """Words that deny what follows them, as ``not`` after a comma does."""
 _ABBREVIATIONS = word_set("e.g i.e etc approx mr mrs ms dr st no fig vs cf ca min max incl ft sq a.m p.m")
-LITERAL = "\u02bc"
-"""First and last letter, in ``Word.norm``, of a name that is taken as it is: ``left_shoe``, or words in backticks."""
-
 _WORD = re.compile(
     r"`[^`\n]{1,1000}`|"
     r"(?<!\w)\w[\w-]*?_[\w-]*\w(?!\w)|"  # left_shoe

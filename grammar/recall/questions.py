@@ -18,7 +18,7 @@ from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
 
 from deixis.errors import DeixisError
-from deixis.grammar.words import phrase_pattern
+from deixis.grammar.layout.words import phrase_pattern
 from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import Ontology, default_ontology
 

@@ -13,29 +13,41 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from itertools import islice
 from pathlib import Path
 from typing import Self
 
 from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
-from deixis.memory.episodes.codec import decode_fluent, decode_if_matching, decode_logged, encode_fluent, encode_logged
+from deixis.memory.episodes.codec import (
+    change_of_list,
+    change_to_list,
+    decode_fluent,
+    decode_if_matching,
+    decode_logged,
+    encode_fluent,
+    encode_logged,
+)
 from deixis.memory.episodes.disk import STORE, DiskKeys
 from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
 from deixis.memory.episodes.guard import Guard, shipped_guard
 from deixis.memory.episodes.intervals import endings_meeting, interval_keys
 from deixis.memory.episodes.keys import Keys, TransientKeys
 from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription
-from deixis.memory.errors import EpisodeError
+from deixis.memory.errors import EpisodeError, MemoryWriteError, UnknownFluentError
 from deixis.memory.folder import EPISODES, inspect
+from deixis.memory.journal import JournalEntry, Part, clear_journal, has_committed, read_journal, write_journal
 from deixis.memory.owner import Closing, ThreadLock
+from deixis.memory.perceptual.handle import wrap_level_errors
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
@@ -78,6 +90,53 @@ class Blackboard(Closing):
     3
     ['f1: on(cup, table) from [2, 2] to [5, 5]']
     [(1, 'add'), (2, 'update'), (3, 'finish')]
+
+    Writes of several changes, changes by pattern, and subscriptions:
+
+    >>> from datetime import UTC, datetime
+    >>> from deixis.memory.episodes.changes import Add
+    >>> board = Blackboard.transient(origin=datetime(2026, 5, 1, tzinfo=UTC))
+    >>> seen = Source(Origin.SEEN, "tracker")
+    >>> facts = (("cup", "on", "table"), ("jug", "on", "table"))
+    >>> fluents = [episodic(board.new_id("f"), fact, start=0.0, source=seen) for fact in facts]
+    >>> board.write(*map(Add, fluents), by="tracker")
+    2
+    >>> board.update_where(Pattern("cup"), certainty=0.9, by="tracker")
+    3
+    >>> board.finish_where(Pattern("cup"), at=4.0, by="tracker")
+    4
+    >>> board.delete_where(Pattern("jug"), by="tracker")
+    5
+    >>> [each.id for each in board.now()], board.sequence, list(board.verify())
+    ([], 5, [])
+    >>> board.moment(60.0), board.seconds(board.origin)
+    (datetime.datetime(2026, 5, 1, 0, 1, tzinfo=datetime.timezone.utc), 0.0)
+    >>> board.events(), board.event_here("2026-05-01T00:00:00+00:00 sentence 1")
+    (set(), 'sentence 1')
+    >>> change = Add(episodic("g1", ("mug", "on", "table"), start=5.0, source=seen))
+    >>> board.prepare("write 1", [change], by="tracker")
+    >>> board.complete("write 1", [change], by="tracker")
+    >>> board.settle()
+    >>> type(board.part(change, by="tracker")).__name__
+    'EpisodesPart'
+    >>> log = []
+    >>> logged = board.subscribe("logger", Pattern("cup"), log.append)
+    >>> attended = board.attend("watcher", lambda change: change.id == "f1", log.append)
+    >>> [each.name for each in board.subscribers()], board.troubles
+    (['logger', 'watcher'], ())
+    >>> board.unsubscribe("logger")
+    >>> board.reserve(["f7"])
+    >>> board.delete(board.holding(Pattern("cup"))[0].id, by="tracker"), board.new_id("f")
+    (7, 'f8')
+    >>> board.close()
+
+    A memory has one blackboard, whose writes may be checked by more shapes:
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder, Blackboard.open(folder, create=True) as board:
+    ...     shapes = Path(folder) / "shapes.ttl"
+    ...     size = shapes.write_text("@prefix sh: <http://www.w3.org/ns/shacl#> . <urn:shape> a sh:NodeShape .")
+    ...     board.guard(shapes)
     """
 
     def __init__(self, keys: Keys, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> None:
@@ -93,6 +152,8 @@ class Blackboard(Closing):
         self._open = self._unfinished()
         self._recent: deque[Logged] = deque(maxlen=_PAGE)  # the end of the log, for subscribers that keep up
         self._guards = [shipped_guard()]
+        self._undelivered = False  # True if what the semantic store has committed could not be written here
+        self._settle()
 
     @classmethod
     def transient(cls, origin: datetime | None = None, report: Callable[[str], None] | None = None) -> Self:
@@ -148,7 +209,8 @@ class Blackboard(Closing):
         MemoryFormatError
             If there is no blackboard, or the folder is not that of a memory.
         MemoryWriteError
-            If the folder cannot be written.
+            If the folder cannot be written and has no blackboard. One that cannot be written is opened for reading
+            only: a write raises ReadOnlyMemoryError.
         """
         inspect(Path(path))
         real = Path(os.path.realpath(path)) / EPISODES
@@ -163,6 +225,7 @@ class Blackboard(Closing):
             except BaseException:
                 keys.close()
                 raise
+            keys.protect()
             if keys.lost:
                 board._trouble(
                     f"{keys.lost} acknowledged writes to the episodes at {real} are missing: its log is damaged"
@@ -186,6 +249,22 @@ class Blackboard(Closing):
     def origin(self) -> datetime:
         """Time from which seconds are counted, in UTC."""
         return self._origin
+
+    def event_here(self, event: str) -> str | None:
+        """Return the id of an event that another store names (:func:`deixis.memory.episodes.episode.event_of`).
+
+        Parameters
+        ----------
+        event
+            Name of the event with the origin of its blackboard.
+
+        Returns
+        -------
+        str or None
+            The id; None for an event of another blackboard.
+        """
+        origin, _, id = event.partition(" ")
+        return id if origin == self._origin.isoformat() else None
 
     @property
     def sequence(self) -> int:
@@ -315,19 +394,132 @@ class Blackboard(Closing):
             made = self._made(changes, by)
             for guard in self._guards:
                 guard.check(each.after for each in made if each.after is not None)
-            self._keys.write(self._pairs(made))
-            self._sequence = made[-1].sequence
-            self._recent.extend(made)
-            for each in made:
-                if each.after is not None and each.after.is_open:
-                    self._open[each.id] = each.after
-                else:
-                    self._open.pop(each.id, None)
+            self._keep(made, {})
+        self._tell()
+        return made[-1].sequence
+
+    def part(self, *changes: Change, by: str) -> Part:
+        """Return changes as a part of a write over several stores (:func:`deixis.memory.journal.write_together`).
+
+        Parameters
+        ----------
+        changes
+            Changes, which apply in order.
+        by
+            Name of the writer.
+
+        Returns
+        -------
+        Part
+            The part. Others may write to the blackboard until it is completed; a change that does not fit any more then
+            is left out.
+        """
+        return EpisodesPart(self, changes, check_text(by, "the writer"))
+
+    def prepare(self, id: str, changes: Sequence[Change], by: str) -> None:
+        """Check changes, and write them to the journal; for :class:`EpisodesPart`.
+
+        Parameters
+        ----------
+        id
+            Id of the write over several stores.
+        changes
+            The changes.
+        by
+            Name of the writer.
+
+        Raises
+        ------
+        EpisodeError, UnknownFluentError, RejectedWriteError
+            If a change is refused, as by :meth:`write`.
+        MemoryWriteError
+            If the journal cannot be written.
+        """
+        with self._lock:
+            self._begin_write()
+            made = self._made(changes, by)
+            for guard in self._guards:
+                guard.check(each.after for each in made if each.after is not None)
+            if isinstance(self._keys, DiskKeys):
+                self._settle()  # of a writer that was killed
+                pairs = tuple((by.encode(), json.dumps(change_to_list(each)).encode()) for each in changes)
+                with wrap_level_errors(self._keys.folder):
+                    write_journal(self._keys.folder, JournalEntry(id, pairs))
+
+    def complete(self, id: str, changes: Sequence[Change], by: str) -> None:
+        """Write changes that are decided, as far as they still fit, and remove the journal; for :class:`EpisodesPart`.
+
+        If they cannot be written, :attr:`troubles` says so, and they are written with the next write or opening.
+
+        Parameters
+        ----------
+        id
+            Id of the write over several stores.
+        changes
+            The changes.
+        by
+            Name of the writer.
+        """
+        with self._lock:
+            try:
+                self._deliver(id, changes, by)
+            except MemoryWriteError as error:
+                self._undelivered = True
+                self._trouble(f"{error}; the lessons are stored, and their episodes will be when the disk has room")
+        self._tell()
+
+    def settle(self) -> None:
+        """Carry out or drop what the journal holds, as the semantic store decided; without a journal, do nothing.
+
+        Raises
+        ------
+        MemoryFormatError
+            If there is a journal, and the semantic store cannot be read.
+        """
+        with self._lock:
+            self._settle()
+        self._tell()
+
+    def _settle(self) -> None:
+        if not isinstance(self._keys, DiskKeys):
+            return
+        folder = self._keys.folder
+        entry = read_journal(folder)
+        if entry is None or not has_committed(folder.parent, EPISODES, entry.id):
+            clear_journal(folder)
+            self._undelivered = False
+            return
+        changes = [change_of_list(json.loads(data or b"")) for _, data in entry.pairs]
+        self._deliver(entry.id, changes, entry.pairs[0][0].decode() if entry.pairs else "")
+
+    def _deliver(self, id: str, changes: Sequence[Change], by: str) -> None:
+        """Write the changes of a journal that still fit, once, and remove the journal."""
+        mark = HEAD + b"journal"
+        if self._keys.get(mark) != id.encode():
+            self._restore()
+            self._keep(self._made(changes, by, fitting=True), {mark: id.encode()})
+        if isinstance(self._keys, DiskKeys):
+            clear_journal(self._keys.folder)
+        self._undelivered = False
+
+    def _keep(self, made: Sequence[Logged], more: Mapping[bytes, bytes]) -> None:
+        """Write log entries with what they change, and further keys, as one."""
+        self._keys.write({**self._pairs(made), **more})
+        self._sequence = made[-1].sequence if made else self._sequence
+        self._recent.extend(made)
+        for each in made:
+            if each.after is not None and each.after.is_open:
+                self._open[each.id] = each.after
+            else:
+                self._open.pop(each.id, None)
+
+    def _tell(self) -> None:
+        """Wake the subscribers."""
+        with self._lock:
             subscriptions = list(self._subscriptions.values())
         for subscription in subscriptions:
             subscription.notify()
             subscription.check()
-        return made[-1].sequence
 
     def add(self, fluent: EpisodicFluent, by: str) -> int:
         """Add one fluent.
@@ -723,6 +915,17 @@ class Blackboard(Closing):
         if self._report is not None:
             self._report(line)
 
+    def events(self) -> set[str]:
+        """Return the events of the sources of all fluents that were ever written.
+
+        Returns
+        -------
+        set of str
+            Ids of events; those of deleted fluents are in the log.
+        """
+        fluents = (each.after or each.before for each in self.changes())
+        return {each.source.event for each in fluents if each is not None and each.source.event is not None}
+
     def verify(self) -> Iterator[str]:
         """Yield a line for each place where log, fluents and index of times disagree; damage raises an error.
 
@@ -768,7 +971,13 @@ class Blackboard(Closing):
         return {found.id: found for found in map(self._fluent, endings) if found is not None and found.is_open}
 
     def _begin_write(self) -> None:
-        """Check that the blackboard can be written, and read its state again if an earlier write failed."""
+        """Check that the blackboard can be written, and write what was committed elsewhere and could not be written."""
+        self._restore()
+        if self._undelivered:
+            self._settle()
+
+    def _restore(self) -> None:
+        """Check that the blackboard is open, and read its state again if an earlier write failed."""
         self._check_open()
         if self._keys.restored():
             self._sequence, self._open = self._last_sequence(), self._unfinished()
@@ -813,22 +1022,30 @@ class Blackboard(Closing):
                 yield decode_logged(int.from_bytes(key[1:], "big"), data)
             since = last
 
-    def _made(self, changes: Sequence[Change], by: str) -> list[Logged]:
-        """Return the log entries of changes, which are not written yet."""
+    def _made(self, changes: Sequence[Change], by: str, fitting: bool = False) -> list[Logged]:
+        """Return the log entries of changes, which are not written yet; with ``fitting``, leave out what is refused."""
         staged: dict[str, EpisodicFluent | None] = {}
-        last, written = self._sequence + len(changes), time.time()
-        made = []
-        for sequence, change in enumerate(changes, self._sequence + 1):
-            id = change.id
-            before = staged[id] if id in staged else self._fluent(id.encode())
-            staged[id] = after = change.applied(before)
-            made.append(Logged(sequence, last, by, written, KINDS[type(change)], before, after))
-        return made
+        made: list[tuple[Change, EpisodicFluent | None, EpisodicFluent | None]] = []
+        for change in changes:
+            before = staged[change.id] if change.id in staged else self._fluent(change.id.encode())
+            try:
+                staged[change.id] = change.applied(before)
+            except (EpisodeError, UnknownFluentError):
+                if not fitting:
+                    raise
+            else:
+                made.append((change, before, staged[change.id]))
+        last, written = self._sequence + len(made), time.time()
+        return [
+            Logged(number, last, by, written, KINDS[type(change)], before, after)
+            for number, (change, before, after) in enumerate(made, self._sequence + 1)
+        ]
 
     def _pairs(self, made: Sequence[Logged]) -> dict[bytes, bytes | None]:
         """Return the keys and values that record changes in the log, the fluents and the indexes."""
-        pairs: dict[bytes, bytes | None] = {HEAD + b"sequence": made[-1].sequence.to_bytes(8, "big")}
+        pairs: dict[bytes, bytes | None] = {}
         for each in made:
+            pairs[HEAD + b"sequence"] = each.sequence.to_bytes(8, "big")
             ending = each.id.encode()
             before = None if each.before is None else encode_fluent(each.before)
             after = None if each.after is None else encode_fluent(each.after)
@@ -839,6 +1056,38 @@ class Blackboard(Closing):
             pairs[FLUENT + ending] = after
             pairs[_log_key(each.sequence)] = encode_logged(each.last, each.by, each.written, each.kind, before, after)
         return pairs
+
+
+class EpisodesPart(Part):
+    """The part that changes of a blackboard take in a write over several stores.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    changes
+        The changes.
+    by
+        Name of the writer.
+    """
+
+    store = EPISODES
+
+    def __init__(self, board: Blackboard, changes: Sequence[Change], by: str) -> None:
+        self._board, self._changes, self._by, self._id = board, changes, by, ""
+
+    def prepare(self, id: str) -> None:
+        """Check the changes, and write the journal."""
+        self._id = id
+        self._board.prepare(id, self._changes, self._by)
+
+    def complete(self) -> None:
+        """Write the changes, and remove the journal."""
+        self._board.complete(self._id, self._changes, self._by)
+
+    def settle(self) -> None:
+        """Write the changes if the semantic store has committed, and else only remove the journal."""
+        self._board.settle()
 
 
 def has_episodes(memory: Path) -> bool:
@@ -855,6 +1104,27 @@ def has_episodes(memory: Path) -> bool:
         True if it has.
     """
     return (memory / EPISODES / STORE).is_dir()
+
+
+@contextmanager
+def open_episodes(memory: Path) -> Iterator[Blackboard | None]:
+    """Open the blackboard of a memory, if it has one, and close it at the end of the block.
+
+    Parameters
+    ----------
+    memory
+        Folder of the whole memory.
+
+    Yields
+    ------
+    Blackboard or None
+        The blackboard; None if the memory has none.
+    """
+    if not has_episodes(memory):
+        yield None
+        return
+    with Blackboard.open(memory) as board:
+        yield board
 
 
 def _index_keys(fluent: EpisodicFluent, ending: bytes) -> tuple[bytes, ...]:

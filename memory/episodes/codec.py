@@ -1,4 +1,4 @@
-"""Encode fluents and log entries as bytes, and decode them.
+"""Encode fluents, changes and log entries, and decode them.
 
 >>> from deixis.memory.episodes.episode import Origin, Source, episodic
 >>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
@@ -9,10 +9,11 @@ True
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
-from deixis.memory.episodes.changes import Kind, Logged
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source
+from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Kind, Logged, Update
+from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, at
 from deixis.reasoning.temporal.bounds import UNKNOWN, Bounds
 from deixis.reasoning.temporal.fluent import Fluent, Pattern, Statement
 
@@ -33,19 +34,7 @@ def encode_fluent(fluent: EpisodicFluent) -> bytes:
     bytes
         A JSON array.
     """
-    statement, source = fluent.fluent.statement, fluent.source
-    ends = [_bounds(fluent.fluent.start), _bounds(fluent.fluent.finish)]
-    where = [source.origin.value, source.by, source.event]
-    values = [
-        fluent.fluent.id,
-        statement.subject,
-        statement.predicate,
-        statement.object,
-        *ends,
-        fluent.certainty,
-        *where,
-    ]
-    return _write(values).encode()
+    return _write(_values(fluent)).encode()
 
 
 def decode_fluent(data: bytes) -> EpisodicFluent:
@@ -146,6 +135,89 @@ def decode_logged(sequence: int, data: bytes) -> Logged:
     last, by, written, kind, before, after = json.loads(data)
     fluents = (None if each is None else _fluent(each) for each in (before, after))
     return Logged(sequence, last, by, written, kind, *fluents)
+
+
+def change_to_list(change: Change) -> list[Any]:
+    """Return a change as plain data, which JSON can hold.
+
+    Parameters
+    ----------
+    change
+        The change.
+
+    Returns
+    -------
+    list
+        Its kind and its values.
+
+    Examples
+    --------
+    >>> change_to_list(Finish("f1", 5.0))
+    ['finish', 'f1', 5.0]
+    """
+    match change:
+        case Add():
+            return ["add", _values(change.fluent)]
+        case Finish():
+            return ["finish", change.id, _bounds(at(change.at))]
+        case Delete():
+            return ["delete", change.id]
+        case Update():
+            statement, source = change.statement, change.source
+            return [
+                "update",
+                change.id,
+                None if statement is None else [statement.subject, statement.predicate, statement.object],
+                None if change.start is None else [_bounds(at(change.start))],
+                None if change.finish is None else [_bounds(at(change.finish))],
+                change.certainty,
+                None if source is None else [source.origin.value, source.by, source.event],
+            ]
+
+
+def change_of_list(data: Sequence[Any]) -> Change:
+    """Return the change that plain data stands for.
+
+    Parameters
+    ----------
+    data
+        Data that :func:`change_to_list` returned.
+
+    Returns
+    -------
+    Change
+        The change.
+
+    Raises
+    ------
+    ValueError
+        If it is of an unknown kind.
+    """
+    match data:
+        case ["add", values]:
+            return Add(_fluent(values))
+        case ["finish", id, end]:
+            return Finish(id, _read(end))
+        case ["delete", id]:
+            return Delete(id)
+        case ["update", id, terms, start, finish, certainty, source]:
+            return Update(
+                id,
+                None if terms is None else Statement(*terms),
+                None if start is None else _read(start[0]),
+                None if finish is None else _read(finish[0]),
+                certainty,
+                None if source is None else Source(_ORIGINS[source[0]], *source[1:]),
+            )
+    raise ValueError("a change of an unknown kind")
+
+
+def _values(fluent: EpisodicFluent) -> list[Any]:
+    statement, source = fluent.fluent.statement, fluent.source
+    ends = [_bounds(fluent.fluent.start), _bounds(fluent.fluent.finish)]
+    where = [source.origin.value, source.by, source.event]
+    terms = [statement.subject, statement.predicate, statement.object]
+    return [fluent.fluent.id, *terms, *ends, fluent.certainty, *where]
 
 
 def _fluent(values: list[Any]) -> EpisodicFluent:

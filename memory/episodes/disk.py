@@ -28,11 +28,13 @@ import plyvel
 
 from deixis.memory import owner as disk
 from deixis.memory.episodes.keys import Keys
-from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError
+from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import one_line
-from deixis.memory.owner import LOCK_FILE, OwnerLock, forked
+from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked
 from deixis.memory.perceptual.codec import seal, unseal
 from deixis.memory.perceptual.handle import wrap_level_errors
+from deixis.memory.perceptual.layout import mirror
+from deixis.scratch import ScratchFolder, remove_stale
 
 STORE, TALLY = "store-1", "acknowledged"
 """Folder of the database with the version of its format, and file with the number of the last write."""
@@ -54,10 +56,13 @@ class DiskKeys(Keys):
     """An ordered store on disk. Its user must let only one thread in at a time.
 
     After a failed write, reading goes on. The next write opens the database again, as its log may end in half a write.
+    A folder that cannot be written is opened as a copy, which :meth:`protect` makes read-only.
     """
 
-    def __init__(self, folder: Path, lock: OwnerLock, db: Any, tally: int, sync: bool) -> None:
+    def __init__(self, folder: Path, lock: OwnerLock | ReaderLock, db: Any, tally: int, sync: bool) -> None:
         self.folder = folder
+        self._scratch: ScratchFolder | None = None
+        self._read_only, self._protected = "", False
         self._lock, self._db, self._tally, self._sync = lock, db, tally, sync
         self._process = os.getpid()
         self._writes = self._stored_writes()
@@ -110,10 +115,37 @@ class DiskKeys(Keys):
                 store = cls(real, lock, db, tally, sync)
                 undo.pop_all()
                 return store
+        except ReadOnlyMemoryError as error:
+            if not (real / STORE).is_dir():
+                raise
+            return cls._copied(real, one_line(error))
         except BaseException:
             if made and real.is_dir() and not (real / LOCK_FILE).exists():
                 disk.remove(real)
             raise
+
+    @classmethod
+    def _copied(cls, real: Path, reason: str) -> DiskKeys:
+        """Open a copy of a folder that cannot be written, as LevelDB writes in any folder that it opens."""
+        with contextlib.ExitStack() as undo, wrap_level_errors(real):
+            lock = ReaderLock.acquire(real)
+            undo.callback(lock.release)
+            remove_stale()
+            scratch = ScratchFolder()
+            undo.callback(scratch.remove)
+            mirror(real, scratch.path)
+            tally = os.open(scratch.path / TALLY, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            undo.callback(os.close, tally)
+            db = _opened(scratch.path)
+            undo.callback(db.close)
+            store = cls(real, lock, db, tally, sync=False)
+            store._scratch, store._read_only = scratch, reason
+            undo.pop_all()
+            return store
+
+    def protect(self) -> None:
+        """Refuse all further writes if this is the copy of a folder that cannot be written."""
+        self._protected = self._scratch is not None
 
     def get(self, key: bytes) -> bytes | None:
         """Return the value of a key."""
@@ -153,6 +185,8 @@ class DiskKeys(Keys):
 
     def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
         """Write keys with their values, and delete those without, all or nothing."""
+        if self._protected:
+            raise ReadOnlyMemoryError(self._read_only)
         db = self._database()
         number = _NUMBER.pack(self._writes + 1)
         try:
@@ -183,6 +217,8 @@ class DiskKeys(Keys):
         db.close()
         os.close(self._tally)
         self._lock.release()
+        if self._scratch is not None:
+            self._scratch.remove()
 
     def _database(self) -> Any:
         if self._process != os.getpid():

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from datetime import datetime
 from enum import Enum
 
 from deixis.memory.errors import EpisodeError
@@ -214,7 +215,35 @@ def episodic(
         If the bounds leave no start before a finish.
     """
     if isinstance(statement, Statement):
-        said = statement
+        parsed = statement
     else:
-        said = Statement(statement[0], statement[1], statement[2] if len(statement) == 3 else None)
-    return EpisodicFluent(Fluent(id, said, at(start), at(finish)), certainty, source)
+        parsed = Statement(statement[0], statement[1], statement[2] if len(statement) == 3 else None)
+    return EpisodicFluent(Fluent(id, parsed, at(start), at(finish)), certainty, source)
+
+
+EVENT = "event"
+"""Key in the metadata of a view: the event in which a person showed its thing (:func:`event_of`)."""
+
+
+def event_of(origin: datetime, event: str) -> str:
+    """Return the name of an event of one blackboard, by which another store can refer to it.
+
+    Parameters
+    ----------
+    origin
+        Origin of the blackboard.
+    event
+        Id of the event.
+
+    Returns
+    -------
+    str
+        The origin and the id, so that the event of another memory is not taken for one of this memory.
+
+    Examples
+    --------
+    >>> from datetime import UTC
+    >>> event_of(datetime(2026, 5, 1, tzinfo=UTC), "gesture3")
+    '2026-05-01T00:00:00+00:00 gesture3'
+    """
+    return f"{origin.isoformat()} {event}"

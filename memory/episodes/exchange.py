@@ -103,8 +103,9 @@ def import_episodes(board: Blackboard, text: str, file: str) -> int:
             )
     if new:
         board.write(*map(Add, new), by=IMPORT)
-    said = [each.statement for each in fluents]
-    names = [each.id for each in fluents] + [one.subject for one in said] + [one.object or "" for one in said]
+    statements = [each.statement for each in fluents]
+    names = [each.id for each in fluents]
+    names += [name or "" for statement in statements for name in (statement.subject, statement.object)]
     board.reserve([*names, *(each.source.event or "" for each in fluents)])
     return len(new)
 
@@ -214,10 +215,10 @@ def has_ending(file: Path) -> bool:
 
 
 def _to_list(fluent: EpisodicFluent) -> list[Any]:
-    said, source = fluent.statement, fluent.source
+    statement, source = fluent.statement, fluent.source
     ends = [*_finite(fluent.start), *_finite(fluent.finish)]
-    statement = [said.subject, said.predicate, said.object]
-    return [fluent.id, statement, ends, fluent.certainty, [source.origin.value, source.by, source.event]]
+    terms = [statement.subject, statement.predicate, statement.object]
+    return [fluent.id, terms, ends, fluent.certainty, [source.origin.value, source.by, source.event]]
 
 
 def _finite(bounds: Bounds) -> list[float | None]:

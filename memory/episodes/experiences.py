@@ -13,15 +13,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
+from deixis.memory.episodes.changes import Add, Change, Update
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import EpisodeError
-from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
 RECORDED = "recorded"
 """Predicate of the fluent that an experience with the subject's name is recorded."""
@@ -196,6 +196,29 @@ def put_episode(
     source = Source(Origin.INFERRED, by)
     marker = episodic(board.new_id("e"), (name, RECORDED), start=start, finish=finish, source=source)
     return board.write(Add(marker), *map(Add, fluents), by=by)
+
+
+def without_lessons(board: Holding, lessons: Collection[str]) -> tuple[Change, ...]:
+    """Return the changes after which experiences do not name lessons that go; they stay consolidated.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    lessons
+        Ids of the lessons.
+
+    Returns
+    -------
+    tuple of Change
+        A change for each experience that taught one of the lessons.
+    """
+    marks = board.holding(Pattern(predicate=CONSOLIDATED))
+    return tuple(
+        Update(each.id, statement=Statement(each.statement.subject, CONSOLIDATED))
+        for each in marks
+        if each.statement.object in lessons
+    )
 
 
 def _experience(board: Holding, name: str) -> Experience:

@@ -10,7 +10,7 @@ import contextlib
 import ctypes
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -21,9 +21,10 @@ import plyvel
 from deixis.errors import DeixisError
 from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
-from deixis.memory.folder import one_line
+from deixis.memory.folder import PERCEPTUAL, one_line
 from deixis.memory.journal import (
     JournalEntry,
+    Part,
     clear_journal,
     has_committed,
     new_id,
@@ -156,6 +157,42 @@ def _marked(change: WriteBatch, id: str) -> WriteBatch:
     """Return a change that also stores the id of its journal."""
     pairs = [*change.pairs, (keys.JOURNAL, seal(keys.JOURNAL, id.encode()))]
     return WriteBatch(pairs, change.places, change.views)
+
+
+class ViewsPart(Part):
+    """The part that a change of views takes in a write over several stores. Hold the handle's :attr:`writing`.
+
+    Parameters
+    ----------
+    handle
+        The open database.
+    change
+        Keys with their new values.
+    """
+
+    store = PERCEPTUAL
+
+    def __init__(self, handle: Handle, change: WriteBatch) -> None:
+        self._handle, self._change, self._id = handle, change, ""
+
+    def prepare(self, id: str) -> None:
+        """Write the journal."""
+        self._handle.require_sound()
+        self._id = id
+        with wrap_level_errors(self._handle.folder):
+            write_journal(self._handle.folder, JournalEntry(id, tuple(self._change.pairs), self._change.views))
+
+    def complete(self) -> None:
+        """Write the change, and remove the journal."""
+        self._handle.finish(self._change, self._id)
+
+    def settle(self) -> None:
+        """Write the change if the semantic store has committed, and else only remove the journal."""
+        folder = self._handle.folder
+        if has_committed(folder.parent, self.store, self._id):
+            self.complete()
+        else:
+            clear_journal(folder)
 
 
 class Handle:
@@ -310,7 +347,7 @@ class Handle:
         counts = StoreCounts(before.batches + 1, before.views + change.views, before.lost)
         sealed = write_counts(counts)
         with self as db:
-            self._require_sound()
+            self.require_sound()
             try:
                 batch = db.write_batch(sync=sync) if sync or len(change.pairs) > MAX_REUSED_BATCH else self._batch
                 batch.clear()
@@ -329,41 +366,36 @@ class Handle:
             else:
                 there[view_id] = place
 
-    def write_with(self, change: WriteBatch, commit: Callable[[str], None]) -> None:
-        """Write a change if another store commits, and nothing if it does not, also after a crash.
-
-        Hold :attr:`writing`. See :mod:`deixis.memory.journal`.
+    def part(self, change: WriteBatch) -> ViewsPart:
+        """Return a change as a part of a write over several stores (:func:`deixis.memory.journal.write_together`).
 
         Parameters
         ----------
         change
             Keys with their new values.
-        commit
-            Called with the id of the journal, which the other store must store in its commit.
+
+        Returns
+        -------
+        ViewsPart
+            The part; hold :attr:`writing` until it is completed or settled.
+        """
+        return ViewsPart(self, change)
+
+    def finish(self, change: WriteBatch, id: str) -> None:
+        """Write a change that is decided, and remove its journal. Hold :attr:`writing`.
+
+        Parameters
+        ----------
+        change
+            Keys with their new values.
+        id
+            Id of the journal.
 
         Raises
         ------
-        ReadOnlyMemoryError
-            If the folder cannot be written.
         MemoryWriteError
-            If the change cannot be written.
+            If the change cannot be written now.
         """
-        self._require_sound()
-        entry = JournalEntry(new_id(), tuple(change.pairs), change.views)
-        with wrap_level_errors(self.folder):
-            write_journal(self.folder, entry)
-        try:
-            commit(entry.id)
-        except BaseException:
-            if has_committed(self.folder.parent, entry.id):
-                self._finish(change, entry.id)
-            else:
-                clear_journal(self.folder)
-            raise
-        self._finish(change, entry.id)
-
-    def _finish(self, change: WriteBatch, id: str) -> None:
-        """Write a change that its journal has decided, and remove the journal."""
         try:
             self.write(_marked(change, id), sync=True)
         except MemoryWriteError as error:
@@ -388,7 +420,7 @@ class Handle:
             applied = sealed is not None and read_name(keys.JOURNAL, sealed) == entry.id
             if entry.undo and not applied:
                 self.write(self._undoing(entry.undo), sync=True)
-            elif entry.pairs and not applied and has_committed(self.folder.parent, entry.id):
+            elif entry.pairs and not applied and has_committed(self.folder.parent, PERCEPTUAL, entry.id):
                 self.write(_marked(WriteBatch(list(entry.pairs), {}, entry.views), entry.id), sync=True)
                 self._places = None  # the batch may have moved views
         clear_journal(where)
@@ -430,7 +462,7 @@ class Handle:
             if waiting is not None and id is None:
                 self.write(waiting, sync=True)
             elif waiting is not None and id is not None:
-                self._finish(waiting, id)
+                self.finish(waiting, id)
         except BaseException:
             if id is not None:
                 with contextlib.suppress(DeixisError):  # if it fails, the next opening does it
@@ -439,13 +471,22 @@ class Handle:
             raise
 
     def _begin_import(self, new: Sequence[str]) -> str:
-        self._require_sound()
+        self.require_sound()
         entry = JournalEntry(new_id(), undo=tuple(new))
         with wrap_level_errors(self.folder):
             write_journal(self.folder, entry)
         return entry.id
 
-    def _require_sound(self) -> None:
+    def require_sound(self) -> None:
+        """Raise an error if the memory cannot be written.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If the folder cannot be written.
+        MemoryWriteError
+            If a write before failed.
+        """
         if self._read_only is not None:
             raise ReadOnlyMemoryError(self._read_only)
         if self._failed is not None:

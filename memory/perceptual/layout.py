@@ -3,7 +3,7 @@
 ``store-2/`` is a LevelDB of version 2; the version is in the name only. A new store is made as ``store-3.new/`` and
 renamed when it is complete, so that a crash at any moment leaves one complete store with the greatest number. Beside it
 are ``owner.lock``, ``calibration.json`` (see :mod:`deixis.memory.perceptual.calibrated`), ``journal`` during a write
-over both stores (see :mod:`deixis.memory.journal`), and two files that reveal losses that LevelDB does not report:
+over several stores (see :mod:`deixis.memory.journal`), and two files that reveal losses that LevelDB does not report:
 
 - ``acknowledged`` has the counts of the last batch. A database whose log has a broken end treats it as an unfinished
   write, and drops it.

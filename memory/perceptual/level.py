@@ -41,6 +41,48 @@ class LevelMemory(Closing):
     """The perceptual memory in one folder, owned by this process until its last user closes it.
 
     Its methods are those of :class:`deixis.memory.perceptual.protocol.PerceptualMemory`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from datetime import UTC, datetime
+    >>> import numpy as np
+    >>> spin = {"spin": np.ones((100, 153), np.float32)}
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> memory = LevelMemory.open(folder.name, create=True)
+    >>> day = datetime(2026, 5, 1, tzinfo=UTC)
+    >>> memory.write(Batch([View("v1", "mug", day, spin), View("v2", "beaker", day, spin)]))
+    >>> memory.write_all([Batch([View("v3", "mug", day, spin)])], new=["v3"])
+    >>> memory.categories(), [view.id for view in memory.views("mug")], [key.id for key in memory.listing()]
+    (('beaker', 'mug'), ['v1', 'v3'], ['v2', 'v1', 'v3'])
+    >>> memory.category("mug").name, memory.stats().views, memory.verify()
+    ('mug', 3, ())
+    >>> memory.view("v1").category, memory.lesson_of("v1"), memory.taught_by_lessons("mug")
+    ('mug', None, ())
+    >>> memory.path == Path(folder.name).resolve() == memory.handle.folder
+    True
+
+    A write over both stores makes its changes first; each is the change of the method that writes at once:
+
+    >>> changes = [memory.renaming("mug", "cup"), memory.merging("mug", "beaker"), memory.forgetting("mug")]
+    >>> changes.append(memory.writing(Batch([View("v0", "mug", day, spin)])))
+    >>> memory.rename("mug", "cup")
+    >>> memory.merge("beaker", "cup")
+    >>> memory.forget("cup")
+    >>> memory.categories()
+    ()
+
+    Views are read from a snapshot, which later writes do not change, and with their teachings:
+
+    >>> memory.write(Batch([View("v4", "bowl", day, spin)]))
+    >>> with memory.exclusive(), memory.snapshot() as now:
+    ...     memory.forget("bowl")
+    ...     now.categories(), memory.categories()
+    (('bowl',), ())
+    >>> list(memory.headers()), memory.teachings(), memory.lessons_of_views()
+    ([], {}, {})
+    >>> memory.close()
+    >>> folder.cleanup()
     """
 
     def __init__(self, handle: Handle) -> None:

@@ -20,6 +20,7 @@ import pyoxigraph as ox
 from deixis.memory import folder as files
 from deixis.memory.errors import MemoryFormatError, MemoryWriteError, RejectedWriteError, UnknownLessonError
 from deixis.memory.folder import committed, read_mark, reading, write_mark
+from deixis.memory.journal import JointWrite
 from deixis.memory.owner import Closing, forked
 from deixis.memory.semantic.opening import Opened, open_memory
 from deixis.memory.semantic.queries.limits import QUERY_MEMORY_LIMIT, QUERY_TIME_LIMIT, QueryLimits
@@ -178,7 +179,55 @@ MIN_FORGOTTEN = 10
 
 
 class SemanticMemory(Closing):
-    """The semantic memory in one folder, owned by this process until it is closed."""
+    """The semantic memory in one folder, owned by this process until it is closed.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> memory = SemanticMemory.open(folder.name + "/memory", create=True)
+    >>> fork = ox.Triple(
+    ...     ox.NamedNode("https://example.org/fork"),
+    ...     ox.NamedNode("http://www.w3.org/2000/01/rdf-schema#label"),
+    ...     ox.Literal("fork"))
+    >>> memory.learn("supper-1", {GraphName.LEARNED: [fork]}, inferred=[])
+    >>> memory.learn_all({"supper-2": {GraphName.LEARNED: [fork]}, "tea-1": {GraphName.LEARNED: [fork]}}, inferred=[])
+    >>> memory.lessons(), memory.knows("tea-1"), memory.contributions("tea-1") == {GraphName.LEARNED: [fork]}
+    (('supper-1', 'supper-2', 'tea-1'), True, True)
+    >>> memory.query("SELECT ?thing WHERE { ?thing rdfs:label 'fork' }")
+    <QueryResult SELECT ?thing: 1 row>
+    >>> len(memory.dataset().query("SELECT ?thing WHERE { ?thing rdfs:label 'fork' }"))
+    1
+    >>> memory.forget("tea-1", inferred=[])
+    >>> list(memory.triples(GraphName.LEARNED)) == [fork], memory.stats().lessons
+    (True, 2)
+    >>> memory.path.name, memory.read_only, memory.kept_up() is None
+    ('memory', False, True)
+
+    A change is made first and committed with what follows from it; many are committed in a copy of the memory:
+
+    >>> memory.commit(memory.departure("supper-2"))
+    >>> memory.commit_in_bulk(lambda copy: copy.commit(copy.arrival({"tea-2": {GraphName.LEARNED: [fork]}})))
+    >>> memory.require_lesson("tea-2")
+    >>> memory.lessons()
+    ('supper-1', 'tea-2')
+
+    Models and triples without a lesson:
+
+    >>> memory.keep_models({ModelSet.WORDS: [fork]})
+    >>> len(memory.models(ModelSet.WORDS))
+    1
+    >>> memory.load({GraphName.ASSERTED: [fork]})
+    >>> memory.require_writable()
+    >>> memory.incomplete_layouts("SELECT ?left WHERE { ?left dx:left ?right }")
+    ()
+    >>> memory.update_copy(is_current=lambda store: len(store) > 0, follow=lambda store: None)
+    >>> len(memory.store) > 0
+    True
+    >>> memory.close()
+    >>> folder.cleanup()
+    """
 
     def __init__(self, opened: Opened) -> None:
         self._opened: Opened | None = opened
@@ -605,7 +654,7 @@ class SemanticMemory(Closing):
         with reading(self.path):
             return count(self.store, self.path, len(self.lessons()))
 
-    def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
+    def commit(self, change: Change, kept_up: str | None = None, write: JointWrite | None = None) -> None:
         """Write a change in one step if the result conforms to the shapes.
 
         Parameters
@@ -615,8 +664,8 @@ class SemanticMemory(Closing):
         kept_up
             Rules by which the inferred graph and the statistics are up to date after the change; see :meth:`kept_up`.
             Without them they must be recomputed.
-        journal
-            Id of the write over both stores that this commit decides, if it decides one.
+        write
+            The write over several stores that this commit decides, if it decides one.
 
         Raises
         ------
@@ -630,7 +679,7 @@ class SemanticMemory(Closing):
         with self._writing(), committed(self.path):
             operations = [*change.operations, *merging(self.store, change.added, change.removed)]
             operations += ledger.keeping_up(self.store, kept_up)
-            operations += ledger.marking(self.store, journal)
+            operations += ledger.marking(self.store, write)
             ledger.update(self.store, operations, building(self.store, change.added, change.removed))
             self.store.flush()
 
@@ -737,14 +786,14 @@ class _Copy(SemanticMemory):
         super().__init__(_OpenedCopy(folder))
         self._overlapping = False
 
-    def commit(self, change: Change, kept_up: str | None = None, journal: str | None = None) -> None:
+    def commit(self, change: Change, kept_up: str | None = None, write: JointWrite | None = None) -> None:
         from deixis.memory.semantic.validation.validate import check_change
 
         check_change(self.store, change)
         if not (self._overlapping or self.store.contains_named_graph(MERGED)):
             self._overlapping = overlapping(self.store, change.added, change.removed)
         operations = [*change.operations, *merging(self.store, change.added, change.removed)]
-        operations += [*ledger.keeping_up(self.store, kept_up), *ledger.marking(self.store, journal)]
+        operations += [*ledger.keeping_up(self.store, kept_up), *ledger.marking(self.store, write)]
         ledger.update_in_bulk(self.store, operations)
 
     def finish(self) -> None:

@@ -84,6 +84,7 @@ def _layout(layout: str, index: TripleIndex, relations: Relations) -> LayoutConc
                 kind=index.value(role, DX.OF_KIND),
                 declared=index.value(role, DX.KIND_DECLARED) == "true",
                 colour=index.value(role, DX.OF_COLOUR),
+                is_group=index.value(role, DX.IS_GROUP) == "true",
             )
             for role in roles
         ),
@@ -197,6 +198,10 @@ class Provenance:
     scene_text: str
     script_text: str
     told_text: str | None = None
+    script_file: str = ""
+    ended: datetime | None = None
+    engine: str = ""
+    version: str = ""
 
 
 def provenances(episodes: Iterable[ox.Triple]) -> tuple[Provenance, ...]:
@@ -217,6 +222,7 @@ def provenances(episodes: Iterable[ox.Triple]) -> tuple[Provenance, ...]:
     found = []
     for lesson in episode_index.subjects(W3C.RDF_TYPE, DX.LESSON):
         started, teacher = episode_index.value(lesson, PROV.STARTED_AT_TIME), episode_index.value(lesson, DX.TAUGHT_BY)
+        ended = episode_index.value(lesson, PROV.ENDED_AT_TIME)
         if started is None:
             continue
         found.append(
@@ -228,6 +234,10 @@ def provenances(episodes: Iterable[ox.Triple]) -> tuple[Provenance, ...]:
                 scene_text=episode_index.value(lesson, DX.SCENE_TEXT) or "",
                 script_text=episode_index.value(lesson, DX.SCRIPT_TEXT) or "",
                 told_text=episode_index.value(lesson, DX.TOLD_TEXT),
+                script_file=episode_index.value(lesson, DX.SCRIPT_FILE) or "",
+                ended=None if ended is None else datetime.fromisoformat(ended),
+                engine=episode_index.value(lesson, DX.ENGINE) or "",
+                version=episode_index.value(lesson, DX.SOFTWARE_VERSION) or "",
             )
         )
     return tuple(found)

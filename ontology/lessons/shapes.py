@@ -54,6 +54,9 @@ def layout_shapes(
             yield from writer.miscoloured(role.name, role.colour)
     for position, fact in enumerate(layout.facts, 1):
         yield from writer.fact(position, fact)
+        for role in layout.roles:
+            if role.is_group and fact.positive and role.name in (fact.subject, fact.object):
+                yield from writer.members(position, fact, role.name)
     for position, claim in enumerate(layout.claims, 1):
         yield from writer.claim(position, claim)
 
@@ -99,6 +102,25 @@ class _Shapes:
         severity = "Info" if statement.optional else "Violation" if statement.weight >= 1 else "Warning"
         line = f"line {statement.source.line}: " if statement.source else ""
         return self._shape(name, severity, f"{line}{statement} does not hold")
+
+    def members(self, position: int, fact: Fact, group: str) -> Iterator[ox.Triple]:
+        """Yield the shape that all members of a group satisfy a fact."""
+        other, number = (fact.object, 1) if group == fact.subject else (fact.subject, 2)
+        shape = self._statement_shape(f"fact-{position}-members-{number}", fact)
+        shape.say(SH + "targetNode", iri(role_iri(self._lesson, group)))
+        yield from self._path(shape, [self._inverse(DX.FILLS)])
+        cases: list[ox.NamedNode] = []
+        for relation in fact.relations:
+            holds = self._blank()
+            way = ([], iri(relation.iri)) if number == 1 else self._inverse(relation.iri)
+            yield from self._path(holds, [way, ([], iri(DX.FILLS))])
+            holds.say(SH + "hasValue", iri(role_iri(self._lesson, other)))
+            yield from holds
+            cases.append(holds.subject)
+        triples, head = self._list(cases)
+        yield from triples
+        shape.say(SH + "or", head)
+        yield from shape
 
     def fact(self, position: int, fact: Fact) -> Iterator[ox.Triple]:
         shape = self._statement_shape(f"fact-{position}", fact)

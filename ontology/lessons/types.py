@@ -12,6 +12,7 @@ from deixis.answers import Answer
 from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Rgb
 from deixis.ontology.facts import Fact
+from deixis.ontology.inflection import singular
 from deixis.ontology.relation import Relation, Relations
 
 if TYPE_CHECKING:
@@ -24,17 +25,33 @@ ANONYMOUS = "user"
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """A place in a layout: its name, the class IRI of its kind, whether that was declared, and the IRI of a colour."""
+    """A place in a layout: its name, the class IRI of its kind, whether that was declared, and the IRI of a colour.
+
+    ``is_group`` is True for a group of unknown number (*the glasses*), which all things that fit it fill.
+    """
 
     name: str
     kind: str | None = None
     declared: bool = False
     colour: str | None = None
+    is_group: bool = False
 
 
 @dataclass(frozen=True)
 class LayoutConcept:
-    """A learned layout: its roles, the facts between them and the claims about them, as stated in one script."""
+    """A learned layout: its roles, the facts between them and the claims about them, as stated in one script.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.learning.lesson import layout_concept
+    >>> layout = layout_concept(deixis.read_script(text="layout tea; cup on saucer; spoon right of cup"), "tea-1")
+    >>> layout.name, [role.name for role in layout.roles]
+    ('tea', ['cup', 'saucer', 'spoon'])
+    >>> relations = layout.graph(deixis.read_script(text="cup on saucer").ontology.relations)
+    >>> relations.nodes
+    ('cup', 'saucer', 'spoon')
+    """
 
     lesson: str
     name: str
@@ -99,6 +116,8 @@ class Match(Answer):
     >>> match = deixis.ground(script, scene).matches["fork"]
     >>> match.perceived, match.decided, match.score
     ('o1', True, 1.0)
+    >>> match.could_be, round(match.sureness, 2)
+    ((), 0.99)
     """
 
     object: str
@@ -200,7 +219,8 @@ SeenRelation = tuple[str, Relation, str]
 class Lesson:
     """The learning of one layout, and of the objects in its roles, from one script and one scene.
 
-    ``relations`` are the exact relations of pairs of the scene's objects.
+    ``relations`` are the exact relations of pairs of the scene's objects. ``events`` are the ids of what was
+    said in the episodes of the memory, which keeps them; exports do not have them.
     """
 
     layout: LayoutConcept
@@ -218,11 +238,30 @@ class Lesson:
     teacher: str = ANONYMOUS
     scene_file: str = ""
     told_text: str | None = None  # the words of a person, where the script was made from them
+    events: tuple[str, ...] = ()
 
     @property
     def id(self) -> str:
         """Identifier of the lesson, which is that of its layout."""
         return self.layout.lesson
+
+    def category_of(self, match: Match) -> str:
+        """Return the name of the category that a match teaches.
+
+        Parameters
+        ----------
+        match
+            Match of the lesson.
+
+        Returns
+        -------
+        str
+            Name of its object; of a member of a group, the singular of that.
+        """
+        groups = {role.name for role in self.layout.roles if role.is_group}
+        if match.object not in groups:
+            return match.object
+        return singular(match.object.replace("_", " ")).replace(" ", "_")
 
     def categories(self) -> tuple[Match, ...]:
         """Return the decided matches, which teach a category.

@@ -46,10 +46,11 @@ def learned_triples(lesson: Lesson, relations: Relations) -> Iterator[ox.Triple]
     layout = lesson.layout
     yield from layout_triples(layout, relations)
     kinds = {role.name: role.kind for role in layout.roles}
-    for match in lesson.matches:
-        yield from _match(lesson, match)
+    for number, match in enumerate(lesson.matches):
+        again = any(other.object == match.object for other in lesson.matches[:number])
+        yield from _match(lesson, match, again)
     for match in lesson.categories():
-        yield from _category(match.object, kinds.get(match.object), lesson)
+        yield from _category(lesson.category_of(match), kinds.get(match.object), lesson)
 
 
 def layout_triples(layout: LayoutConcept, relations: Relations, optional: Collection[str] = ()) -> Iterator[ox.Triple]:
@@ -129,9 +130,10 @@ def asserted_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
         yield from _seen(lesson, seen)
     for subject, relation, other in lesson.relations if isinstance(lesson, Lesson) else ():
         yield ox.Triple(iri(thing_iri(lesson, subject)), iri(relation.iri), iri(thing_iri(lesson, other)))
-    for match in lesson.categories() if isinstance(lesson, Lesson) else ():
-        category = category_iri(match.object)
-        yield ox.Triple(iri(thing_iri(lesson, match.perceived)), iri(W3C.RDF_TYPE), iri(category))
+    if isinstance(lesson, Lesson):
+        for match in lesson.categories():
+            category = category_iri(lesson.category_of(match))
+            yield ox.Triple(iri(thing_iri(lesson, match.perceived)), iri(W3C.RDF_TYPE), iri(category))
 
 
 def episode_triples(lesson: Lesson | WordLesson) -> Iterator[ox.Triple]:
@@ -378,6 +380,8 @@ def _role(layout: LayoutConcept, role: Role, position: int) -> Iterator[ox.Tripl
         about.say(DX.OF_KIND, iri(role.kind))
     if role.colour:
         about.say(DX.OF_COLOUR, iri(role.colour))
+    if role.is_group:
+        about.say(DX.IS_GROUP, typed(True))
     for group in layout.interchangeable:
         if role.name in group:
             others = (iri(role_iri(layout.lesson, other)) for other in group if other != role.name)
@@ -430,8 +434,10 @@ def _qualify(about: Description, layout: LayoutConcept, statement: Fact | Claim,
         about.say(DX.LINE, typed(statement.source.line))
 
 
-def _match(lesson: Lesson, match: Match) -> Iterator[ox.Triple]:
-    about = Description(learned_iri("lesson", lesson.id, "match", match.object))
+def _match(lesson: Lesson, match: Match, again: bool = False) -> Iterator[ox.Triple]:
+    """Yield a match; ``again`` for a further member of a group."""
+    further = (match.perceived,) if again else ()
+    about = Description(learned_iri("lesson", lesson.id, "match", match.object, *further))
     about.say(W3C.RDF_TYPE, iri(DX.MATCH))
     about.say(DX.OF_ROLE, iri(role_iri(lesson.id, match.object)))
     about.say(DX.DECIDED, typed(match.decided))
@@ -442,7 +448,7 @@ def _match(lesson: Lesson, match: Match) -> Iterator[ox.Triple]:
     about.say(DX.COULD_BE, *(iri(thing_iri(lesson, other)) for other in match.could_be))
     about.say(DX.PERCEIVED_AS if match.decided else DX.LIKELIEST, iri(thing_iri(lesson, match.perceived)))
     if match.decided:
-        about.say(DX.CATEGORY, iri(category_iri(match.object)))
+        about.say(DX.CATEGORY, iri(category_iri(lesson.category_of(match))))
     return iter(about)
 
 

@@ -42,6 +42,8 @@ class PointCloud:
     >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32), organised=(1, 2))
     >>> len(cloud), cloud.finite.tolist()
     (2, [True, False])
+    >>> len(cloud.take(cloud.finite))
+    1
     """
 
     points: NDArray[np.float32]  # (n, 3)

@@ -10,21 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.detection.boundaries import agglomerated, boundaries
-from deixis.perception.detection.heights import Raised, raised
-from deixis.perception.detection.joining import whole_things
 from deixis.perception.detection.left_out import Fate, Pieces, holes, left_out, missing_lines, odd_sizes
-from deixis.perception.detection.neighbours import NEIGHBOURS, has_enough, neighbour_table
 from deixis.perception.detection.outline import hull_of, occupied_cells, oriented_box, rim_of, upright_box
-from deixis.perception.detection.parts import Parts
-from deixis.perception.detection.plane import Plane
+from deixis.perception.detection.segmentation.boundaries import agglomerated, boundaries
+from deixis.perception.detection.segmentation.joining import whole_things
+from deixis.perception.detection.segmentation.neighbours import NEIGHBOURS, has_enough, neighbour_table
+from deixis.perception.detection.segmentation.parts import Parts
+from deixis.perception.detection.segmentation.supervoxels import supervoxels
+from deixis.perception.detection.segmentation.surface import Surface, surface_of
 from deixis.perception.detection.settings import DetectionSettings
 from deixis.perception.detection.shown import Shows, is_large, is_one_object, is_small
-from deixis.perception.detection.supervoxels import supervoxels
-from deixis.perception.detection.surface import Surface, surface_of
-from deixis.perception.detection.table_top import table_top
-from deixis.perception.detection.tables import FoundTable, tables
-from deixis.perception.detection.viewpoint import (
+from deixis.perception.detection.table.heights import Raised, raised
+from deixis.perception.detection.table.plane import Plane
+from deixis.perception.detection.table.table_top import table_top
+from deixis.perception.detection.table.tables import FoundTable, tables
+from deixis.perception.detection.table.viewpoint import (
     View,
     camera_pose_of,
     in_frame,

@@ -482,14 +482,15 @@ def meetings(of, neighbours, points, jump, count):  # type: ignore[no-untyped-de
 
 @njit(cache=True, nogil=True)
 def grow(seeds, spacing, costs, points, smooth, normals, colours, neighbours, jump):  # type: ignore[no-untyped-def]
-    """Return the seed (m,) with the cheapest path to each of n points (Dijkstra from all seeds at once), shape (n,).
+    """Return the seed (m,) with the cheapest path to each of n points (from all seeds at once), shape (n,).
 
     ``costs`` holds the cost per radian of turning normals, per metre of height between the planes of neighbours, and
     per unit of colour difference above the fourth value. Points that no seed reaches form patches of their own.
 
     Notes
     -----
-    A node of the heap has four children. The heap holds a point at most once, with its cost.
+    The method is that of E. W. Dijkstra, "A note on two problems in connexion with graphs", Numerische Mathematik 1,
+    1959. A node of the heap has four children. The heap holds a point at most once, with its cost.
     """
     n = len(smooth)
     of, cost = np.full(n, -1, np.int32), np.full(n, np.inf)

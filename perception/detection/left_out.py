@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import DetectionSettings, NoteSettings
-from deixis.perception.detection.table_top import TableTop
-from deixis.perception.detection.viewpoint import View
+from deixis.perception.detection.table.table_top import TableTop
+from deixis.perception.detection.table.viewpoint import View
 
 
 class Fate(IntEnum):

@@ -393,6 +393,21 @@ class JoiningSettings(_Thresholds):
     level_tolerance: float = 0.012
     """Maximum difference in height of two parts of one rim, in metres. At 0, mosd 34 has two parts more, and simulated
     settings 0 to 7 one."""
+    max_lip_height: float = 0.02
+    """Metres by which the inside of a jug may begin higher than what is visible of its outside below its lip."""
+    min_below_lip_share: float = 0.3
+    """Minimum fraction of the outside of a jug that is below the outline of its inside and lip."""
+    # Shoulders that carry nothing: the lid of a pot, the neck of a jug.
+    min_shoulder_normal: float = 0.15
+    """Minimum vertical component of the normal of a shoulder: less is a wall, on whose rim something may lie."""
+    max_shoulder_normal: float = 0.9
+    """Maximum vertical component of the normal of a shoulder: things rest on a surface of less than 26 degrees."""
+    min_shoulder_patches: int = 5
+    """Minimum number of patches that show a shoulder; the normals of fewer are noise."""
+    min_steep_share: float = 0.7
+    """Minimum fraction of the patches below a part that are a shoulder."""
+    min_touching_share: float = 0.4
+    """Minimum fraction of the boundary of a part with a shoulder at which the depth does not jump."""
     # Partly covered objects: a plate below a knife or a napkin.
     covering_rise: float = 5e-4
     """Metres by which a part that lies on another is higher along their boundary. If doubled, mosd 50 has one part
@@ -455,6 +470,9 @@ class JoiningSettings(_Thresholds):
     attachment_gap: float = 0.02
     """Metres from a handle or a side to its body as seen from above; its ends may be too thin to be seen. If halved,
     mosd 48 has two parts more; if doubled, mosd 46 has three fewer."""
+    max_attachment_gap: float = 0.035
+    """Metres from a handle or a spout to its body if the two meet in the image: the body hides its own far side, and
+    one end of the handle."""
     max_sheet_normal: float = 0.5
     """Maximum vertical component of the normal of an upright part: 60 degrees and more. If halved, simulated setting 3
     has one part more; if doubled, simulated setting 5 has five fewer."""

@@ -56,6 +56,13 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "px": 1.0}
 """Accepted units with their lengths in metres; pixels stay pixels."""
 
 MAX_BYTES = 256 * 2**20
+
+MAX_WRONG_KEYS = 3
+"""Maximum number of unknown keys that one message names."""
+
+CORNERS_INSTEAD = {"centre", "center", "size", "extents", "dimensions", "bbox", "box", "position", "minimum", "maximum"}
+"""Keys of other formats that give a box; a scene has corners."""
+
 _SCENE_KEYS = {"frame", "viewpoint", "unit", "objects", "shows", "speaker", "addressee"}
 _OBJECT_KEYS = {
     "id",
@@ -116,6 +123,10 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
         if path.stat().st_size > MAX_BYTES:
             raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB; split the scene")
         content = path.read_text(encoding="utf-8-sig")
+    except SceneError:
+        raise
+    except FileNotFoundError as error:
+        raise SceneError(f"{path}: there is no such file") from error
     except OSError as error:
         raise SceneError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -274,8 +285,18 @@ def _mapping(data: Any, where: str, known: set[str]) -> Mapping[str, Any]:
     entry = mapping(data, where)
     unknown = sorted(set(entry) - known, key=str)
     if unknown:
-        raise SceneError(f"{where}: '{shown(unknown[0])}' is not a key here; the keys are {', '.join(sorted(known))}")
+        wrong = [_misspelt(key, known - set(entry)) for key in unknown[:MAX_WRONG_KEYS]]
+        if "min" in known and not CORNERS_INSTEAD.isdisjoint(unknown):
+            wrong.append("give the corners of a box as 'min' and 'max'")
+        raise SceneError(f"{where}: {'; '.join(wrong)}; the keys are {', '.join(sorted(known))}")
     return entry
+
+
+def _misspelt(key: Any, known: set[str]) -> str:
+    """Return what is wrong with a key that is not known, with the key that was probably meant."""
+    word = shown(key)
+    near = nearest(word.casefold(), sorted(known)) if len(word) <= MAX_SHOWN else None
+    return f"'{word}' is not a key here" + (f", did you mean '{near}'?" if near else "")
 
 
 def _require_keys(entry: Mapping[str, Any], keys: Sequence[str], where: str) -> None:

@@ -17,10 +17,10 @@ from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.perception.simulator.blocks import CLOTH_CELL
-from deixis.perception.simulator.rays import RayCaster
-from deixis.perception.simulator.solids import moved
-from deixis.perception.simulator.tableware import Colour, make
+from deixis.perception.simulator.meshes.blocks import CLOTH_CELL
+from deixis.perception.simulator.meshes.rays import RayCaster
+from deixis.perception.simulator.meshes.solids import moved
+from deixis.perception.simulator.meshes.tableware import Colour, make
 
 CLEARANCE = 0.0002
 """Gap in metres between things that touch, since heights are compared at some places only."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.simulator.tableware import drawn_plan, kind_named
+from deixis.perception.simulator.meshes.tableware import drawn_plan, kind_named
 
 KINDS = (
     *("dinner plate", "bread plate", "bowl", "mug", "cup", "water glass", "wine glass", "champagne glass", "bottle"),

@@ -196,9 +196,12 @@ def connected(mask, depth, gap):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def scores(  # type: ignore[no-untyped-def]
-    places, turns, points, colours, matrix, offset, depth, colour, taken, tolerance, noise, spread, hidden, empty
+    places, turns, points, colours, matrix, offset, depth, colour, taken, tolerance, noise, shade, spread, hidden, empty
 ):
     """Return the mean score of each particle (n,), and how many of its points are seen, not hidden, and in the image.
+
+    A point is seen if its distance agrees within 1.8 standard deviations and its colour within 1.5. One closely behind
+    a surface of another colour, such as a finger, is hidden.
 
     A point of the thing that is at the measured depth scores up to 1, by its distance and its colour. A point behind
     the measured surface may be hidden: it scores ``hidden``. A point in front of it would be seen and is not: it scores
@@ -216,8 +219,8 @@ def scores(  # type: ignore[no-untyped-def]
         Image that was measured, and a mask of the pixels that belong to something else.
     tolerance, noise
         Standard deviation of the distance: at least the first, and the second times the squared depth.
-    spread
-        Standard deviation of the colours.
+    shade, spread
+        Standard deviations of the colours: of their lengths, which change with the light, and across.
     hidden, empty
         Scores of points that may be hidden, and of points where nothing is.
     """
@@ -255,19 +258,28 @@ def scores(  # type: ignore[no-untyped-def]
             if apart < -3 * sigma:
                 total += hidden
                 continue
-            seen[p, 1] += 1
             if apart > 3 * sigma:
+                seen[p, 1] += 1
                 total += empty
                 continue
             if taken[m, n]:
+                seen[p, 1] += 1
                 total += 0.5 * empty
                 continue
-            tint = 0.0
+            own, other, both = 0.0, 0.0, 0.0
             for k in range(3):
-                tint += (colour[m, n, k] - colours[i, k]) ** 2
-            one = np.exp(-0.5 * (apart / sigma) ** 2) * (0.25 + 0.75 * np.exp(-0.5 * tint / (spread * spread)))
+                own += colours[i, k] ** 2
+                other += colour[m, n, k] ** 2
+                both += colours[i, k] * colour[m, n, k]
+            hue = max(other - both * both / own, 0.0) if own > 0 else other
+            tint = (np.sqrt(own) - np.sqrt(other)) ** 2 / (shade * shade) + hue / (spread * spread)
+            if apart < -sigma and tint > 4.0:
+                total += hidden
+                continue
+            seen[p, 1] += 1
+            one = np.exp(-0.5 * (apart / sigma) ** 2) * (0.25 + 0.75 * np.exp(-0.5 * tint))
             total += one
-            if one > 0.2:
+            if apart * apart < 3.2 * sigma * sigma and tint < 2.25:
                 seen[p, 0] += 1
         found[p] = total / max(len(points), 1)
     return found, seen

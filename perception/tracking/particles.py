@@ -164,7 +164,7 @@ class ParticleFilter:
         """Velocity in metres per second, shape (3,)."""
         self._shift = settings.shift
 
-    def step(self, weigh: Weigh, guide: Guide | None, seconds: float) -> Estimate:
+    def step(self, weigh: Weigh, guide: Guide | None, seconds: float, lost: bool = False) -> Estimate:
         """Move the particles to the next frame, and weigh them.
 
         Parameters
@@ -175,6 +175,9 @@ class ParticleFilter:
             Function that proposes places from the data, or None.
         seconds
             Time since the last frame.
+        lost
+            True if the frame before did not show the thing: more particles are proposed from the data, with other turns
+            about the vertical.
 
         Returns
         -------
@@ -185,7 +188,7 @@ class ParticleFilter:
         before = self._weights @ self._places
         way = float(np.linalg.norm(self.velocity)) * seconds
         self._shift = min(limits.shift + limits.unsteadiness * way, limits.most_shift)
-        places, turns = self._proposed(guide, seconds)
+        places, turns = self._proposed(guide, seconds, lost)
         drawn = len(places)
         for layer in range(limits.layers):
             share = limits.shrink**layer
@@ -209,6 +212,22 @@ class ParticleFilter:
             self.velocity = 0.3 * self.velocity + 0.7 * (place - before) / seconds
         return Estimate(place, turn / np.linalg.norm(turn), float(found[best]), drawn)
 
+    def expected(self, seconds: float) -> Floats:
+        """Return the predicted mean place (3,) of the particles.
+
+        Parameters
+        ----------
+        seconds
+            Time since the last frame.
+
+        Returns
+        -------
+        ndarray
+            Place in metres.
+        """
+        place: Floats = self._weights @ self._places + self.velocity * seconds
+        return place
+
     def reset(self, pose: Floats) -> None:
         """Put all particles on one pose, at rest.
 
@@ -221,7 +240,7 @@ class ParticleFilter:
         self._places, self._turns, self._weights = fresh._places, fresh._turns, fresh._weights
         self.velocity = np.zeros(3)
 
-    def _proposed(self, guide: Guide | None, seconds: float) -> tuple[Floats, Floats]:
+    def _proposed(self, guide: Guide | None, seconds: float, lost: bool) -> tuple[Floats, Floats]:
         """Return places and turns of particles for the next frame; KLD sampling decides how many."""
         limits, chunk = self._settings, max(self._settings.fewest // 2, 16)
         ahead = self.velocity * seconds
@@ -232,8 +251,11 @@ class ParticleFilter:
             moved = self._places[chosen] + ahead + self._normal(chunk) * self._shift
             turned = turned_by(self._normal(chunk) * limits.turn, self._turns[chosen])
             moved[0], turned[0] = self._places[chosen[0]], self._turns[chosen[0]]  # it may not have moved at all
-            guided = int(limits.guided * chunk) if guide is not None else 0
+            guided = int((limits.guided_lost if lost else limits.guided) * chunk) if guide is not None else 0
             if guide is not None and guided:
+                if lost:
+                    about = self._rng.normal(0.0, limits.turn_lost, guided)[:, None] * np.array([0.0, 0.0, 1.0])
+                    turned[-guided:] = turned_by(about, turned[-guided:])
                 moved[-guided:] = guide(turned[-guided:], self._rng)
             places.append(moved)
             turns.append(turned)

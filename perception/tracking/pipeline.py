@@ -19,8 +19,18 @@ from deixis.perception.tracking.thing import State, TrackedThing
 HIDDEN_SCORE, EMPTY_SCORE = 0.12, -0.35
 """Scores of a point that something may hide, and of a point where something should be seen and is not."""
 
-COLOUR_SPREAD = 38.0
-"""Standard deviation of the colours of one place of a thing, as a distance in RGB from 0 to 255."""
+FAR_SCORE = 0.06
+"""Penalty of a place that is ``jump`` or farther from the predicted one. Without it, a place where something may hide
+all points can have a better score than the place where some are seen.
+"""
+
+SHADE_SPREAD, COLOUR_SPREAD = 38.0, 15.0
+"""Standard deviations of the colours of one place of a thing, as distances in RGB from 0 to 255: of the length of the
+colour, which changes with the light on a turned surface, and across that direction.
+"""
+
+COLOURS = 8
+"""Number of colours of a thing with which changed pixels are compared."""
 
 MIN_POINTS_BEYOND = 5
 """Number of points outside its box from which the box of a thing is extended."""
@@ -81,6 +91,8 @@ class Pipeline:
     """True if the last frame shows it."""
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
+    visible: float = field(default=1.0, init=False)
+    """Share of its points that the last frame in which it moved showed."""
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
@@ -110,9 +122,9 @@ class Pipeline:
         self._colours = np.zeros_like(self._points) if colours is None else colours[chosen].astype(np.float64)
 
     @property
-    def displaced(self) -> float:
-        """Distance in metres from the place where it was last at rest."""
-        return float(np.linalg.norm(self.pose[:3, 3] - self._rest[:3, 3]))
+    def last_rest(self) -> NDArray[np.float64]:
+        """Pose (4, 4) in which it was last at rest."""
+        return self._rest
 
     def expected(self, seconds: float) -> NDArray[np.float64]:
         """Return where the thing is expected in the next frame, by its velocity.
@@ -188,28 +200,43 @@ class Pipeline:
         tuple
             The estimate; the mean agreement of the points that are not hidden; and the share of points that are seen.
         """
-        from deixis.perception.tracking.kernels import scores
 
         def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
-            found: NDArray[np.float64] = scores(
-                places, turns, self._points, self._colours, view.matrix, view.offset, image.depth, image.colour, taken,
-                0.003, 2 * noise, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
-            )[0]  # fmt: skip
+            found, _ = self._scores(places, turns, image, view, taken, noise)
+            away = np.linalg.norm(places - ahead, axis=1)
+            found -= FAR_SCORE * np.minimum(away / self.settings.jump, 1.0)
             return found
+
+        ahead = self._filter.expected(seconds)
+        drawn = np.cumsum(self._likeness(tints))
+        likely = len(drawn) > 0 and drawn[-1] > 0
 
         def guide(turns: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
             own = rng.integers(len(self._points), size=len(turns))
-            tries = rng.integers(len(changed), size=(len(turns), 6))
+            tries = np.searchsorted(drawn, rng.random((len(turns), 6)) * drawn[-1], side="right")
+            tries = np.minimum(tries, len(drawn) - 1)
             alike = ((tints[tries] - self._colours[own, None]) ** 2).sum(axis=2)
             at = changed[tries[np.arange(len(turns)), alike.argmin(axis=1)]]
             places: NDArray[np.float64] = at - _rotated(turns, self._points[own])
             return places
 
         self._velocity = self._filter.velocity.copy()
-        found = self._filter.step(weigh, guide if len(changed) else None, seconds)
+        found = self._filter.step(weigh, guide if likely else None, seconds, lost=not self.found)
         self.particles = found.particles
         inliers, exposed = self._seen(found.place, found.turn, image, view, taken, noise)
         return found, inliers / max(exposed, 1.0), inliers / len(self._points)
+
+    def _likeness(self, tints: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how well each of some colours (k, 3) agrees with the nearest of a few of the thing's, as (k,)."""
+        least = np.full(len(tints), np.inf)
+        other = (tints**2).sum(axis=1)
+        for colour in self._colours[:: max(1, len(self._colours) // COLOURS)]:
+            own = float(colour @ colour)
+            across = other - (tints @ colour) ** 2 / max(own, 1.0)
+            along = (np.sqrt(other) - np.sqrt(own)) ** 2
+            least = np.minimum(least, along / SHADE_SPREAD**2 + across / COLOUR_SPREAD**2)
+        likeness: NDArray[np.float64] = np.exp(-0.5 * least)
+        return likeness
 
     def seen_at_place(
         self, image: FrameImage, view: TableView, taken: NDArray[np.bool_], noise: float
@@ -243,13 +270,26 @@ class Pipeline:
         noise: float,
     ) -> tuple[float, float]:
         """Return the number of points that agree with a frame, and of those that nothing hides."""
+        _, seen = self._scores(place[None], turn[None], image, view, taken, noise)
+        return float(seen[0, 0]), float(seen[0, 1])
+
+    def _scores(
+        self,
+        places: NDArray[np.float64],
+        turns: NDArray[np.float64],
+        image: FrameImage,
+        view: TableView,
+        taken: NDArray[np.bool_],
+        noise: float,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the scores (n,) of poses in a frame, and how many points agree and how many nothing hides (n, 2)."""
         from deixis.perception.tracking.kernels import scores
 
-        _, seen = scores(
-            place[None], turn[None], self._points, self._colours, view.matrix, view.offset, image.depth,
-            image.colour, taken, 0.003, 2 * noise, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
+        found: tuple[NDArray[np.float64], NDArray[np.float64]] = scores(
+            places, turns, self._points, self._colours, view.matrix, view.offset, image.depth, image.colour, taken,
+            0.003, 2 * noise, SHADE_SPREAD, COLOUR_SPREAD, HIDDEN_SCORE, EMPTY_SCORE,
         )  # fmt: skip
-        return float(seen[0, 0]), float(seen[0, 1])
+        return found
 
     def extend(self, points: NDArray[np.float64], colours: NDArray[np.float32], settings: OutlineSettings) -> None:
         """Add points that belong to the thing, and extend its box and move its origin where they lie outside.

@@ -47,6 +47,8 @@ class Reference:
         self.owner = owner
         self.since = np.full(owner.shape, at)
         """Time in seconds since which each depth is steady."""
+        self.retry_at = np.full(owner.shape, -np.inf)
+        """Time in seconds from which each pixel is a reason to segment what changed."""
         self._offset = np.zeros((*owner.shape, 2), np.float32)
         self._last = image.depth.copy()
         self._aside = np.zeros((*owner.shape, 2), np.float32)
@@ -77,6 +79,7 @@ class Reference:
         self._offset[flat] = 0
         source, self._last, self._aside = carried(self._last, self._aside, np.zeros_like(self.owner), turn, shift, gap)
         self.since = np.where(source >= 0, self.since.ravel()[source], np.inf)
+        self.retry_at = np.where(source >= 0, self.retry_at.ravel()[source], -np.inf)
 
     def compared(
         self,

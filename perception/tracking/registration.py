@@ -61,6 +61,22 @@ def brightness_of(colour):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def _accumulate(hessian, vector, line, n0, n1, n2, q0, q1, q2, off, scale):  # type: ignore[no-untyped-def]
+    """Add a residual ``off`` and its row ``line`` (6,) to the upper triangle of the normal equations.
+
+    The residual has the gradient ``n`` by the place, whose lever from the centre of the rotation is ``q``. ``scale`` is
+    the square root of its weight.
+    """
+    weight = scale * scale
+    line[0], line[1], line[2] = n0, n1, n2
+    line[3], line[4], line[5] = q1 * n2 - q2 * n1, q2 * n0 - q0 * n2, q0 * n1 - q1 * n0
+    for r in range(6):
+        vector[r] += weight * line[r] * off
+        for s in range(r, 6):
+            hessian[r, s] += weight * line[r] * line[s]
+
+
+@njit(cache=True, nogil=True)
 def normal_equations(  # type: ignore[no-untyped-def]
     places, normals, tints, turn, shift, matrix, eye, rays, depth, brightness, sigma_depth, noise, sigma_tint, middle
 ):
@@ -120,14 +136,8 @@ def normal_equations(  # type: ignore[no-untyped-def]
             scaled = off / (sigma * TUKEY)
             if abs(scaled) < 1:
                 counts[1] += 1
-                weight = (1 - scaled * scaled) ** 2 / (sigma * sigma)
                 q0, q1, q2 = q0 - middle[0], q1 - middle[1], q2 - middle[2]
-                line[0], line[1], line[2] = n0, n1, n2
-                line[3], line[4], line[5] = q1 * n2 - q2 * n1, q2 * n0 - q0 * n2, q0 * n1 - q1 * n0
-                for r in range(6):
-                    vector[r] += weight * line[r] * off
-                    for s in range(r, 6):
-                        hessian[r, s] += weight * line[r] * line[s]
+                _accumulate(hessian, vector, line, n0, n1, n2, q0, q1, q2, off, (1 - scaled * scaled) / sigma)
         if tints[k] == tints[k]:
             p, q = u - j, v - i
             i00, i01 = brightness[i, j], brightness[i, j + 1]
@@ -137,7 +147,6 @@ def normal_equations(  # type: ignore[no-untyped-def]
             scaled = off / (sigma_tint * TUKEY)
             if abs(scaled) < 1:
                 counts[3] += 1
-                weight = (1 - scaled * scaled) ** 2 / (sigma_tint * sigma_tint)
                 gu = ((1 - q) * (i01 - i00) + q * (i11 - i10)) / d
                 gv = ((1 - p) * (i10 - i00) + p * (i11 - i01)) / d
                 # of the brightness by the point in the cloud's frame, then in the table's
@@ -148,12 +157,7 @@ def normal_equations(  # type: ignore[no-untyped-def]
                 t1 = -(turn[1, 0] * c0 + turn[1, 1] * c1 + turn[1, 2] * c2)
                 t2 = -(turn[2, 0] * c0 + turn[2, 1] * c1 + turn[2, 2] * c2)
                 q0, q1, q2 = places[k, 0] - middle[0], places[k, 1] - middle[1], places[k, 2] - middle[2]
-                line[0], line[1], line[2] = t0, t1, t2
-                line[3], line[4], line[5] = q1 * t2 - q2 * t1, q2 * t0 - q0 * t2, q0 * t1 - q1 * t0
-                for r in range(6):
-                    vector[r] += weight * line[r] * off
-                    for s in range(r, 6):
-                        hessian[r, s] += weight * line[r] * line[s]
+                _accumulate(hessian, vector, line, t0, t1, t2, q0, q1, q2, off, (1 - scaled * scaled) / sigma_tint)
     for r in range(6):
         for s in range(r):
             hessian[r, s] = hessian[s, r]

@@ -34,6 +34,9 @@ class ParticleSettings:
     guided
         Share of the particles that are proposed from the data: a point of the thing is put on a measured point of
         similar colour.
+    guided_lost, turn_lost
+        The same share for a thing that the frame before did not show, and the standard deviation of the turn about the
+        vertical of these particles.
     points
         Largest number of points of a thing that are compared.
     """
@@ -52,6 +55,8 @@ class ParticleSettings:
     fewest: int = 150
     most: int = 1200
     guided: float = 0.25
+    guided_lost: float = 0.6
+    turn_lost: float = np.deg2rad(25.0)
     points: int = 160
 
 

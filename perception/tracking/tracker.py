@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect, detect_above
-from deixis.perception.detection.plane import Plane
-from deixis.perception.detection.viewpoint import moved
+from deixis.perception.detection.table.plane import Plane
+from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
@@ -92,7 +92,7 @@ MIN_PART = 12
 """Least number of pixels of a missing part."""
 
 RETRY_AFTER = 1.0
-"""Time in seconds after which changed pixels that gave no thing are segmented again."""
+"""Time in seconds after which changed pixels that gave no thing are by themselves a reason to segment again."""
 
 BLINK = 1.5
 """Time in seconds between two frames from which anything may have happened in between."""
@@ -117,7 +117,7 @@ class Tracker:
 
     Examples
     --------
-    >>> from deixis.perception.simulator.motion import PassOver, Rest, film
+    >>> from deixis.perception.simulator.films.motion import PassOver, Rest, film
     >>> from deixis.perception.simulator.laying import Placement
     >>> story = film([Placement("mug", "mug", 0.0, 0.0)], [Rest(0.4)])
     >>> with Tracker() as tracker:
@@ -567,6 +567,7 @@ class Tracker:
                 thing.lost()
                 continue
             thing.moved_to(found.pose, at, fit)
+            thing.visible = visible
             if thing.is_still(at) and (visible > 0.6 or at - self._hand_at > limits.still_for):
                 self._settle(thing)
                 self._claim(thing, image, changes)
@@ -783,7 +784,8 @@ class Tracker:
             drop = own | (inside if thing.active and thing.found else False)
             free, points, owner, edge = free[~drop], points[~drop], owner[~drop], edge[~drop]
         free = free[~edge]
-        if len(free) < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
+        untried = int((reference.retry_at.ravel()[free] <= at).sum())
+        if untried < limits.least_pixels or at - self._detected_at < DETECTION_PAUSE:
             return ()
         self._detected_at = at
         return self._segment(cloud, image, changes, free, at)
@@ -838,7 +840,7 @@ class Tracker:
                     thing = self._things[-1]
                     thing.since = thing.at = float(np.median(reference.since.ravel()[pixels]))
                     thing.beneath = reference.give(pixels, thing.slot, image)
-        reference.since.ravel()[free[~taken]] = at + RETRY_AFTER
+        reference.retry_at.ravel()[free[~taken]] = at + RETRY_AFTER
         return tuple(came)
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
@@ -846,7 +848,7 @@ class Tracker:
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None
-        lost = [thing for thing in self._things if thing.active and not thing.found]
+        lost = [thing for thing in self._things if thing.active]
         if not lost:
             return None
         points = moved(image.points.reshape(-1, 3)[pixels].astype(np.float64), self._back)
@@ -856,7 +858,9 @@ class Tracker:
         taken &= changes.state == SAME
         best: tuple[float, Pipeline, NDArray[np.float64]] | None = None
         for thing in lost:
-            start = thing.pose.copy()
+            elsewhere = thing.agreement * thing.visible if thing.found else 0.0
+            before = thing.pose
+            start = thing.last_rest.copy()
             start[:3, 3] = (points.min(axis=0) + points.max(axis=0)) / 2
             along = _axis(points[:, :2]) - _axis((thing.cloud.points @ start[:3, :3].T.astype(np.float32))[:, :2])
             for angle in (*(along + np.array([0, np.pi])), *(np.arange(8) * np.pi / 4)):
@@ -867,8 +871,10 @@ class Tracker:
                 found, fit, visible = thing.follow(image, self._view, taken, points, tints, 0.0, self._noise)
                 explained = float(thing.contains(points, self.settings.margin, found.pose).mean())
                 score = fit * explained
-                if fit > self.settings.fit and visible > 0.3 and explained > 0.7 and (best is None or score > best[0]):
+                good = fit > self.settings.fit and visible > 0.3 and explained > 0.7
+                if good and score * visible > elsewhere and (best is None or score > best[0]):
                     best = score, thing, found.pose
+            thing.put(before)
         if best is None:
             return None
         _, thing, pose = best

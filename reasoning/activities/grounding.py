@@ -56,6 +56,8 @@ class ActivityGrounding(Answer):
     <ActivityGrounding told: 3 of 3 steps, 1 pair in another order>
     >>> [(str(first), str(second)) for first, second in found.swapped]
     [('plate', 'fork')]
+    >>> found.missing
+    ()
     """
 
     activity: str
@@ -80,7 +82,14 @@ class ActivityGrounding(Answer):
 
 @dataclass(frozen=True, repr=False)
 class RecognisedActivity(Answer):
-    """Probabilities of the known activities for a sequence, most probable first; None stands for none of them."""
+    """Probabilities of the known activities for a sequence, most probable first; None stands for none of them.
+
+    Examples
+    --------
+    >>> found = RecognisedActivity((("breakfast", 0.9), (None, 0.1)), None)
+    >>> found, found.name
+    (<RecognisedActivity breakfast, probability 0.90>, 'breakfast')
+    """
 
     probabilities: tuple[tuple[str | None, float], ...]
     grounding: ActivityGrounding | None

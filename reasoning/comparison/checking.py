@@ -8,6 +8,12 @@ another violated fact, the misplaced end is the one with the larger share of vio
 A claim (a place, a distance, an arrangement) is violated if what is measured is nearer to its opposite; see
 :mod:`deixis.reasoning.comparison.claims`.
 
+A violated statement of direction (*the fork points away*) does not misplace its object: it is *turned*, and the check
+says by how much it must be turned back.
+
+All things that fit the noun of a group of unknown number (*the glasses*) are its members, and each is checked by itself
+against what is said of the group. A group without any is missing.
+
 An object in a role with a stated colour is *miscoloured* if its colour is clearly another one, misplaced or not.
 
 The most probable grounding may give a role the only object that is left, whatever it is, since sizes exclude nothing.
@@ -30,7 +36,8 @@ from deixis.ontology.claims import Claim
 from deixis.ontology.colours import Colour, Colours
 from deixis.ontology.graph import RelationGraph, dispensable
 from deixis.ontology.kinds import Kinds, with_article
-from deixis.reasoning.comparison.claims import ClaimOutcome, check_claims, violated
+from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims, violated
+from deixis.reasoning.comparison.turning import Turned, is_aim, turned_roles
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.grounding.engine import Engine
 from deixis.reasoning.grounding.evidence.colours import other_colours
@@ -40,6 +47,7 @@ from deixis.reasoning.grounding.evidence.meaning import shipped_models
 from deixis.reasoning.grounding.evidence.unary import OUTLIERS
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.members import assignment_of, broken_of_members
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9
@@ -54,6 +62,7 @@ class RoleVerdict(StrEnum):
 
     CORRECT = "correct"  # its label says that it is there, and others explain its violated facts
     MISPLACED = "misplaced"  # its object is there, but in the wrong place
+    TURNED = "turned"  # its object is in the right place, but points in another direction than stated
     MISCOLOURED = "miscoloured"  # its object is in the right place, but has the wrong colour
     MISSING = "missing"  # no object fills it
     ABSENT = "absent"  # no object fills it, and no certain fact requires it
@@ -73,7 +82,7 @@ class RoleCheck:
     """A role, the object that fills it, the verdict, and the violated facts that explain it.
 
     ``in_place_of`` is the role in whose place the object stands, if two or three objects have changed places. A
-    misplaced role may have a ``miscoloured`` too.
+    misplaced role may have a ``miscoloured`` and ``turned`` too.
     """
 
     role: str
@@ -84,6 +93,7 @@ class RoleCheck:
     broken: tuple[FactOutcome, ...] = ()
     in_place_of: str | None = None
     miscoloured: Miscoloured | None = None
+    turned: tuple[Turned, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +117,11 @@ class TableCheck:
     claims: tuple[ClaimOutcome, ...] = ()
     surface: str | None = None  # the object that is the surface of the layout, which is not extra
 
+    def __repr__(self) -> str:
+        """Return the number of roles with each verdict, and of what is extra."""
+        counts = {verdict.value: len(self.of(verdict)) for verdict in RoleVerdict} | {"extra": len(self.extra)}
+        return f"<TableCheck {', '.join(f'{number} {name}' for name, number in counts.items() if number) or 'empty'}>"
+
     def of(self, verdict: RoleVerdict) -> tuple[RoleCheck, ...]:
         """Return the roles with a verdict.
 
@@ -128,9 +143,15 @@ class TableCheck:
         return ((check, check.miscoloured) for check in self.roles if check.miscoloured)
 
     @property
+    def turned(self) -> Iterator[RoleCheck]:
+        """Roles whose objects point in another direction than stated, misplaced ones included."""
+        return (check for check in self.roles if check.turned)
+
+    @property
     def well(self) -> bool:
-        """True if, as far as can be determined, nothing is missing, misplaced, miscoloured or extra."""
-        wrong = (self.of(verdict) for verdict in (RoleVerdict.MISSING, RoleVerdict.MISPLACED, RoleVerdict.MISCOLOURED))
+        """True if, as far as can be determined, nothing is missing, misplaced, turned, miscoloured or extra."""
+        faults = (RoleVerdict.MISSING, RoleVerdict.MISPLACED, RoleVerdict.TURNED, RoleVerdict.MISCOLOURED)
+        wrong = (self.of(verdict) for verdict in faults)
         return not (any(wrong) or self.extra or self.broken or any(violated(self.claims)))
 
 
@@ -166,21 +187,37 @@ def check_table(
     """
     layout = evidence.description
     sure = sure_roles(layout, labels, kinds)
-    broken = tuple(entry for entry in grounding.violated if entry.fact.weight >= 1)
+    members = _members(evidence, grounding)
+    certain = [entry for entry in grounding.violated if entry.fact.weight >= 1]
+    single = [entry for entry in certain if members.keys().isdisjoint({entry.fact.subject, entry.fact.object})]
+    of_groups = dict.fromkeys(entry for things in members.values() for each in things.values() for entry in each)
+    broken = (*single, *of_groups)
     exchanged = _exchanged_roles(evidence, grounding, sure)
-    explained = [entry for entry in broken if not exchanged.keys() & {entry.fact.subject, entry.fact.object}]
+    explained = [
+        entry
+        for entry in single
+        if not exchanged.keys() & {entry.fact.subject, entry.fact.object} and not is_aim(entry.fact)
+    ]
     misplaced = exchanged.keys() | _misplaced_ends(grounding, explained)
     spare = dispensable(layout.facts())
     otherwise = _miscoloured(evidence, grounding, seen, colours)
+    checked = [claim for claim in evidence.claims if not _is_colour_of_role(claim, colours)]
+    claims = _check_claims(evidence, checked, grounding, members)
+    scene = evidence.scene
+    turned = turned_roles(broken, list(violated(claims)), scene.nodes, scene.boxes, scene.poses)
     roles = []
     for role in layout.nodes:
         match = grounding.matches.get(role)
         if match is None:
             roles.append(RoleCheck(role, RoleVerdict.ABSENT if role in spare else RoleVerdict.MISSING, None, None))
             continue
+        if role in members:
+            roles += _member_roles(role, members[role], labels, sure, turned)
+            continue
         label = labels[match.perceived]
         verdict = RoleVerdict.CORRECT if role in sure[match.perceived] else RoleVerdict.UNDETERMINED
         verdict = RoleVerdict.MISCOLOURED if role in otherwise else verdict
+        verdict = RoleVerdict.TURNED if (role, match.perceived) in turned else verdict
         about = tuple(entry for entry in broken if role in (entry.fact.subject, entry.fact.object))
         roles.append(
             RoleCheck(
@@ -192,24 +229,68 @@ def check_table(
                 broken=about,
                 in_place_of=exchanged.get(role),
                 miscoloured=otherwise.get(role),
+                turned=turned.get((role, match.perceived), ()),
             )
         )
     unexpected = tuple(entry for entry in grounding.violated if entry.fact.weight < 1)
-    filled = {role: match.perceived for role, match in grounding.matches.items()}
-    claims = check_claims(
-        [claim for claim in evidence.claims if not _is_colour_of_role(claim, colours)],
-        filled,
-        evidence.scene.nodes,
-        evidence.scene.boxes,
-        layout.vocabulary,
-        evidence.meaning.models or shipped_models(),
-        evidence.metric,
-        evidence.surface,
-        evidence.scene.poses,
-    )
     others = {thing: label for thing, label in labels.items() if thing != evidence.surface}
-    extra = _extra(others, grounding, sure)
+    extra = _extra(others, grounding, sure, frozenset().union(*members.values()))
     return TableCheck(tuple(roles), extra, broken, unexpected, grounding, claims, evidence.surface)
+
+
+Members = Mapping[str, tuple[FactOutcome, ...]]
+"""Facts that are violated by each member of a group, by the name of its thing."""
+
+
+def _members(evidence: Evidence, grounding: Grounding) -> dict[str, Members]:
+    """Return the members of each group of unknown number, with the facts that they violate."""
+    layout, scene, assignment = evidence.description, evidence.scene, assignment_of(grounding, evidence)
+    return {
+        role: {
+            scene.nodes[thing]: broken
+            for thing, broken in broken_of_members(evidence, assignment, layout.index(role)).items()
+        }
+        for role in evidence.uncounted
+        if role in grounding.matches
+    }
+
+
+def _member_roles(
+    role: str,
+    members: Members,
+    labels: Mapping[str, Label | None],
+    sure: Mapping[str, frozenset[str]],
+    turned: Mapping[tuple[str, str], tuple[Turned, ...]],
+) -> Iterator[RoleCheck]:
+    """Yield the verdict on each member of a group."""
+    for thing, broken in members.items():
+        label = labels[thing]
+        verdict = RoleVerdict.CORRECT if role in sure[thing] else RoleVerdict.UNDETERMINED
+        verdict = RoleVerdict.TURNED if (role, thing) in turned else verdict
+        verdict = RoleVerdict.MISPLACED if any(not is_aim(entry.fact) for entry in broken) else verdict
+        text, confidence = (label.text, label.confidence) if label else (None, None)
+        yield RoleCheck(role, verdict, thing, text, confidence, broken, turned=turned.get((role, thing), ()))
+
+
+def _check_claims(
+    evidence: Evidence, claims: Sequence[Claim], grounding: Grounding, members: Mapping[str, Members]
+) -> tuple[ClaimOutcome, ...]:
+    """Return the outcomes of claims: of one about a group, those of all members that violate it, or else of one."""
+    scene, models = evidence.scene, evidence.meaning.models or shipped_models()
+    words, filled = evidence.description.vocabulary, {r: match.perceived for r, match in grounding.matches.items()}
+
+    def checked(some: Sequence[Claim], filled: Mapping[str, str]) -> tuple[ClaimOutcome, ...]:
+        return check_claims(
+            some, filled, scene.nodes, scene.boxes, words, models, evidence.metric, evidence.surface, scene.poses
+        )
+
+    found: list[ClaimOutcome] = []
+    for claim, outcome in zip(claims, checked(claims, filled), strict=True):
+        group = claim.subjects[0] if len(claim.subjects) == 1 else None
+        outcomes = [checked([claim], {**filled, group: thing})[0] for thing in members.get(group or "", ()) if group]
+        wrong = [entry for entry in outcomes if entry.verdict in (ClaimVerdict.VIOLATED, ClaimVerdict.WAIVED)]
+        found += wrong or [outcome]
+    return tuple(found)
 
 
 def _is_colour_of_role(claim: Claim, colours: Colours | None) -> bool:
@@ -243,9 +324,7 @@ def _exchanged_roles(evidence: Evidence, grounding: Grounding, sure: Mapping[str
     make more hold of each, the smallest comes first; then the next one among the other roles.
     """
     layout, scene = evidence.description, evidence.scene
-    assignment = np.full(len(layout.nodes), UNMATCHED, dtype=np.int64)
-    for role, match in grounding.matches.items():
-        assignment[layout.index(role)] = scene.index(match.perceived)
+    assignment = assignment_of(grounding, evidence)
     known = [i for i, p in enumerate(assignment) if p != UNMATCHED and layout.nodes[i] in sure[scene.nodes[p]]]
     found: dict[str, str] = {}
     while True:
@@ -366,9 +445,12 @@ def _misplaced_ends(grounding: Grounding, broken: Sequence[FactOutcome]) -> froz
 
 
 def _extra(
-    labels: Mapping[str, Label | None], grounding: Grounding, sure: Mapping[str, frozenset[str]]
+    labels: Mapping[str, Label | None],
+    grounding: Grounding,
+    sure: Mapping[str, frozenset[str]],
+    members: frozenset[str],
 ) -> tuple[Extra, ...]:
-    taken = {match.perceived for match in grounding.matches.values()}
+    taken = {match.perceived for match in grounding.matches.values()} | members
     found = []
     for thing, label in labels.items():
         if thing in taken:

@@ -19,7 +19,13 @@ from numpy.typing import NDArray
 from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relation import Relations
-from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses
+from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses, bearings
+from deixis.reasoning.grounding.evidence.aims import (
+    AIMING,
+    degree_of_angle,
+    is_of_handle,
+    stated_direction,
+)
 from deixis.reasoning.grounding.evidence.claims import (
     EACH_OTHER,
     MAX_THINGS,
@@ -44,13 +50,6 @@ OFF_LINE = ((0.06, 0.15, 0.5), (0.0, BORDER, EXTREME))
 
 UNEVEN = ((0.15, 0.3, 0.6), (0.0, BORDER, EXTREME))
 """Log degree of a circle by the spread of the distances from its middle, as a share of their mean."""
-
-
-OFF_DIRECTION = ((np.pi / 6, np.pi / 4, np.pi / 2), (0.0, BORDER, EXTREME))
-"""Log degree of pointing in a direction by the angle from it, in radians."""
-
-DIRECTIONS = {**TOWARDS, "away": (1, 1), "viewer": (1, -1), "you": (1, -1), "me": (1, -1)}
-"""Axis and sign of the words for directions in the plane."""
 
 
 class ClaimVerdict(StrEnum):
@@ -167,7 +166,7 @@ class _Measures:
     ) -> None:
         self.boxes, self.things, self.vocabulary, self.metric = boxes, things, vocabulary, metric
         self.poses = poses
-        self.degrees = ClaimDegrees(boxes, vocabulary, models, metric, surface)
+        self.degrees = ClaimDegrees(boxes, vocabulary, models, metric, surface, poses)
         self.on_surface = [i for i in range(len(boxes)) if i != surface]
 
     def of(self, claim: Claim, subjects: list[int], arguments: list[int]) -> Measured:
@@ -220,30 +219,42 @@ class _Measures:
                 return float(degree[subject]), shown.get(term, self._where(subject))
         if term == "empty":
             return self._none("inside", [subject])
-        if term in ("pointing", "facing") and value is not None and not others:
-            return self._aimed(term, value, subject)
+        if term in AIMING and (others or value is not None):
+            return self._aimed(claim, subject, others)
         return None, _undecidable(claim)
 
-    def _aimed(self, term: str, value: str, subject: int) -> Measured:
+    def _aimed(self, claim: Claim, subject: int, others: list[int]) -> Measured:
         """Measure the angle between a thing's direction and a stated one, by its long axis if its end is unknown."""
-        sides = [DIRECTIONS[word] for word in value.replace("_", " ").split() if word in DIRECTIONS]
-        if self.poses is None or not sides or len({axis for axis, _ in sides}) < len(sides):
+        if self.poses is None:
             return None, "boxes have no direction"
-        stated = np.zeros(2)
-        for axis, sign in sides:
-            stated[axis] = sign / np.sqrt(len(sides))
-        way = (self.poses.pointing if term == "pointing" else self.poses.fronts)[subject]
-        if np.isnan(way).any():
-            if term == "facing" or self.poses.stretch[subject] < MIN_STRETCH:
-                return None, "its direction is not known"
-            angle = float(np.arccos(min(abs(float(self.poses.axes[subject] @ stated)), 1.0)))
-            if angle < np.pi / 4:
-                return None, "which of its ends points there is not known"
-            return float(np.exp(np.interp(angle, *OFF_DIRECTION))), f"it lies {np.degrees(angle):.0f}° across '{value}'"
-        angle = float(np.arccos(np.clip(way @ stated, -1.0, 1.0)))
-        return float(
-            np.exp(np.interp(angle, *OFF_DIRECTION))
-        ), f"it points {np.degrees(angle):.0f}° away from '{value}'"
+        aims: list[tuple[NDArray[np.float64] | None, str | None]] = [(stated_direction(claim.value), claim.value)]
+        if others:
+            ways = bearings(self.boxes[[subject]], self.boxes[others])[0]
+            aims = [(way, self.things[other]) for way, other in zip(ways, others, strict=True)]
+        measured: list[Measured] = []
+        for wanted, goal in aims:
+            if wanted is None or np.isnan(wanted).any():
+                return None, "boxes have no direction"
+            measured.append(self._aimed_at(claim, subject, wanted, goal))
+        return min(measured, key=lambda one: 2.0 if one[0] is None else one[0])
+
+    def _aimed_at(self, claim: Claim, subject: int, wanted: NDArray[np.float64], goal: str | None) -> Measured:
+        assert self.poses is not None
+        facing, handle = claim.relation == "facing", is_of_handle(claim.value)
+        where = f"'{goal}'"
+        angle = float(self.poses.aim_angles(wanted, facing, handle)[subject])
+        if not np.isnan(angle):
+            what = "its handle" if handle else "it"
+            return float(degree_of_angle(np.array(angle))), f"{what} points {np.degrees(angle):.0f}° away from {where}"
+        known = not np.isnan(self.poses.pointing[subject]).any()
+        if known:
+            return None, "which of its sides is its front is not known"
+        if facing or self.poses.stretch[subject] < MIN_STRETCH:
+            return None, "its direction is not known"
+        across = float(np.arccos(min(abs(float(self.poses.axes[subject] @ wanted)), 1.0)))
+        if across < np.pi / 4:
+            return None, "which of its ends points there is not known"
+        return float(degree_of_angle(np.array(across))), f"it lies {np.degrees(across):.0f}° across {where}"
 
     def _stands(self, subject: int) -> str:
         low, surface = self.boxes[:, 0, -1], self.degrees.surface
@@ -437,7 +448,7 @@ class _Measures:
 
 def _undecidable(claim: Claim) -> str:
     term, value = claim.relation.replace("_", " "), claim.value
-    if claim.relation in ("pointing", "facing"):
+    if claim.relation in AIMING:
         return "boxes have no direction"
     if claim.relation == "on" and not claim.arguments and value is None:
         return "the scene has no heights"

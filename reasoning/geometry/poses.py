@@ -14,6 +14,13 @@ Array = NDArray[np.float64]
 MIN_STRETCH = 0.2
 """Least stretch of a thing with a clear long axis: its sides are as 3 to 2."""
 
+TOOL_STRETCH = 0.43
+"""Least stretch of a thing whose handle is at the end opposite its front: it is 2.5 times as long as wide."""
+
+SIDEWAYS = (math.pi / 4, 3 * math.pi / 4)
+"""Angles in radians from the head of a thing between which it may face something with a side, as a knife with its edge.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class Poses:
@@ -125,6 +132,44 @@ class Poses:
             return self.fronts
         return np.where(self.fronted[:, None], self.fronts, self.heads)
 
+    def aim_angles(self, wanted: Array, facing: bool = False, handle: bool = False) -> Array:
+        """Return the angles between the directions in which things point and wanted directions.
+
+        Parameters
+        ----------
+        wanted
+            Unit vectors: one direction of shape (2,), or those from each thing to m others, shape (n, m, 2).
+        facing
+            Whether the things should face in that direction. A thing whose head alone is known may do so with a side.
+        handle
+            Whether their handles should point there. That of a long thing is opposite its head.
+
+        Returns
+        -------
+        ndarray
+            Angles in radians, in [0, pi], shape (n,) or (n, m); NaN where they are unknown.
+
+        Examples
+        --------
+        >>> knife = np.array([[[0.0, 0.0], [0.02, 0.2]]])
+        >>> poses = replace(Poses.of_boxes(knife), heads=np.array([[0.0, 1.0]]))
+        >>> right, away = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+        >>> np.degrees(poses.aim_angles(right)).round(), poses.aim_angles(right, facing=True)
+        (array([90.]), array([nan]))
+        >>> np.degrees(poses.aim_angles(away, handle=True)).round()
+        array([180.])
+        """
+        ways = self.pointing
+        by_head = np.logical_not(self.fronted | np.isnan(ways).any(axis=1))
+        if handle:
+            ways = np.where((by_head | (self.stretch >= TOOL_STRETCH))[:, None], -ways, ways)
+        product = "nd,d->n" if wanted.ndim == 1 else "nd,nmd->nm"
+        angles: Array = np.arccos(np.clip(np.einsum(product, ways, wanted), -1.0, 1.0))
+        if facing and not handle:
+            by_head = by_head if wanted.ndim == 1 else by_head[:, None]
+            angles[by_head & (angles > SIDEWAYS[0]) & (angles < SIDEWAYS[1])] = np.nan
+        return angles
+
     @property
     def fronted(self) -> NDArray[np.bool_]:
         """True for things with a known front, shape (n,)."""
@@ -137,6 +182,33 @@ def _middle(boxes: Array) -> Array:
         return np.zeros(2)
     middle: Array = (boxes[:, 0, :2].min(axis=0) + boxes[:, 1, :2].max(axis=0)) / 2
     return middle
+
+
+def bearings(boxes: Array, others: Array) -> Array:
+    """Return the directions from some things to others.
+
+    Parameters
+    ----------
+    boxes
+        Boxes of n things, shape (n, 2, d).
+    others
+        Boxes of m things, shape (m, 2, d).
+
+    Returns
+    -------
+    ndarray
+        Unit vectors in the plane, shape (n, m, 2); NaN for things at one place.
+
+    Examples
+    --------
+    >>> plate, cup = np.array([[0.0, 0.0], [0.2, 0.2]]), np.array([[0.0, 0.4], [0.2, 0.6]])
+    >>> bearings(np.array([plate]), np.array([cup, plate])).tolist()
+    [[[0.0, 1.0], [nan, nan]]]
+    """
+    first, second = boxes[:, :, :2].mean(axis=1), others[:, :, :2].mean(axis=1)
+    apart = second[None] - first[:, None]
+    length = np.linalg.norm(apart, axis=2, keepdims=True)
+    return np.asarray(np.divide(apart, length, out=np.full_like(apart, np.nan), where=length > 0))
 
 
 def coaxial(first: Poses, second: Poses) -> Array:

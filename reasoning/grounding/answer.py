@@ -185,6 +185,10 @@ class Grounding(Answer):
     <Grounding 2 of 2 objects matched, 2 decided, 1 of 1 fact satisfied, fits 1.00>
     >>> found.matches["plate"], found.fits > 0.99, found.proved_best
     (<Match plate is o2, probability 0.995>, True, True)
+    >>> [str(entry.fact) for entry in found.satisfied], found.violated, found.of(Outcome.OPEN)
+    (['left(fork, plate)'], (), ())
+    >>> list(found.object_matches), found.noting(("a remark",)).notes[0]
+    (['fork', 'plate'], 'a remark')
     """
 
     engine: str

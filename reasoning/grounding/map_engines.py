@@ -118,7 +118,13 @@ class ScalableEngine:
 
 @dataclass(frozen=True)
 class BaselineEngine:
-    """Node similarity from the literature, with the Hungarian method to choose the matches."""
+    """Node similarity from the literature, with the Hungarian method to choose the matches.
+
+    Notes
+    -----
+    The assignment is that of H. W. Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics
+    Quarterly 2, 1955, as scipy solves it.
+    """
 
     name: str
     similarity: Callable[[Problem, Deadline], NodeSimilarity]

@@ -7,6 +7,7 @@ the thing that fits best, and the facts about the group hold of it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.lessons.types import Alternative
 from deixis.reasoning.grounding.alternatives import MIN_LISTED_PROBABILITY
-from deixis.reasoning.grounding.answer import Grounding, Member
+from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Member, Outcome
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.meaning import OUTLIERS
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
@@ -45,12 +46,7 @@ def with_members(found: Grounding, evidence: Evidence) -> Grounding:
     Grounding
         The grounding with ``members``; the members are no longer among its unmatched things.
     """
-    place = {name: i for i, name in enumerate(evidence.scene.nodes)}
-    assignment = np.array(
-        [place.get(found.matches[name].perceived, UNMATCHED) if name in found.matches else UNMATCHED
-         for name in evidence.description.nodes],
-        dtype=np.int64,
-    )  # fmt: skip
+    assignment = assignment_of(found, evidence)
     members, matches = {}, dict(found.matches)
     for name in evidence.uncounted:
         if name not in matches or name not in evidence.description.nodes:
@@ -73,6 +69,29 @@ def with_members(found: Grounding, evidence: Evidence) -> Grounding:
     things = {one.perceived for group in members.values() for one in group}
     left = tuple(one for one in found.unmatched_perceived if one.name not in things)
     return replace(found, matches=matches, members=members, unmatched_perceived=left)
+
+
+def assignment_of(found: Grounding, evidence: Evidence) -> Assignment:
+    """Return the things of the matches of a grounding.
+
+    Parameters
+    ----------
+    found
+        Grounding with matches.
+    evidence
+        Evidence of the grounding, of a description of n1 objects.
+
+    Returns
+    -------
+    ndarray
+        Position of the thing of each object in the scene, with ``UNMATCHED`` for objects left out; shape (n1,).
+    """
+    place = {name: i for i, name in enumerate(evidence.scene.nodes)}
+    return np.array(
+        [place.get(found.matches[name].perceived, UNMATCHED) if name in found.matches else UNMATCHED
+         for name in evidence.description.nodes],
+        dtype=np.int64,
+    )  # fmt: skip
 
 
 def member_probabilities(evidence: Evidence, assignment: Assignment, group: int) -> Array:
@@ -100,22 +119,69 @@ def member_probabilities(evidence: Evidence, assignment: Assignment, group: int)
     if not free.any():
         return np.zeros(len(free))
     said, things = evidence.description, np.arange(len(free))
+    for fact, other, fillers in _facts_about(evidence, assignment, group):
+        holds = np.zeros(len(free), dtype=np.bool_)
+        for thing in fillers:
+            tried = np.tile(assignment, (len(free), 1))
+            tried[:, group], tried[:, other] = things, thing
+            holds |= (evidence.degrees(tried)[:, fact] > 0) & (things != thing)
+        score = score + np.where(holds, 0.0, np.log(OUTLIERS)) * said.net_weights[evidence.facts[fact]]
+    best = float(score[free].max())
+    result: Array = np.where(free, np.exp(np.minimum(score - best, 0.0)), 0.0)
+    return result
+
+
+def broken_of_members(evidence: Evidence, assignment: Assignment, group: int) -> dict[int, tuple[FactOutcome, ...]]:
+    """Return the things that fit the noun of a group, each with the certain facts about the group that it violates.
+
+    Parameters
+    ----------
+    evidence
+        Evidence of a description of n1 objects, the group among them, in a scene of n2 things.
+    assignment
+        Thing of each object, with ``UNMATCHED`` for objects left out; shape (n1,). The group has a thing.
+    group
+        Position of the group among the objects.
+
+    Returns
+    -------
+    dict
+        Violated facts by the position of the thing. A fact about two groups holds of a thing if it holds with any thing
+        of the other group.
+    """
+    said, nodes = evidence.description, evidence.scene.nodes
+    single = [i for i, name in enumerate(said.nodes) if name not in evidence.uncounted and assignment[i] != UNMATCHED]
+    taken = {int(assignment[i]) for i in single}
+    things = [thing for thing in _could_be(evidence, assignment, group) if thing not in taken]
+    firm = evidence.firm()
+    about = [one for one in _facts_about(evidence, assignment, group) if firm[one[0]]]
+    broken: dict[int, tuple[FactOutcome, ...]] = {}
+    for thing in things:
+        outcomes = []
+        for fact, other, fillers in about:
+            rivals = [rival for rival in fillers if rival != thing]
+            tried = np.tile(assignment, (len(rivals), 1))
+            tried[:, group], tried[:, other] = thing, rivals
+            if len(rivals) and not (evidence.degrees(tried)[:, fact] > 0).any():
+                edge = int(evidence.facts[fact])
+                first, second = (thing, rivals[0]) if said.subjects[edge] == group else (rivals[0], thing)
+                seen = evidence.scene.relation(first, second)
+                pair = nodes[first], nodes[second]
+                outcomes.append(FactOutcome(said.fact(edge), Outcome.VIOLATED, 0.0, pair, seen))
+        broken[thing] = tuple(outcomes)
+    return broken
+
+
+def _facts_about(evidence: Evidence, assignment: Assignment, group: int) -> Iterator[tuple[int, int, list[int]]]:
+    """Yield the position of each comparable fact about a group, its other object, and the things that may fill it."""
+    said = evidence.description
     for fact, edge in enumerate(evidence.facts.tolist()):
         ends = (int(said.subjects[edge]), int(said.objects[edge]))
         if group not in ends:
             continue
         other = ends[1] if ends[0] == group else ends[0]
-        if assignment[other] == UNMATCHED:
-            continue
-        holds = np.zeros(len(free), dtype=np.bool_)
-        for thing in _could_be(evidence, assignment, other):
-            tried = np.tile(assignment, (len(free), 1))
-            tried[:, group], tried[:, other] = things, thing
-            holds |= (evidence.degrees(tried)[:, fact] > 0) & (things != thing)
-        score = score + np.where(holds, 0.0, np.log(OUTLIERS)) * said.net_weights[edge]
-    best = float(score[free].max())
-    result: Array = np.where(free, np.exp(np.minimum(score - best, 0.0)), 0.0)
-    return result
+        if assignment[other] != UNMATCHED:
+            yield fact, other, _could_be(evidence, assignment, other)
 
 
 def _could_be(evidence: Evidence, assignment: Assignment, other: int) -> list[int]:

@@ -23,7 +23,7 @@ from deixis.version import VERSION
 
 if TYPE_CHECKING:
     from deixis.errors import DeixisError
-    from deixis.grammar.format import format_script
+    from deixis.grammar.layout.format import format_script
     from deixis.grammar.script import Script
     from deixis.learning.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
@@ -136,7 +136,7 @@ _HOMES = {
     "Unlearned": "deixis.workflows.knowledge.unlearn",
     "ask": "deixis.workflows.grounding.ask",
     "check": "deixis.workflows.grounding.check",
-    "format_script": "deixis.grammar.format",
+    "format_script": "deixis.grammar.layout.format",
     "ground": "deixis.workflows.grounding.ground",
     "habits": "deixis.workflows.knowledge.habits",
     "imagine": "deixis.workflows.layouts.imagine",

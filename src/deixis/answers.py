@@ -29,6 +29,13 @@ class Answer:
     <Script <text>: 2 objects, 1 fact>
     >>> script.to_dict()["facts"][0]["subject"]
     'fork'
+    >>> script.summary(), str(script)
+    ('<text>: 2 objects, 1 fact', 'Script <text>: 2 objects, 1 fact')
+    >>> print(script.to_json(indent=None)[:36])
+    {"file": "<text>", "name": null, "ti
+    >>> print(script.to_text())
+    <text>: 2 objects, 1 fact
+         1  left(fork, plate)
     """
 
     __slots__ = ()

@@ -8,8 +8,11 @@ from __future__ import annotations
 
 def compile_kernels() -> None:
     """Run one tiny job of each kind, so that compiled code and the reasoners' classes are kept on disk."""
-    for engine in ("exact", "scalable"):
-        compile_grounding(engine)
+    from deixis.reasoning.kernel import keeping_machine_code
+
+    with keeping_machine_code():  # of commands that a person waits for in a loop
+        for engine in ("exact", "scalable"):
+            compile_grounding(engine)
     compile_inference()
     compile_solving()
     _tell_time()
@@ -48,7 +51,7 @@ def compile_grounding(engine: str) -> None:
         If no engine has that name.
     """
     from deixis.deadline import Deadline
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.reasoning.entailment.conflict import find_conflict
     from deixis.reasoning.entailment.implications import Implications
     from deixis.reasoning.geometry.pairs import Surroundings
@@ -75,7 +78,7 @@ def compile_grounding(engine: str) -> None:
 
 def compile_inference() -> None:
     """Compile, or load compiled, the search over facts with more than one reading."""
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.reasoning.constraints.difference import ORDERS, ZERO, Difference, DifferenceNetwork
     from deixis.reasoning.entailment.why_not import why_not
     from deixis.reasoning.kernel import load_compiled
@@ -107,7 +110,7 @@ def compile_solving(wide: bool = True) -> None:
     from deixis.reasoning.kernel import load_compiled
     from deixis.reasoning.qualitative.calculi.registry import calculus
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
-    from deixis.reasoning.qualitative.networks.wide_search import WideSearch
+    from deixis.reasoning.qualitative.networks.search.wide_search import WideSearch
     from deixis.workflows.reasoning.solve import SolveRequest, solve_text
 
     load_compiled()
@@ -126,7 +129,7 @@ def compile_solving(wide: bool = True) -> None:
 
 def compile_imagining() -> None:
     """Compile, or load compiled, the kernels that place the objects of an imagined table."""
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.reasoning.kernel import load_compiled
     from deixis.workflows.layouts.imagine import imagine
 

@@ -18,8 +18,8 @@ from deixis.reasoning.errors import NothingFoundError
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.learning.recollection import Recollection
-    from deixis.learning.update import Commit
     from deixis.learning.words import LearnedWords
+    from deixis.memory.journal import Commit, JointWrite
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.memory.semantic.rdf.links import Link
@@ -174,9 +174,9 @@ class KnowledgeStore(Closing):
     def _forgetting_meaning(self, commit: Commit) -> Commit:
         """Return a commit after which the words and sizes in force are read again."""
 
-        def committing(journal: str | None) -> None:
+        def committing(write: JointWrite | None) -> None:
             try:
-                commit(journal)
+                commit(write)
             finally:
                 self._meaning = None
 
@@ -247,7 +247,28 @@ class KnowledgeStore(Closing):
 
         return self._forgetting_meaning(forgetting(self.memory(), self.ontology, lesson))
 
-    def unlearning(self, lessons: Sequence[str], links: Mapping[str, Sequence[Link]]) -> Commit:
+    def meaning_before(self, lesson: str) -> Meaning:
+        """Return the words in force, and the sizes that the lessons before a lesson taught.
+
+        Parameters
+        ----------
+        lesson
+            Id of the lesson.
+
+        Returns
+        -------
+        Meaning
+            Models of words and ranges of sizes.
+        """
+        from deixis.learning.update import sizes_before
+        from deixis.ontology.models.sizes import sizes_from_triples
+
+        before = sizes_from_triples(sizes_before(self.memory(), self.ontology, lesson))
+        return replace(self.meaning(), sizes=before)
+
+    def unlearning(
+        self, lessons: Sequence[str], links: Mapping[str, Sequence[Link]], revised: Sequence[Lesson] = ()
+    ) -> Commit:
         """Return a function that removes lessons, with what follows from them only, and changes the links of views.
 
         Parameters
@@ -256,6 +277,8 @@ class KnowledgeStore(Closing):
             Ids of the lessons.
         links
             All links of each view that changes, by the id of the view.
+        revised
+            Lessons that replace those with their ids.
 
         Returns
         -------
@@ -269,7 +292,7 @@ class KnowledgeStore(Closing):
         """
         from deixis.learning.update import unlearning
 
-        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links))
+        return self._forgetting_meaning(unlearning(self.memory(), self.ontology, lessons, links, revised))
 
     def import_(self, file: str | Path) -> None:
         """Import the export of another memory, or plain triples; keep what the memory has.

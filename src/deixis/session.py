@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from deixis.learning.tables import TaughtTable
     from deixis.learning.views import Recognised, Taught
     from deixis.learning.words import LearnedWords
+    from deixis.memory.journal import Part
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.semantic.queries.results import QueryResult
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.grounding.evidence.meaning import Meaning
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.dialogue import Ask
-    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.knowledge.learn import Learned, Recording
     from deixis.workflows.knowledge.recall import Recall
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
@@ -218,6 +219,8 @@ class Session(Closing):
         engine: str = "exact",
         time_limit: float = DEFAULT_TIME_LIMIT,
         teacher: str = "user",
+        events: Sequence[str] = (),
+        episodes: Recording | None = None,
     ) -> Learned:
         """Ground a script in a scene, and keep the layout and the look of its objects, with their provenance.
 
@@ -236,6 +239,11 @@ class Session(Closing):
             Seconds for the grounding.
         teacher
             Name of the teacher, stored with the lesson.
+        events
+            Ids in the episodes of what the teacher said.
+        episodes
+            Function that returns what the blackboard says of the lesson (:meth:`Blackboard.part`), which is written in
+            the same step.
 
         Returns
         -------
@@ -247,7 +255,7 @@ class Session(Closing):
         DeixisError
             The script contradicts itself or earlier lessons. Nothing was changed.
         """
-        (learned,) = self.learn_all([(script, scene)], engine, time_limit, teacher=teacher)
+        (learned,) = self.learn_all([(script, scene)], engine, time_limit, None, teacher, events, episodes)
         return learned
 
     @_one_at_a_time
@@ -258,6 +266,8 @@ class Session(Closing):
         time_limit: float = DEFAULT_TIME_LIMIT,
         progress: Progress | None = None,
         teacher: str = "user",
+        events: Sequence[str] = (),
+        episodes: Recording | None = None,
     ) -> tuple[Learned, ...]:
         """Learn from many scripts, each with its scene, as :meth:`learn` does from one: all of them, or none.
 
@@ -275,6 +285,11 @@ class Session(Closing):
             Called with the number of grounded examples and of all.
         teacher
             Name of the teacher, stored with each lesson.
+        events
+            Ids in the episodes of what the teacher said.
+        episodes
+            Function that returns what the blackboard says of the lessons (:meth:`Blackboard.part`), which is written in
+            the same step.
 
         Returns
         -------
@@ -285,10 +300,40 @@ class Session(Closing):
         ------
         DeixisError
             If an example is invalid, or nothing that it names is found; nothing is kept then.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import deixis
+        >>> from deixis.workflows.knowledge.unlearn import Selection
+        >>> script = deixis.read_script(text="layout supper; fork left of plate; knife right of plate")
+        >>> corners = [[0, 0], [0.1, 0], [0.4, 0]], [[0.03, 0.2], [0.35, 0.25], [0.43, 0.2]]
+        >>> scene = deixis.Scene.from_boxes(*corners, labels=["fork", "plate", "knife"])
+        >>> with tempfile.TemporaryDirectory() as folder, deixis.Session(folder + "/memory") as session:
+        ...     [learned.lesson.id for learned in session.learn_all([(script, scene), (script, scene)])]
+        ...     session.ground(script, scene)
+        ...     [table.lesson for table in session.tables("supper")]
+        ...     list(session.concept("supper").lines())[0]
+        ...     session.learn_relations().lessons
+        ...     session.meaning().graded, session.attributes(), session.lessons_of_events()
+        ...     session.forget_relations()
+        ...     session.unlearn(Selection(lesson="supper-1"))
+        ...     [lesson.lesson for lesson in session.recollection().lessons]
+        ...     session.memory().lessons()
+        ['supper-1', 'supper-2']
+        <Grounding 3 of 3 objects matched, 3 decided, 2 of 2 facts satisfied, fits 1.00>
+        ['supper-1', 'supper-2']
+        '2 tables: supper-1, supper-2'
+        ('supper-1', 'supper-2')
+        (True, {}, {})
+        <Unlearned 1 lesson taken back, 0 views forgotten, 0 views changed>
+        ['supper-2']
+        ('supper-2',)
         """
         from deixis.workflows.knowledge.learn import learn
 
-        return learn(examples, self.knowledge_store, self.view_store, engine, time_limit, progress, teacher)
+        stores = (self.knowledge_store, self.view_store)
+        return learn(examples, *stores, engine, time_limit, progress, teacher, events, episodes)
 
     @_one_at_a_time
     def check(
@@ -325,6 +370,8 @@ class Session(Closing):
         category: str,
         teacher: str = "user",
         settles: tuple[str, str] | None = None,
+        event: str | None = None,
+        episodes: Part | None = None,
     ) -> Taught:
         """Store the look of a thing of a scene as a view of a category, which is made if it is new.
 
@@ -341,6 +388,10 @@ class Session(Closing):
         settles
             Id of a lesson and a role in it, if this says which thing that role is; the counts of the layout then
             have it (:meth:`tables`).
+        event
+            Event in the episodes in which the teacher showed it, with their origin; None where they do not have it.
+        episodes
+            What the blackboard says of it (:meth:`Blackboard.part`), which is written in the same step.
 
         Returns
         -------
@@ -353,10 +404,33 @@ class Session(Closing):
             The scene has no such thing, or no cloud of it.
         SettingError
             The name of the category is invalid.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from deixis.perception.clouds.cloud import PointCloud
+        >>> from deixis.perception.scene import PerceivedObject, Scene
+        >>> angle = np.linspace(0, 40, 600)
+        >>> points = np.stack([0.05 * np.cos(angle), 0.05 * np.sin(angle), angle / 400], axis=1, dtype=np.float32)
+        >>> thing = PerceivedObject("o1", (-0.05, -0.05, 0.0), (0.05, 0.05, 0.1), cloud=PointCloud(points))
+        >>> scene = Scene((thing,))
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     session.teach(scene, "o1", "mug").category, session.has_views()
+        ...     session.category_meant("Mug"), session.recognise(scene)
+        ...     session.rename_category("mug", "cup")
+        ...     [view.category for view in session.views().views()]
+        ...     session.forget_category("cup")
+        ...     session.categories()
+        ('mug', True)
+        ('mug', <Recognised 1 of 1 object recognised>)
+        ['cup']
+        {}
         """
         from deixis.workflows.scenes.teach import teach
 
-        return teach(scene, object, category, self.knowledge_store, self.view_store, teacher, settles)
+        stores = (self.knowledge_store, self.view_store)
+        return teach(scene, object, category, *stores, teacher, settles, event, episodes)
 
     @_one_at_a_time
     def recognise(
@@ -557,17 +631,32 @@ class Session(Closing):
             If the question is not understood; the message has wordings that would be.
         MemoryFormatError
             If the memory has no episodes.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from datetime import UTC, datetime
+        >>> from deixis.memory.episodes.blackboard import Blackboard
+        >>> from deixis.memory.episodes.changes import Add
+        >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+        >>> seen, noon = Source(Origin.SEEN, "tracker"), datetime(2026, 5, 1, 12, tzinfo=UTC)
+        >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder) as session:
+        ...     with Blackboard.open(folder, create=True, origin=noon) as board:
+        ...         fluents = [episodic(board.new_id("f"), fact, start=0.0, source=seen) for fact in facts]
+        ...         sequence = board.write(*map(Add, fluents), by="tracker")
+        ...     found = session.recall("where is the fork?", at=datetime(2026, 5, 1, 13, tzinfo=UTC))
+        >>> found.known, [str(fact.fluent.statement) for fact in found.facts]
+        (True, ['left(t1, t2)'])
         """
         from deixis.memory.episodes.blackboard import Blackboard, has_episodes
         from deixis.memory.errors import MemoryFormatError
         from deixis.workflows.knowledge.recall import recall
-        from deixis.workflows.knowledge.unlearn import complete_unlearning
 
         if not has_episodes(self.path):
             raise MemoryFormatError(f"the memory at {self.path} has no episodes; name another folder")
 
         with Blackboard.open(self.path) as board:
-            complete_unlearning(board, self.knowledge_store)
             return recall(question, board, None if at is None else board.seconds(at), speaker=speaker)
 
     @_one_at_a_time
@@ -585,6 +674,16 @@ class Session(Closing):
             If the file contradicts the memory; nothing is changed then.
         ImportFormatError
             If the file cannot be read.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> triple = '<https://example.org/beaker> <http://www.w3.org/2000/01/rdf-schema#label> "beaker" .'
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     size = (Path(folder) / "words.nt").write_text(triple)
+        ...     session.import_(Path(folder) / "words.nt")
+        ...     session.query("SELECT ?thing WHERE { ?thing rdfs:label 'beaker' }")
+        <QueryResult SELECT ?thing: 1 row>
         """
         self.knowledge_store.import_(file)
 
@@ -642,6 +741,20 @@ class Session(Closing):
         return tuple(taught_tables(self.knowledge_store.memory(), self.ontology, settled, name))
 
     @_one_at_a_time
+    def lessons_of_events(self) -> dict[str, str]:
+        """Return the lessons that sentences in the episodes of the memory taught.
+
+        Returns
+        -------
+        dict
+            Id of the lesson by the id of the event of the sentence.
+        """
+        from deixis.memory.semantic.rdf.links import events_of_lessons
+
+        known = events_of_lessons(self.memory().store) if self.remembers() else {}
+        return {event: lesson for lesson, events in known.items() for event in events}
+
+    @_one_at_a_time
     def concept(self, name: str) -> CountedConcept:
         """Return what the tables of a layout have in common, with counts.
 
@@ -687,7 +800,7 @@ class Session(Closing):
         UnknownTermError
             If there is neither.
         """
-        from deixis.grammar.format import layout_script
+        from deixis.grammar.layout.format import layout_script
 
         if self.knowledge_store.count_of_tables(name) < 2:
             return layout_script(self.layout(name), self.ontology)
@@ -734,6 +847,14 @@ class Session(Closing):
         -------
         ObjectView
             An own world of owlready2, to be closed after use.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     with session.owl() as view:
+        ...         view.ontology.name, len(session.ontology.relations) > 10
+        ('onto', True)
         """
         return self.knowledge_store.owl()
 
@@ -823,6 +944,23 @@ class Session(Closing):
         ------
         UnknownCategoryError
             If there is no category ``source``.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from deixis.perception.clouds.cloud import PointCloud
+        >>> from deixis.perception.scene import PerceivedObject, Scene
+        >>> angle = np.linspace(0, 40, 600)
+        >>> points = np.stack([0.05 * np.cos(angle), 0.05 * np.sin(angle), angle / 400], axis=1, dtype=np.float32)
+        >>> clouds = PointCloud(points), PointCloud(1.2 * points)
+        >>> things = (PerceivedObject(f"o{i}", (0, 0, 0), (1, 1, 1), cloud=cloud) for i, cloud in enumerate(clouds))
+        >>> scene = Scene(tuple(things))
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     taught = [session.teach(scene, id, name) for id, name in (("o0", "mug"), ("o1", "beaker"))]
+        ...     session.merge_categories("beaker", into="mug")
+        ...     session.categories()
+        {'mug': 2}
         """
         from deixis.view_store import category_name
         from deixis.workflows.scenes.views_of_lessons import merge_categories

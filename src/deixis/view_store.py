@@ -6,6 +6,7 @@ import json
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -92,7 +93,7 @@ class ViewStore(Closing):
         str
             The category with this name, else the first that differs only in case, else the name itself.
         """
-        from deixis.grammar.names import key_of
+        from deixis.grammar.layout.names import key_of
 
         if not self.exists():
             return name
@@ -254,7 +255,9 @@ def _settled(memory: LevelMemory) -> dict[tuple[str, str], dict[str, str]]:
     return settled
 
 
-def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
+def views_of_matches(
+    scene: Scene, matches: Iterable[Match], category_of: Callable[[Match], str] = attrgetter("object")
+) -> list[View]:
     """Return a view of each decided thing that has a cloud in the scene, under the name of its object.
 
     Parameters
@@ -263,6 +266,8 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
         The scene.
     matches
         Matches of a grounding.
+    category_of
+        Function that returns the name of the category of a match; by default, that of its object.
 
     Returns
     -------
@@ -277,7 +282,7 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
     from deixis.learning.teachings import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
-    views = [view_of_thing(scene, match.perceived, plain_name(match.object), GROUNDING) for match in seen]
+    views = [view_of_thing(scene, match.perceived, plain_name(category_of(match)), GROUNDING) for match in seen]
     first: dict[str, str] = {}
     for match, view in zip(seen, views, strict=True):
         if first.setdefault(view.id, match.perceived) != match.perceived:
@@ -289,7 +294,12 @@ def views_of_matches(scene: Scene, matches: Iterable[Match]) -> list[View]:
 
 
 def view_of_thing(
-    scene: Scene, object_id: str, category: str, teacher: str, settles: tuple[str, str] | None = None
+    scene: Scene,
+    object_id: str,
+    category: str,
+    teacher: str,
+    settles: tuple[str, str] | None = None,
+    event: str | None = None,
 ) -> View:
     """Return a view of a thing of a scene, ready to be stored.
 
@@ -305,6 +315,8 @@ def view_of_thing(
         Name of the person who named it.
     settles
         Id of a lesson and a role in it, of which this is the thing; kept in the metadata.
+    event
+        Event in the episodes in which the teacher showed it; kept in the metadata.
 
     Returns
     -------
@@ -318,11 +330,14 @@ def view_of_thing(
     """
     from deixis.learning.teachings import boxes_key
     from deixis.learning.views import view_of
+    from deixis.memory.episodes.episode import EVENT
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
     metadata: dict[str, object] = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}
     if settles is not None:
         metadata = {**metadata, SETTLES: list(settles)}
+    if event is not None:
+        metadata = {**metadata, EVENT: event}
     return view_of(scene.cloud_of(object_id), scene.frame, category, datetime.now(UTC), metadata)
 
 

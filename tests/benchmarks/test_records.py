@@ -116,3 +116,13 @@ def test_a_benchmark_explains_its_options(
         __import__(f"bench_{name}").main()
     assert ended.value.code == 0
     assert "--record" in capsys.readouterr().out
+
+
+def test_the_page_says_which_records_are_old(here: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(records, "commit_number", lambda commit: 7)
+    measure("--record", "--size", "12")
+    assert "cores.\n" in records.page()
+    (recording,) = records.read(here)
+    assert recording.number == 7
+    assert records._table([recording], 8)[0].endswith("*Old*, by 1 commit.")
+    assert records._table([recording], 7)[0].endswith("cores.")

@@ -17,9 +17,9 @@ QUERIES = re.findall(r"^```sparql\n(.*?)^```", PAGE.read_text(encoding="utf-8"),
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    """A session that learned two layouts from one scene."""
+    """A session that learned two layouts from one scene, the first of them twice."""
     with Session(tmp_path_factory.mktemp("more_queries") / "memory") as session:
-        for script in ("formal_dinner.layout", "script2.layout"):
+        for script in ("formal_dinner.layout", "script2.layout", "formal_dinner.layout"):
             session.learn(example(script), example("place_setting.scene.json"))
         yield session
 
@@ -31,6 +31,7 @@ def test_there_are_more_than_twenty() -> None:
 @pytest.mark.parametrize("query", QUERIES, ids=range(1, len(QUERIES) + 1))
 def test_a_query_finds_something(taught: Session, query: str) -> None:
     answer = taught.query(query)
+    assert len(set(map(str, answer.rows))) == len(answer.rows), "some row is printed twice"
     if "FILTER NOT EXISTS { ?thing a ?category" in query:
         assert len(answer.rows) < 12  # the two scripts name all or nearly all of the twelve things
     elif "implicationsStored false" in query:

@@ -8,8 +8,8 @@ import pytest
 
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError, ScriptFileError
-from deixis.grammar.format import format_script
-from deixis.grammar.parser import read_layout
+from deixis.grammar.layout.format import format_script
+from deixis.grammar.layout.parser import read_layout
 
 
 def write(folder: Path, **texts: str) -> Path:

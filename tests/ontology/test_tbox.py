@@ -13,6 +13,7 @@ import pyoxigraph
 import pytest
 import rdflib
 from rdflib import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, Graph, URIRef
+from source_tree import ROOT
 
 from deixis.errors import DeixisError, OntologyError
 from deixis.ontology import vocabulary
@@ -257,3 +258,12 @@ def test_the_default_ontology_is_read_once() -> None:
 def test_no_word_is_both_a_relation_and_a_hedge() -> None:
     ontology = default_ontology()
     assert set(ontology.relations.by_word) & set(ontology.hedges) == set()
+
+
+def test_everyday_kinds_declare_what_they_use() -> None:
+    quads = list(pyoxigraph.parse(path=str(ROOT / "ontology" / "everyday.ttl"), format=pyoxigraph.RdfFormat.TURTLE))
+    declared = {quad.subject.value for quad in quads if isinstance(quad.subject, pyoxigraph.NamedNode)}
+    used = {
+        term.value for quad in quads for term in (quad.predicate, quad.object) if isinstance(term, pyoxigraph.NamedNode)
+    }
+    assert {iri for iri in used if iri.startswith("https://w3id.org/deixis/onto#")} <= declared

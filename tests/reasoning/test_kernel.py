@@ -14,13 +14,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.deadline import Deadline
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.reasoning.kernel import MAX_GIVEN, MAX_INTERPRETED, Kernel, kernel, load_compiled, njit
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.derivation import explain
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import solve
+from deixis.reasoning.qualitative.networks.search.consistency import solve
 from deixis.reasoning.temporal.errors import TemporalConflictError
 from deixis.reasoning.temporal.fluent import AllenStatement, Fluent, Statement
 from deixis.reasoning.temporal.timeline import Timeline

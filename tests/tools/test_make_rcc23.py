@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from deixis.grammar.formats.calculi import read_calculus
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 ALL_APART = "IIE IPE IPD IOE IOD PIE PID PPE PPD POE POD OIE OID OPE OPD OOE OOD"
 PUBLISHED = {  # Cohn, Bennett, Gooday and Gotts 1997; the entries are those of the file that GQR has

@@ -7,7 +7,7 @@ import re
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Punctuation, String, Text
 
-from deixis.grammar.words import KEYWORDS
+from deixis.grammar.layout.words import KEYWORDS
 from deixis.ontology.tbox import default_ontology
 
 STATEMENT_WORDS = [word for word, terminal in KEYWORDS.items() if terminal not in ("FUNCTION", "VERB")]

@@ -143,6 +143,55 @@ def lacks(function: Callable[..., Any], owner: type | None = None) -> list[str]:
     return messages
 
 
+def without_example(owner: type) -> list[str]:
+    """Return the public methods and properties of a class that no example calls.
+
+    The examples are those in the docstrings of the class, of its bases, and of their methods and properties.
+
+    Parameters
+    ----------
+    owner
+        The class.
+
+    Returns
+    -------
+    list of str
+        Names of methods and properties that Deixis or the caller's module defines, sorted.
+
+    Examples
+    --------
+    >>> class Bell:
+    ...     def ring(self):
+    ...         '''Ring the bell.'''
+    >>> without_example(Bell)
+    ['ring']
+    """
+    members = {
+        name: function
+        for kind in reversed(owner.__mro__)
+        for name, value in vars(kind).items()
+        if not name.startswith("_") and (function := _function_of(value)) is not None
+    }
+    docstrings = "\n".join(map(_doc, [*owner.__mro__, *members.values()]))
+    examples = "\n".join(re.findall(r"^\s*(?:>>>|\.\.\.) (.*)$", docstrings, flags=re.MULTILINE))
+    return sorted(
+        name
+        for name, function in members.items()
+        if ">>> " not in _doc(function) and not re.search(rf"\.{name}\b", examples)
+    )
+
+
+def _function_of(value: Any) -> Callable[..., Any] | None:
+    """Return the function of a method or a property, with a docstring; None for other members."""
+    for part in ("__func__", "fget", "func"):
+        value = getattr(value, part, value)
+    return value if inspect.isfunction(value) and value.__doc__ else None
+
+
+def _doc(member: Any) -> str:
+    return inspect.getdoc(member) or ""
+
+
 def sections(docstring: str) -> dict[str, str]:
     r"""Split the numpydoc sections off a docstring.
 

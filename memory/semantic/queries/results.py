@@ -55,6 +55,8 @@ class Row(tuple[Term | None, ...]):
     ('fork', None, 2)
     >>> row.asdict()["name"].value
     'fork'
+    >>> row
+    Row(name="fork", size=None)
     """
 
     variables: tuple[str, ...]
@@ -75,6 +77,10 @@ class Row(tuple[Term | None, ...]):
             known = ", ".join(self.variables)
             raise KeyError(f"the query selects no variable '{key}'; it selects {known}") from None
 
+    def __repr__(self) -> str:
+        """Return the names of the variables with their terms as SPARQL writes them."""
+        return f"Row({', '.join(f'{name}={term}' for name, term in self.asdict().items())})"
+
     def asdict(self) -> dict[str, Term | None]:
         """Return the terms by the names of their variables.
 
@@ -92,6 +98,26 @@ class QueryResult(Answer):
 
     Rows are in the order of the store; the printed rows are sorted if the query has no order, so that the same memory
     prints the same answer.
+
+    Examples
+    --------
+    >>> from deixis.memory.semantic.queries.limits import QueryLimits
+    >>> store = ox.Store()
+    >>> store.add(ox.Quad(ox.NamedNode("urn:fork"), ox.NamedNode("urn:isA"), ox.Literal("cutlery")))
+    >>> limits = QueryLimits(1.0, 1 << 20)
+    >>> answer = store.query("SELECT ?what ?kind WHERE { ?what <urn:isA> ?kind }")
+    >>> found = QueryResult.of(QueryKind.SELECT, answer, ordered=False, limits=limits)
+    >>> found, found.empty, found.printed()[0]["kind"].value
+    (<QueryResult SELECT ?what ?kind: 1 row>, False, 'cutlery')
+    >>> found.to_table()
+    ['what        kind', '----------  -------', '<urn:fork>  cutlery']
+    >>> found.to_csv().split()
+    ['what,kind', 'urn:fork,cutlery']
+    >>> found.to_json() == "".join(found.json_parts())
+    True
+    >>> answer = store.query("CONSTRUCT { ?what a ?kind } WHERE { ?what <urn:isA> ?kind }")
+    >>> QueryResult.of(QueryKind.CONSTRUCT, answer, ordered=False, limits=limits).to_turtle().splitlines()[-1]
+    '<urn:fork> a "cutlery" .'
     """
 
     kind: QueryKind

@@ -35,6 +35,9 @@ _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE
 _FORMS = {"SELECT", "ASK", "CONSTRUCT", "DESCRIBE"}
 _PROLOGUE = {"PREFIX", "BASE"}
 
+CLOSED = {"dx": BASE} | {prefix: PREFIXES[prefix] for prefix in ("rdf", "rdfs", "owl", "skos")}
+"""Namespaces by prefix of which every term is known, so that a misspelt one is an error."""
+
 MAX_NAMED = 3
 """Maximum number of layouts that a note names."""
 
@@ -49,7 +52,7 @@ class CheckedQuery:
     asks_graphs: bool  # with GRAPH
     ordered: bool
     prefixes: Mapping[str, str]  # the predeclared prefixes that it uses
-    terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespace of the vocabulary, and where each first stands
+    terms: tuple[tuple[str, int], ...] = ()  # IRIs in the namespaces of CLOSED, and where each first stands
 
 
 class _Text:
@@ -260,15 +263,32 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
 
 
 def _vocabulary_terms(found: list[Token], known: Mapping[str, str]) -> tuple[tuple[str, int], ...]:
-    """Return the IRIs of the query that are in the namespace of the vocabulary, each with its first place."""
+    """Return the IRIs of the query in the namespaces whose terms are known, each with its first place."""
     terms: dict[str, int] = {}
     for before, token in zip([None, *found], found, strict=False):
         if token.kind is TokenKind.IRI or (token.kind is TokenKind.NAME and not token.text.startswith("_:")):
             iri = _iri(token, known)
             declared = before is not None and before.upper in ("PREFIX", "BASE")
-            if iri is not None and iri.startswith(BASE) and iri != BASE and not declared:
+            if iri is not None and not declared and (prefix := _closed(iri)) and iri != CLOSED[prefix]:
                 terms.setdefault(iri, token.start)
     return tuple(terms.items())
+
+
+def _closed(iri: str) -> str | None:
+    """Return the prefix of the namespace of an IRI, None where its terms are not known one by one."""
+    return next((prefix for prefix, base in CLOSED.items() if iri.startswith(base)), None)
+
+
+def _terms_of(prefix: str, store: ox.Store) -> set[str]:
+    """Return the local names of the vocabulary of Deixis in a memory, or of a standard one."""
+    if prefix == "dx":
+        subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None, graph_iri(GraphName.ONTOLOGY))}
+        known = {subject.value for subject in subjects if isinstance(subject, ox.NamedNode)}
+        return {value.removeprefix(BASE) for value in known if value.startswith(BASE)}
+    from rdflib import OWL, RDF, RDFS, SKOS
+
+    terms = dir({"rdf": RDF, "rdfs": RDFS, "owl": OWL, "skos": SKOS}[prefix])
+    return {str(term).removeprefix(CLOSED[prefix]) for term in terms if not str(term).startswith("_")}
 
 
 def require_terms(store: ox.Store, sparql: str) -> None:
@@ -295,13 +315,15 @@ def require_terms(store: ox.Store, sparql: str) -> None:
         )
         if any(next(iter(found), None) for found in uses):
             continue
-        subjects = {quad.subject for quad in store.quads_for_pattern(None, None, None, graph_iri(GraphName.ONTOLOGY))}
-        known = {subject.value for subject in subjects if isinstance(subject, ox.NamedNode)}
-        names = {value.removeprefix(BASE) for value in known if value.startswith(BASE)}
-        name = iri.removeprefix(BASE)
+        prefix = _closed(iri) or "dx"
+        name, names = iri.removeprefix(CLOSED[prefix]), _terms_of(prefix, store)
+        if name in names or (prefix == "rdf" and re.fullmatch(r"_[1-9]\d*", name)):
+            continue
         near = next((one for one in sorted(names) if one.casefold() == name.casefold()), None) or nearest(name, names)
-        hint = f"; did you mean 'dx:{near}'?" if near else "; docs/reference/ontology.md lists the terms"
-        raise _Text(sparql).error(place, f"the vocabulary has no term 'dx:{name}'{hint}")
+        hint = f"; did you mean '{prefix}:{near}'?" if near else ""
+        if not near and prefix == "dx":
+            hint = "; docs/reference/ontology.md lists the terms"
+        raise _Text(sparql).error(place, f"the vocabulary has no term '{prefix}:{name}'{hint}")
 
 
 def incomplete_layouts(store: ox.Store, sparql: str) -> tuple[str, ...]:
@@ -320,8 +342,8 @@ def incomplete_layouts(store: ox.Store, sparql: str) -> tuple[str, ...]:
         Names of layouts in order; empty for a query that is not about relations or implied statements.
     """
     reading, about = ox.NamedNode(DX.READING), {DX.IMPLIED_STATEMENT, DX.RULE}
-    asked = (ox.NamedNode(term) for term, _ in _admitted(sparql).terms)
-    if not any(term.value in about or any(store.quads_for_pattern(term, reading, None)) for term in asked):
+    terms = (ox.NamedNode(term) for term, _ in _admitted(sparql).terms)
+    if not any(term.value in about or any(store.quads_for_pattern(term, reading, None)) for term in terms):
         return ()
     not_stored = store.quads_for_pattern(None, ox.NamedNode(DX.IMPLICATIONS_STORED), typed(False))
     layouts = {quad.subject for quad in not_stored}

@@ -238,9 +238,12 @@ NUMBER, NEXT = ox.NamedNode(GRAPHS + "order/number"), ox.NamedNode(GRAPHS + "ord
 CATEGORY_OF_VIEW = ox.NamedNode(VIEWS + "category")
 """Predicate for the category of a view, in the graph of a lesson that taught it."""
 
+EVENT_OF_LESSON = ox.NamedNode(VIEWS + "event")
+"""Predicate for the event in the episodes that taught a lesson, in the graph of its views."""
+
 
 def views_graph(lesson: str) -> ox.NamedNode:
-    """Return the graph of the views that a lesson taught.
+    """Return the graph of the views that a lesson taught, and of the event that taught it.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from typing import Literal
 
 import pyoxigraph as ox
 
-from deixis.memory.journal import COMMITTED, MARKS
+from deixis.memory.journal import MARKS, JointWrite, marked
 from deixis.memory.semantic.rdf.graphs import (
     CONTRIBUTED,
     COUNTED,
@@ -162,6 +162,28 @@ def unnumbering(store: ox.Store, lesson: str) -> Iterator[Operation]:
     """
     numbers = store.quads_for_pattern(lesson_node(lesson), NUMBER, None, ORDER)
     yield from deletion(ORDER, [quad.triple for quad in numbers])
+
+
+def renumbering(store: ox.Store, lesson: str, number: int) -> Iterator[Operation]:
+    """Yield the operations that give a lesson the place of an earlier one in the order.
+
+    Parameters
+    ----------
+    store
+        Store with the lesson.
+    lesson
+        Name of the lesson.
+    number
+        Its number; 0 for none.
+
+    Yields
+    ------
+    Operation
+        The operations.
+    """
+    yield from unnumbering(store, lesson)
+    if number:
+        yield from insertion(ORDER, [ox.Triple(lesson_node(lesson), NUMBER, ox.Literal(str(number)))])
 
 
 def knows(store: ox.Store, lesson: str) -> bool:
@@ -514,8 +536,8 @@ def keeping_up(store: ox.Store, rules: str | None) -> Iterator[Operation]:
     yield from insertion(COUNTED, new - old)
 
 
-def marking(store: ox.Store, id: str | None) -> Iterator[Operation]:
-    """Yield the operations that record the write over both stores that this commit is part of, if any.
+def marking(store: ox.Store, write: JointWrite | None) -> Iterator[Operation]:
+    """Yield the operations that record the write over several stores that this commit decides, if any.
 
     See :mod:`deixis.memory.journal`.
 
@@ -523,17 +545,17 @@ def marking(store: ox.Store, id: str | None) -> Iterator[Operation]:
     ----------
     store
         Store to update.
-    id
-        Id of the journal of the write; None if the commit is part of no such write.
+    write
+        The write; None if the commit decides no such write.
 
     Yields
     ------
     Operation
-        No operations without an id.
+        No operations without a write.
     """
-    if id is not None:
-        yield from deletion(MARKS, [quad.triple for quad in store.quads_for_pattern(MARKS, COMMITTED, None, MARKS)])
-        yield from insertion(MARKS, [ox.Triple(MARKS, COMMITTED, ox.Literal(id))])
+    new = {} if write is None else marked(write)
+    yield from deletion(MARKS, [q.triple for each in new for q in store.quads_for_pattern(MARKS, each, None, MARKS)])
+    yield from insertion(MARKS, [ox.Triple(MARKS, predicate, id) for predicate, id in new.items()])
 
 
 def insertion(graph: ox.NamedNode, triples: Iterable[ox.Triple]) -> Iterator[Operation]:

@@ -1,8 +1,8 @@
-"""Links from lessons to the views that they taught, with the category of each: the semantic store's half.
+"""Links from lessons to the views that they taught, with the category of each, and to what was said in the episodes.
 
-The perceptual store's half is the lesson of each view. ``verify`` compares the two. A view that a teacher names
-otherwise, or that is forgotten, no longer belongs to a lesson. Exports of a semantic memory have no links, as they have
-no views.
+The perceptual store's half is the lesson of each view; the episodes' half is the event of what was said. ``verify``
+compares them. A view that a teacher names otherwise, or that is forgotten, no longer belongs to a lesson. Exports of a
+semantic memory have no links, as they have no views and no episodes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,14 @@ import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.change import Change
-from deixis.memory.semantic.rdf.graphs import CATEGORY_OF_VIEW, VIEWS, lesson_of_views, view_node, views_graph
+from deixis.memory.semantic.rdf.graphs import (
+    CATEGORY_OF_VIEW,
+    EVENT_OF_LESSON,
+    VIEWS,
+    lesson_of_views,
+    view_node,
+    views_graph,
+)
 from deixis.ontology.triples import text
 
 
@@ -27,8 +34,8 @@ class Link(NamedTuple):
     category: str
 
 
-def linking(lesson: str, views: Mapping[str, str]) -> Change:
-    """Return the change that links a lesson to its views.
+def linking(lesson: str, views: Mapping[str, str], events: Sequence[str] = ()) -> Change:
+    """Return the change that links a lesson to its views, and to what was said.
 
     Parameters
     ----------
@@ -36,6 +43,8 @@ def linking(lesson: str, views: Mapping[str, str]) -> Change:
         Name of the lesson.
     views
         Categories of the views, by their ids.
+    events
+        Ids of the events in the episodes that taught it.
 
     Returns
     -------
@@ -43,6 +52,7 @@ def linking(lesson: str, views: Mapping[str, str]) -> Change:
         Change that leaves the canonical graphs as they are.
     """
     triples = [ox.Triple(view_node(view), CATEGORY_OF_VIEW, text(category)) for view, category in views.items()]
+    triples += [ox.Triple(ledger.lesson_node(lesson), EVENT_OF_LESSON, text(event)) for event in events]
     return Change(operations=tuple(ledger.insertion(views_graph(lesson), triples)))
 
 
@@ -170,6 +180,27 @@ def all_links(store: ox.Store) -> tuple[Link, ...]:
         Links in the order of lessons, then of the views' ids.
     """
     return tuple(sorted(_links(store.quads_for_pattern(None, CATEGORY_OF_VIEW, None, None))))
+
+
+def events_of_lessons(store: ox.Store) -> dict[str, tuple[str, ...]]:
+    """Return the events in the episodes that taught lessons.
+
+    Parameters
+    ----------
+    store
+        Store to read.
+
+    Returns
+    -------
+    dict
+        Ids of the events by the name of the lesson, for lessons of sentences that the episodes have.
+    """
+    found: dict[str, list[str]] = {}
+    for quad in store.quads_for_pattern(None, EVENT_OF_LESSON, None, None):
+        lesson = lesson_of_views(quad.graph_name)
+        if lesson is not None:
+            found.setdefault(lesson, []).append(str(getattr(quad.object, "value", "")))
+    return {lesson: tuple(sorted(found[lesson])) for lesson in sorted(found)}
 
 
 def _links(quads: Iterator[ox.Quad]) -> Iterator[Link]:

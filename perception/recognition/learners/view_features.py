@@ -93,6 +93,11 @@ def roots(descriptors: NDArray[np.float32]) -> NDArray[np.float32]:
     -------
     ndarray
         Square roots of shape (k, d).
+
+    Notes
+    -----
+    Square roots of histograms for retrieval: R. Arandjelović and A. Zisserman, "Three things everyone should know to
+    improve object retrieval", CVPR 2012.
     """
     return np.sqrt(np.maximum(descriptors, np.float32(0.0)))
 

@@ -24,6 +24,8 @@ from deixis.ontology.claims import PLACES, Claim
 from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relation import Relations
 from deixis.reasoning.geometry.pairs import pair_geometry
+from deixis.reasoning.geometry.poses import Poses
+from deixis.reasoning.grounding.evidence.aims import AIMING, aim_degrees
 from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.facts import hedged
 from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME, OUTLIERS
@@ -103,6 +105,7 @@ def claim_tables(
     unary: Array,
     metric: bool = True,
     surface: int | None = None,
+    poses: Poses | None = None,
 ) -> ClaimTables:
     """Return the evidence of claims about n1 objects for n2 boxes.
 
@@ -122,6 +125,8 @@ def claim_tables(
         Whether the boxes are in metres; otherwise, distances say nothing.
     surface
         Index of the box of the surface that the objects stand on; None if it is not among the boxes.
+    poses
+        Fronts, heads and long axes of the things; None where they are unknown.
 
     Returns
     -------
@@ -131,7 +136,7 @@ def claim_tables(
     claim_ratios = np.zeros(unary.shape)
     pairs: dict[tuple[int, int], Array] = {}
     if 1 < len(boxes) <= MAX_THINGS:
-        scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric, surface)
+        scene = ClaimDegrees(np.asarray(boxes, dtype=np.float64), vocabulary, models, metric, surface, poses)
         for claim in claims:
             if any(name not in index for name in (*claim.subjects, *claim.arguments)):
                 continue
@@ -219,6 +224,11 @@ def ordinal_degrees(value: str, centres: Array, chances: Array) -> Array | None:
         Probabilities, shape (n,): of as many members before the thing as the rank says (a Poisson binomial
         distribution); None for a side or a rank that is not known.
 
+    Notes
+    -----
+    The distribution of the number of successes of independent trials with unequal probabilities is described in Y. H.
+    Wang, "On the number of successes in independent trials", Statistica Sinica 3, 1993.
+
     Examples
     --------
     >>> x = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
@@ -268,9 +278,16 @@ class ClaimDegrees:
     """Degrees of claims in one scene; ``surface`` is the index of the box that the claims call the surface."""
 
     def __init__(
-        self, boxes: Array, vocabulary: Relations, models: RelationModels, metric: bool, surface: int | None = None
+        self,
+        boxes: Array,
+        vocabulary: Relations,
+        models: RelationModels,
+        metric: bool,
+        surface: int | None = None,
+        poses: Poses | None = None,
     ) -> None:
         self.boxes, self.vocabulary, self.models, self.metric = boxes, vocabulary, models, metric
+        self.poses = poses
         # a box in an image shows the front of a table as well as its top
         self.surface = surface if boxes.shape[2] == 3 else None
         self.centres = boxes[:, :, :2].mean(axis=1)
@@ -381,6 +398,8 @@ class ClaimDegrees:
             return self._standing()
         if term == "parallel" and value is not None:
             return self._along(value)
+        if term in AIMING and self.poses is not None:
+            return aim_degrees(term, value, self.poses)
         return None
 
     def _without_surface(self, values: Array) -> Array:
@@ -444,6 +463,8 @@ class ClaimDegrees:
             apart = self.gaps / np.maximum((size + size.T) / 2, 1e-9)
             beside = np.exp(np.interp(apart, (0.0, 1.0, 3.0), (0.0, BORDER, EXTREME)))
             return None if lean is None else np.asarray(lean * beside)
+        if term in AIMING and self.poses is not None:
+            return aim_degrees(term, value, self.poses, self.boxes)
         if term in ("nearest", "farthest"):
             sign = -1 if term == "nearest" else 1
             gaps = sign * self.distances

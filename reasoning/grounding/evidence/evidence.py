@@ -240,8 +240,9 @@ class Evidence:
         alone = np.where(self.allowed, self._of_things, MIN_LOG_ODDS_OF_THIRD)
         known, models = self.description, self.meaning.models or shipped_models()
         surface = None if self.surface is None else self.scene.index(self.surface)
+        boxes, poses = self.scene.boxes, self.scene.poses
         return claim_tables(
-            self.claims, known.nodes, self.scene.boxes, known.vocabulary, models, alone, self.metric, surface
+            self.claims, known.nodes, boxes, known.vocabulary, models, alone, self.metric, surface, poses
         )
 
     def with_surface(self, thing: str | None) -> Evidence:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
+from deixis.ontology.inflection import singulars
 from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.lexicon.adjectives import adjectives
 from deixis.ontology.triples import category_iri
@@ -158,7 +159,9 @@ def _narrowing(words: str) -> bool:
 
 
 def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
-    """Return the mask of objects with a name, or else with it and a number: ``wine_glass``, ``wine_glass_1``.
+    """Return the mask of objects with a name, or else with it and a number, or else in the plural.
+
+    ``wine_glass`` is the name of ``wine_glass``, of ``wine_glass_1`` and of a group ``wine_glasses``.
 
     Parameters
     ----------
@@ -176,7 +179,10 @@ def objects_called(description: RelationGraph, name: str) -> NDArray[np.bool_]:
     same = np.array([_plain(node) == plain for node in description.nodes], dtype=bool)
     if same.any():
         return same
-    return np.array([_plain(plain_name(node)) == plain for node in description.nodes], dtype=bool)
+    numbered = np.array([_plain(plain_name(node)) == plain for node in description.nodes], dtype=bool)
+    if numbered.any():
+        return numbered
+    return np.array([plain in singulars(_plain(node)) for node in description.nodes], dtype=bool)
 
 
 def category_of(name: str) -> str:

@@ -7,13 +7,14 @@ words that mirror each other share a model, and an inverse has the features of t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.geometry.pairs import PairGeometry
-from deixis.reasoning.geometry.poses import MIN_STRETCH, coaxial
+from deixis.reasoning.geometry.poses import MIN_STRETCH, bearings, coaxial
 
 Array = NDArray[np.float64]
 View = Mapping[str, Array]
@@ -204,32 +205,34 @@ UNKNOWN_AIM = -1.0
 
 def _bearing(pairs: PairGeometry) -> Array:
     """Return unit vectors from the subjects to the objects, shape (n, m, 2); 0 for things at one place."""
-    first, second = (boxes[:, :, :2].mean(axis=1) for boxes in (pairs.boxes, pairs.objects))
-    apart = second[None] - first[:, None]
-    length = np.linalg.norm(apart, axis=2, keepdims=True)
-    result: Array = np.divide(apart, length, out=np.zeros_like(apart), where=length > 0)
+    result: Array = np.nan_to_num(bearings(pairs.boxes, pairs.objects))
     return result
 
 
-def _aim(cosine: Array, known: NDArray[np.bool_]) -> View:
-    return {"aim": np.where(known, np.arccos(np.clip(cosine, -1.0, 1.0)), UNKNOWN_AIM)}
+def _aim(angles: Array, known: NDArray[np.bool_]) -> View:
+    return {"aim": np.where(known, angles, UNKNOWN_AIM)}
+
+
+def _own_frame_angles(pairs: PairGeometry) -> Array:
+    """Return the angle between the subject's front and the direction to the object; ``UNKNOWN_AIM`` without a front."""
+    bearing, poses = _bearing(pairs), replace(pairs.poses[0], heads=None)
+    return _aim(poses.aim_angles(bearing), poses.fronted[:, None] & bearing.any(axis=2))["aim"]
 
 
 def _facing(pairs: PairGeometry) -> View:
-    """Return the angle between the subject's front and the direction to the object."""
-    poses, bearing = pairs.poses[0], _bearing(pairs)
-    cosine = np.einsum("nmd,nd->nm", bearing, np.nan_to_num(poses.fronts))
-    return _aim(cosine, poses.fronted[:, None] & bearing.any(axis=2))
+    """Return the angle between the subject's front, or its head, and the direction to the object."""
+    bearing = _bearing(pairs)
+    angles = pairs.poses[0].aim_angles(bearing, facing=True)
+    return _aim(angles, ~np.isnan(angles) & bearing.any(axis=2))
 
 
 def _pointing(pairs: PairGeometry) -> View:
-    """Return the angle between the subject's front, or either end of its long axis, and the direction to the object."""
+    """Return the angle between the subject's front or head, or either end of its axis, and the way to the object."""
     poses, bearing = pairs.poses[0], _bearing(pairs)
-    fronted = poses.fronted
-    ends = np.abs(np.einsum("nmd,nd->nm", bearing, poses.axes))
-    ahead = np.einsum("nmd,nd->nm", bearing, np.nan_to_num(poses.fronts))
-    known = fronted | (poses.stretch >= MIN_STRETCH)
-    return _aim(np.where(fronted[:, None], ahead, ends), known[:, None] & bearing.any(axis=2))
+    angles = poses.aim_angles(bearing)
+    ends = np.arccos(np.clip(np.abs(np.einsum("nmd,nd->nm", bearing, poses.axes)), 0.0, 1.0))
+    by_axis = np.isnan(angles) & (poses.stretch >= MIN_STRETCH)[:, None]
+    return _aim(np.where(by_axis, ends, angles), (by_axis | ~np.isnan(angles)) & bearing.any(axis=2))
 
 
 def _opposite(pairs: PairGeometry) -> View:
@@ -241,7 +244,7 @@ def _opposite(pairs: PairGeometry) -> View:
     size = np.maximum(lengths[0][:, None], lengths[1][None, :])
     known = np.minimum(lengths[0][:, None], lengths[1][None, :]) > 0.2 * size  # neither is in the middle
     product = np.maximum(lengths[0][:, None] * lengths[1][None, :], 1e-12)
-    return _aim(-(apart[0] @ apart[1].T) / product, known)
+    return _aim(np.arccos(np.clip(-(apart[0] @ apart[1].T) / product, -1.0, 1.0)), known)
 
 
 OWN_WORDS = frozenset({"in_front", "behind"})
@@ -267,11 +270,11 @@ def own_frame(pairs: PairGeometry, word: str) -> View | None:
         Features by name, each of shape (n, m), angles in radians; or None.
     """
     if word in OWN_WORDS:
-        reverse = _facing(pairs.reverse)["aim"].T
+        reverse = _own_frame_angles(pairs.reverse).T
         aim = np.where(reverse >= 0, np.pi - reverse, reverse) if word == "behind" else reverse
         return {"aim": aim, "gap": pairs.gap}
     if word == "opposite":
-        there, back = _facing(pairs)["aim"], _facing(pairs.reverse)["aim"].T
+        there, back = _own_frame_angles(pairs), _own_frame_angles(pairs.reverse).T
         return {"aim": np.where((there >= 0) & (back >= 0), np.maximum(there, back), UNKNOWN_AIM)}
     return None
 

@@ -1,4 +1,4 @@
-"""Learn the sizes of kinds from views, with a prior (empirical Bayes).
+"""Learn the sizes of kinds from views, with a prior (empirical Bayes; Efron and Morris 1973).
 
 With few views, a median is uncertain and a deviation more so. Therefore both are drawn towards a prior: that of a usual
 size or, where no usual size is stated, the common distribution of the views of all kinds. Sizes are natural logarithms

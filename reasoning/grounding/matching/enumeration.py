@@ -44,7 +44,7 @@ def factors(problem: Compiled) -> Factors:
         Factors of matches, of unmatched things and of facts, with the logarithm of their common factor.
     """
     stack, column_of = new_stack(problem, 1.0), np.empty(len(problem.unary), dtype=np.int64)
-    node = node_at(0, stack)
+    node = node_at.interpretation(0, stack)
     tighten(node, problem, LOWEST_VALUE, np.inf, PASSES, 10**18, column_of)
     left = problem.tables[problem.kind] - node.messages[:, :, None] - node.messages[problem.twin][:, None, :]
     things = np.arange(left.shape[1] - 1)

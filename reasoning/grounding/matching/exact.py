@@ -87,6 +87,12 @@ def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int 
     Optimum
         The best map found, an upper bound on the value of any map, and the size of the search.
 
+    Notes
+    -----
+    Branch and bound is due to A. H. Land and A. G. Doig, "An automatic method of solving discrete programming
+    problems", Econometrica 28, 1960; the bounds are those of
+    :mod:`deixis.reasoning.grounding.matching.branch_and_bound`.
+
     Examples
     --------
     >>> tables = np.array([[[0, 1], [0, 0]]], np.float32)
@@ -213,7 +219,7 @@ def _run(compiled: Compiled, record: Record, deadline: Deadline, bound: float) -
 
 def _tighten_root(compiled: Compiled, stack: Stack, record: Record, deadline: Deadline) -> None:
     """Tighten the root by more passes than other nodes get: candidates dropped there are dropped everywhere."""
-    root, column_of = node_at(0, stack), np.empty(len(compiled.unary), dtype=np.int64)
+    root, column_of = node_at.interpretation(0, stack), np.empty(len(compiled.unary), dtype=np.int64)
     for _ in range(ROOT_PASSES):
         before = stack.bound[0]
         stack.bound[0] = tighten(root, compiled, record.sought[0], before, 2, 0, column_of)

@@ -81,9 +81,9 @@ def averaged(marginals: NDArray[Number], groups: tuple[tuple[int, ...], ...]) ->
 
 def _signature(i: int, problem: Problem, facts: Facts) -> tuple[object, ...]:
     """Return a key that exchangeable objects have in common and that few other objects share."""
-    said = tuple(sorted((kind, first, n) for (kind, first, _), n in facts[i].items()))
+    facts_of_object = tuple(sorted((kind, first, n) for (kind, first, _), n in facts[i].items()))
     alone = np.where(problem.allowed[i], problem.unary[i], 0.0).tobytes(), problem.allowed[i].tobytes()
-    return float(problem.absent[i]), alone, said
+    return float(problem.absent[i]), alone, facts_of_object
 
 
 def _twins(i: int, j: int, facts: Facts) -> bool:

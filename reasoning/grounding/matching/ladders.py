@@ -248,19 +248,25 @@ class _Run:
             begin(chains, self.problem, self.guide, int(seeds.integers(1 << 30)))
         until = self.deadline.share(COOLING_SHARE)
         whole, way = until.left, 0.0
+        at_once = max(1, int(PROPOSALS_PER_CLOCK_CHECK / (COOLING_SWEEPS * self.rungs * len(self.problem.unary))))
         while way < 1.0:
             if self.deadline.passed:
                 return False
             elapsed = 1.0 - until.left / whole if 0.0 < whole < math.inf else 0.0
-            way = min(1.0, max(way + 1.0 / COOLING_TURNS, elapsed))
-            drawn = seeds.integers(1 << 30, size=LADDERS).tolist()
-            list(pool.map(self._cool_a_turn, self.ladders, drawn, [way] * LADDERS))
+            ways: list[float] = []
+            drawn: list[list[int]] = []
+            while way < 1.0 and len(ways) < at_once:
+                way = min(1.0, max(way + 1.0 / COOLING_TURNS, elapsed))
+                ways.append(way)
+                drawn.append(seeds.integers(1 << 30, size=LADDERS).tolist())
+            list(pool.map(self._cool_some_turns, self.ladders, zip(*drawn, strict=True), [ways] * LADDERS))
         return True
 
-    def _cool_a_turn(self, chains: Chains, seed: int, way: float) -> None:
+    def _cool_some_turns(self, chains: Chains, seeds: tuple[int, ...], ways: list[float]) -> None:
         hottest = min(MIN_COLDNESS, chains.coldness[-1])
-        coldness = hottest + (chains.coldness - hottest) * way
-        cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
+        for seed, way in zip(seeds, ways, strict=True):
+            coldness = hottest + (chains.coldness - hottest) * way
+            cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
 
     def _sampled(self, pool: ThreadPoolExecutor, number: int, sweeps: int) -> _Part:
         """Run all ladders for a number of sweeps, or until the deadline."""

@@ -204,7 +204,7 @@ MIN_GAIN_SINGLE = 1e-4  # minimum improvement of a map: above the error of gains
 
 
 @njit(cache=True, nogil=True)
-def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # type: ignore[no-untyped-def]
+def anneal(state, best, ahead, problem, sweeps, temperatures, noise, seeds):  # type: ignore[no-untyped-def]
     """Anneal for a number of sweeps over all objects, from a map.
 
     Every better map is stored in ``best``.
@@ -220,34 +220,36 @@ def anneal(state, best, ahead, problem, sweeps, temperature, noise, seed):  # ty
     problem
         The problem in the layout of compiled loops.
     sweeps
-        Number of sweeps.
-    temperature
-        Temperature in nats; 0 only accepts gains.
+        Number of sweeps at each temperature.
+    temperatures
+        Temperatures in nats, shape (levels,); 0 only accepts gains.
     noise
         Gumbel numbers in single precision, shape (NOISE_TABLE_SIZE + n2 + 1,).
-    seed
-        Seed of the random numbers.
+    seeds
+        Seed of the random numbers at each temperature, shape (levels,).
 
     Returns
     -------
     float
         Value of the last map minus that of ``best``, in nats.
     """
-    np.random.seed(seed)
-    refresh(state, problem)
-    order, facts = np.arange(len(state.labels)), np.zeros(len(state.holder), np.float32)
-    for _ in range(sweeps):
-        for a in range(len(order)):
-            b = a + np.random.randint(len(order) - a)
-            order[a], order[b] = order[b], order[a]
-            at = np.random.randint(NOISE_TABLE_SIZE)
-            p, gained = _draw(order[a], state, problem, np.float32(temperature), noise, at, facts)
-            if p != state.labels[order[a]]:
-                exchange(order[a], p, state, problem)
-                ahead += gained
-                if ahead > MIN_GAIN_SINGLE:
-                    ahead = 0.0
-                    best[:] = state.labels
+    for level in range(len(temperatures)):
+        np.random.seed(seeds[level])
+        refresh(state, problem)
+        temperature = np.float32(temperatures[level])
+        order, facts = np.arange(len(state.labels)), np.zeros(len(state.holder), np.float32)
+        for _ in range(sweeps):
+            for a in range(len(order)):
+                b = a + np.random.randint(len(order) - a)
+                order[a], order[b] = order[b], order[a]
+                at = np.random.randint(NOISE_TABLE_SIZE)
+                p, gained = _draw(order[a], state, problem, temperature, noise, at, facts)
+                if p != state.labels[order[a]]:
+                    exchange(order[a], p, state, problem)
+                    ahead += gained
+                    if ahead > MIN_GAIN_SINGLE:
+                        ahead = 0.0
+                        best[:] = state.labels
     return ahead
 
 

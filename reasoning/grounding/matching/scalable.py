@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,17 +158,16 @@ def _annealed(
     labels: NDArray[np.int64], compiled: Compiled, deadline: Deadline, seed: int, effort: float, most: int
 ) -> tuple[NDArray[np.int64], bool]:
     """Anneal in at most ``most`` turns, the first one from ``labels`` (n1,)."""
-    rng = np.random.default_rng(seed)
     n1, width = compiled.unary.shape
-    noise = rng.gumbel(size=NOISE_TABLE_SIZE + width).astype(np.float32)
+    rng, noise = _random_numbers(seed, width)
     scale, best, nobody = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
     plan, sweeps = turns_and_sweeps(n1, width)
     for turn, (hot, levels) in enumerate(plan[:most]):
         found = nobody.copy() if turn and hot == FIRST_TEMPERATURE else best.copy()
-        schedule = scale * np.append(np.geomspace(hot, LAST_TEMPERATURE, levels), 0.0)
+        schedule = scale * _relative_temperatures(hot, levels)
         finished = _cool(found, compiled, deadline, schedule, max(1, round(effort * sweeps)), noise, rng)
         if not finished:
-            anneal(keep(found, compiled), found, 0.0, compiled, LAST_SWEEPS, 0.0, noise, seed)
+            anneal(keep(found, compiled), found, 0.0, compiled, LAST_SWEEPS, np.zeros(1), noise, np.array([seed]))
         combine(best, found, compiled)
         if not finished:
             return best, False
@@ -174,6 +175,28 @@ def _annealed(
     if reassign(best, compiled, PATIENCE, seed) > 0.0:
         climb(best, compiled)
     return best, True
+
+
+def _random_numbers(seed: int, width: int) -> tuple[np.random.Generator, NDArray[np.float32]]:
+    """Return a generator, and a table of Gumbel numbers that was drawn from it."""
+    noise, state = _gumbel_table(seed, width)
+    rng = np.random.default_rng(seed)
+    rng.bit_generator.state = state
+    return rng, noise
+
+
+@lru_cache(maxsize=16)
+def _gumbel_table(seed: int, width: int) -> tuple[NDArray[np.float32], Any]:
+    """Return the table of Gumbel numbers of a seed, and the state of the generator after they were drawn."""
+    rng = np.random.default_rng(seed)
+    noise = rng.gumbel(size=NOISE_TABLE_SIZE + width).astype(np.float32)
+    return noise, rng.bit_generator.state
+
+
+@lru_cache(maxsize=16)
+def _relative_temperatures(hot: float, levels: int) -> NDArray[np.float64]:
+    """Return the temperatures of a turn, the last one zero, in units of the mean range of a table."""
+    return np.append(np.geomspace(hot, LAST_TEMPERATURE, levels), 0.0)
 
 
 def _propagated(
@@ -226,20 +249,23 @@ def _cool(
     """Anneal once from ``best`` (n1,), which receives the best map; return false where the deadline cut it short.
 
     Each temperature gets at most ``MAX_TIME_SHARE`` times its share of the time left: a search with little time cools
-    faster, and does not stop while it is hot.
+    faster, and does not stop while it is hot. Where the steps at a temperature are few, one call makes those of several
+    temperatures, because a call costs as much as some hundred steps.
     """
     state, ahead, finished = keep(best, compiled), 0.0, True
     part = max(1, int(CELLS_PER_CLOCK_CHECK / state.gains.size))
-    for level, temperature in enumerate(schedule):
+    together = max(1, part // sweeps)
+    for level in range(0, len(schedule), together):
         if deadline.passed:
             return False
-        next_level = deadline.share(min(1.0, MAX_TIME_SHARE / (len(schedule) - level)))
+        temperatures = schedule[level : level + together]
+        next_level = deadline.share(min(1.0, MAX_TIME_SHARE * len(temperatures) / (len(schedule) - level)))
         for done in range(0, sweeps, part):
             if next_level.passed:
                 finished = False
                 break
-            count, seed = min(part, sweeps - done), int(rng.integers(1 << 31))
-            ahead = anneal(state, best, ahead, compiled, count, temperature, noise, seed)
+            seeds = rng.integers(1 << 31, size=len(temperatures))
+            ahead = anneal(state, best, ahead, compiled, min(part, sweeps - done), temperatures, noise, seeds)
     return finished
 
 

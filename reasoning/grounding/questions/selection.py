@@ -139,6 +139,11 @@ def best_question(
     -------
     Question or None
         The question, or None where no question has information.
+
+    Notes
+    -----
+    The choice of the experiment with the largest expected information is that of D. V. Lindley, "On a measure of the
+    information provided by an experiment", Annals of Mathematical Statistics 27, 1956.
     """
     every, never = questions(situation, candidates, kinds), frozenset(barred)
     found = [question for question in every if never.isdisjoint((question.topic, question.look))]

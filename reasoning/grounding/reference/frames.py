@@ -1,4 +1,8 @@
-"""Tell in which frame of reference the directions of a description were taken."""
+"""Tell in which frame of reference the directions of a description were taken.
+
+The frames are those of S. C. Levinson, *Space in Language and Cognition*, 2003: *left of the chair* is relative (as a
+viewer sees it) or intrinsic (by the front of the chair).
+"""
 
 from __future__ import annotations
 

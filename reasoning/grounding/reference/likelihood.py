@@ -1,7 +1,8 @@
 """Log-linear scores with gradients: sums, products of features and weights, and log-sum-exp over axes.
 
-A :class:`Score` is an array of log scores that remembers how it was computed. :func:`add_gradients`
-computes the derivatives of one number by all weights, in one pass backwards (reverse-mode differentiation).
+A :class:`Score` is an array of log scores that remembers how it was computed. :func:`add_gradients` computes the
+derivatives of one number by all weights, in one pass backwards (reverse-mode differentiation; Griewank and Walther,
+*Evaluating Derivatives*, 2008).
 """
 
 from __future__ import annotations

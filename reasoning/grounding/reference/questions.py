@@ -58,6 +58,9 @@ def best_question(probabilities: Array, room: Room, labelled: bool = True, enoug
     gain most, the one is asked that leaves the least expected number of further questions (:func:`fewest_questions`
     of both answers). Only questions whose answer is clear for all likely objects are asked: two compared lengths
     differ by a factor of ``CLEAR``.
+
+    The gain is the expected information of the answer (D. V. Lindley, "On a measure of the information provided by an
+    experiment", Annals of Mathematical Statistics 27, 1956).
     """
     likely = np.flatnonzero(probabilities >= MIN_PROBABILITY)
     shares = probabilities[likely] / probabilities[likely].sum()

@@ -19,10 +19,10 @@ from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
-from deixis.reasoning.qualitative.networks.boxes import find_boxes, rectangles, unrelated
+from deixis.reasoning.qualitative.networks.closure.state import NetworkState, Progress
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
-from deixis.reasoning.qualitative.networks.state import NetworkState, Progress
+from deixis.reasoning.qualitative.networks.realisation.boxes import find_boxes, rectangles, unrelated
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ import numpy as np
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.qualitative.networks.closure import close, closed_states
+from deixis.reasoning.qualitative.networks.closure.algebraic import close, closed_states
+from deixis.reasoning.qualitative.networks.closure.state import NetworkState
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, decider, solve
-from deixis.reasoning.qualitative.networks.state import NetworkState
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, decider, solve
 
 Core = tuple[Constraint, ...]
 

@@ -14,10 +14,10 @@ import numpy as np
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.errors import NetworkError
-from deixis.reasoning.qualitative.networks.closure import close, closed_states, whole_relation
+from deixis.reasoning.qualitative.networks.closure.algebraic import close, closed_states, whole_relation
+from deixis.reasoning.qualitative.networks.closure.rounds import PairRelation, Rounds, Step
 from deixis.reasoning.qualitative.networks.conflict import Core, refuting, resting
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, Step
 
 FEW = 40  # maximum number of things for which the shortest derivation is searched first
 
@@ -83,7 +83,7 @@ def derive(network: Network, first: int, second: int, goal: int, deadline: Deadl
     --------
     >>> from deixis.reasoning.qualitative.calculi.registry import calculus
     >>> from deixis.reasoning.qualitative.networks.network import Constraint
-    >>> from deixis.reasoning.qualitative.networks.rounds import step_lines
+    >>> from deixis.reasoning.qualitative.networks.closure.rounds import step_lines
     >>> point = calculus("point")
     >>> before = point.relation(["<"])
     >>> network = Network(point, 3, (Constraint(0, 1, before), Constraint(1, 2, before)), ("a", "b", "c"))

@@ -8,13 +8,16 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from deixis.cli.output import colour_of, terminal
 from deixis.deadline import Deadline
 from deixis.printable import visible_line
+
+if TYPE_CHECKING:
+    from deixis.perception.scene import Scene
 
 NO, BAD_INPUT, UNDECIDED = 1, 2, 3
 
@@ -68,6 +71,15 @@ def print_written(*files: Path | None, aside: bool = False) -> None:
     for file in files:
         if file is not None:
             print(visible_line(f"Written: {file}"), file=sys.stderr if aside else sys.stdout)
+
+
+def print_or_write(text: str, out: Path | None) -> None:
+    """Print a text as it is, or write it to a file and print the name of the file."""
+    if out is None:
+        sys.stdout.write(text)
+    else:
+        out.write_text(text, encoding="utf-8")
+        print_written(out)
 
 
 def require_writable(written: Iterable[Path | None], read: Iterable[str | Path | None]) -> None:
@@ -162,6 +174,15 @@ def tell_of_compiling() -> None:
 
     if sys.stderr.isatty():
         when_compiling(cache(lambda: print_note("compiling, once; this may take a minute")))
+
+
+def note_unit(scene: Scene) -> None:
+    """Print a note on standard error if the things of a scene are so large or small that its unit must be wrong."""
+    from deixis.learning.scene_evidence import unit_notes
+    from deixis.ontology.tbox import default_ontology
+
+    for note in unit_notes(scene, (), default_ontology()):
+        print_note(note)
 
 
 def print_note(note: str | Exception) -> None:

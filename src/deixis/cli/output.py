@@ -114,12 +114,12 @@ class StandardInput:
             raise DeixisError(f"standard input: cannot be read ({error})") from error
 
 
-def read_lines(file: Path) -> list[str]:
-    """Return the lines of a text file; raise DeixisError if it cannot be read or is not UTF-8."""
+def read_text(file: Path) -> str:
+    """Return the text of a file; raise DeixisError if it cannot be read or is not UTF-8."""
     from deixis.errors import DeixisError
 
     try:
-        return file.read_text(encoding="utf-8-sig").splitlines()
+        return file.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise DeixisError(f"{file}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

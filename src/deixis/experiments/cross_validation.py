@@ -1,4 +1,4 @@
-"""Learn meanings and sizes from described photographs by cross-validation."""
+"""Learn meanings and sizes from described photographs by cross-validation (Stone 1974)."""
 
 from __future__ import annotations
 

@@ -271,6 +271,12 @@ def predictive(values: Array, seen: Moments, prior: Array, weight: float) -> Arr
     -------
     ndarray
         Density of each component, shape (..., d): that of Student's t, whose tails are long as long as few were seen.
+
+    Notes
+    -----
+    Student's t is the posterior predictive distribution of a normal quantity of unknown mean and variance: A. Gelman
+    and others, *Bayesian Data Analysis*, chapter 3. Here the prior spreads the deviation and leaves the mean as it was
+    seen.
     """
     from scipy.stats import t
 

@@ -5,18 +5,21 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 
-from deixis.grammar.format import format_script
-from deixis.grammar.language import language_of
+import numpy as np
+
+from deixis.grammar.layout.format import format_script
+from deixis.grammar.layout.language import language_of
 from deixis.grammar.script import Script
-from deixis.ontology.lessons.types import ANONYMOUS, LayoutConcept, Lesson, Role, SeenRelation
+from deixis.ontology.lessons.types import ANONYMOUS, LayoutConcept, Lesson, Match, Role, SeenRelation
 from deixis.ontology.relation import Relations
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.options import is_decided
 
 MAX_PAIRS = 2000
 """Maximum number of ordered pairs of things for which all relations are kept.
@@ -27,12 +30,16 @@ In a larger scene only the pairs that the script compares are kept.
 
 @dataclass(frozen=True, slots=True)
 class Occasion:
-    """Time span in which something was learned, the version of the program that learned it, and the teacher."""
+    """Time span in which something was learned, the version of the program that learned it, and the teacher.
+
+    ``events`` are the ids in the episodes of what the teacher said.
+    """
 
     started: datetime
     ended: datetime
     version: str
     teacher: str = ANONYMOUS
+    events: tuple[str, ...] = ()
 
 
 def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[str, ...]] = ()) -> LayoutConcept:
@@ -54,7 +61,13 @@ def layout_concept(script: Script, lesson: str, interchangeable: Iterable[tuple[
     """
     graph = script.graph()
     roles = [
-        Role(name, kind, name in script.kinds, script.colours[name].iri if name in script.colours else None)
+        Role(
+            name,
+            kind,
+            name in script.kinds,
+            script.colours[name].iri if name in script.colours else None,
+            name in script.uncounted,
+        )
         for name, kind in zip(graph.nodes, graph.kinds or (None,) * len(graph.nodes), strict=True)
     ]
     return LayoutConcept(
@@ -115,7 +128,7 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
         layout=layout_concept(script, id, found.interchangeable),
         scene=scene,
         relations=tuple(_seen_relations(scene, script.ontology.relations, found)),
-        matches=tuple(found.object_matches.values()),
+        matches=tuple(_each_member(found)),
         engine=found.engine,
         proved_best=found.proved_best,
         started=occasion.started,
@@ -127,7 +140,20 @@ def lesson_of(script: Script, scene: Scene, found: Grounding, id: str, occasion:
         teacher=occasion.teacher,
         scene_file=scene.file,
         told_text=None if script.reading is None else script.reading.text,
+        events=occasion.events,
     )
+
+
+def _each_member(found: Grounding) -> Iterator[Match]:
+    """Yield the matches of a grounding; of a group of unknown number, one for each member."""
+    for name, match in found.object_matches.items():
+        if not found.members.get(name):
+            yield match
+        for member in found.members.get(name, ()):
+            sure = is_decided(np.array(member.probability), 0.0)
+            yield replace(
+                match, perceived=member.perceived, probability=member.probability, decided=bool(sure), alternatives=()
+            )
 
 
 def _seen_relations(scene: Scene, relations: Relations, found: Grounding) -> Iterator[SeenRelation]:

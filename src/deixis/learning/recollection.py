@@ -181,7 +181,7 @@ def remembered_lesson(lesson: Lesson | WordLesson, ontology: Ontology) -> Rememb
 
 
 def _remembered(record: LessonRecord, layout: LayoutConcept | None, ontology: Ontology) -> Remembered:
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.perception.formats.scene_json import read_scene
 
     scene = read_scene(json.loads(record.scene_text))

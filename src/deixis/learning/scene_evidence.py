@@ -26,6 +26,15 @@ from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
 ODD_SCALE = 10.0
 """Ratio of seen to usual lengths from which the unit of a scene is doubted; units differ by 10 or more."""
 
+HUGE = 8.0
+"""Median length of the things of a scene, in metres, from which its unit is doubted although no kind is known."""
+
+SMALL_THING = 0.2
+"""Length in metres that is expected of things of no known kind when a unit is proposed."""
+
+SMALLER_UNITS = {"cm": 0.01, "mm": 0.001}
+"""Units that a scene may have been written in, with their lengths in metres."""
+
 
 def evidence_of(script: Script, scene: Scene, meaning: Meaning = SHIPPED) -> Evidence:
     """Return the evidence of a script's facts and claims, and of a scene's labels, sizes and colours.
@@ -252,36 +261,43 @@ def viewpoint_notes(viewpoint: str | None, scene: Scene) -> tuple[str, ...]:
     )
 
 
-def unit_notes(script: Script, scene: Scene) -> tuple[str, ...]:
-    """Return a note if the things of a scene in metres are far larger or smaller than the described kinds usually are.
+def unit_notes(scene: Scene, names: Sequence[str], ontology: Ontology) -> tuple[str, ...]:
+    """Return a note if the things of a scene in metres are far larger or smaller than usual.
+
+    The usual length is the median over the described names and the labels of the scene whose kinds have sizes; two of
+    them are needed. Without them, only things that fit on no table and in no room are noted.
 
     Parameters
     ----------
-    script
-        The script, whose names tell the kinds.
     scene
         The scene.
+    names
+        Names of the described objects, which tell their kinds.
+    ontology
+        Kinds with their usual sizes.
 
     Returns
     -------
     tuple of str
-        At most one note.
+        At most one note; it proposes the unit with which the things would have usual lengths.
     """
-    sizes = script.ontology.sizes
-    kinds = [script.ontology.of_name(name)[0] for name in script.objects]
-    usual = [sizes.of(kind.iri) for kind in kinds if kind is not None]
+    if scene.unit != "m" or not scene.objects:
+        return ()
+    labels = [thing.label for thing in scene.objects if thing.label is not None]
+    kinds = [ontology.of_name(name)[0] for name in (*names, *labels)]
+    usual = [ontology.sizes.of(kind.iri) for kind in kinds if kind is not None]
     lengths = [size.length.typical for size in usual if size.stated_of != DX.THING]
-    if scene.unit != "m" or len(lengths) < 2 or not scene.objects:
-        return ()
     seen = float(np.median(np.ptp(scene.boxes[:, :, :2], axis=1).max(axis=1)))
-    ratio = seen / float(np.median(lengths))
-    if 1 / ODD_SCALE < ratio < ODD_SCALE:
+    known = float(np.median(lengths)) if len(lengths) >= 2 else None
+    if seen <= 0 or (known is None and seen < HUGE) or (known is not None and 1 / ODD_SCALE < seen / known < ODD_SCALE):
         return ()
-    times = float(f"{ratio:.1g}")
-    return (
-        f"half of the things are {'longer' if ratio > 1 else 'shorter'} than {seen:.2g} m, about {times:g} times the "
-        'usual length of what is described: check the "unit" of the scene (m, cm or mm; metres where none is given)',
-    )
+    expected = SMALL_THING if known is None else known
+    unit = min(SMALLER_UNITS, key=lambda unit: abs(np.log(seen * SMALLER_UNITS[unit] / expected)))
+    if seen < expected:
+        return (
+            f'half of the things are shorter than {1000 * seen:.2g} mm: check the numbers and the "unit" of the scene',
+        )
+    return (f'half of the things are longer than {seen:.3g} m; if they are not, add "unit": "{unit}" to the scene',)
 
 
 def conflict_notes(conflict: Conflict | None) -> tuple[str, ...]:

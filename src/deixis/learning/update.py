@@ -8,7 +8,7 @@ hand, or has another ontology, the next lesson recomputes everything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -24,6 +24,7 @@ from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_vi
 from deixis.learning.word_statistics import replacing, stored_words
 from deixis.learning.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
+from deixis.memory.journal import Commit, JointWrite
 from deixis.memory.perceptual.records import View
 from deixis.memory.semantic.exchange import import_dump, merging_dump
 from deixis.memory.semantic.opening import open_memory
@@ -85,13 +86,6 @@ def remembered(memory: SemanticMemory, ontology: Ontology) -> Recollection:
     return _recollected(After(memory.store), ontology)
 
 
-Commit = Callable[[str | None], None]
-"""A function that commits a prepared change.
-
-Its argument is the id of the journal if the commit decides a write over both stores, else None.
-"""
-
-
 def keeping(
     memory: SemanticMemory,
     ontology: Ontology,
@@ -121,14 +115,14 @@ def keeping(
     """
     if len(lessons) <= AT_ONCE:
         change, rules = _arrived(memory, ontology, lessons, seen)
-        return lambda journal: memory.commit(change, rules, journal)
+        return lambda joint: memory.commit(change, rules, joint)
 
-    def write(copy: SemanticMemory, journal: str | None) -> None:
+    def write(copy: SemanticMemory, joint: JointWrite | None) -> None:
         for start in range(0, len(lessons), AT_ONCE):
             change, rules = _arrived(copy, ontology, lessons[start : start + AT_ONCE], seen)
-            copy.commit(change, rules, journal)
+            copy.commit(change, rules, joint)
 
-    return lambda journal: memory.commit_in_bulk(lambda copy: write(copy, journal))
+    return lambda joint: memory.commit_in_bulk(lambda copy: write(copy, joint))
 
 
 def _arrived(
@@ -140,7 +134,7 @@ def _arrived(
     links = []
     for lesson in lessons:
         categories = {view.id: view.category for view in seen.get(lesson.id, ())}
-        links += [relinking(memory.store, categories), linking(lesson.id, categories)]
+        links += [relinking(memory.store, categories), linking(lesson.id, categories, lesson.events)]
     return together(change, *links), rules
 
 
@@ -210,11 +204,15 @@ def forgetting(memory: SemanticMemory, ontology: Ontology, lesson: str) -> Commi
         If there is no such lesson.
     """
     change, rules = _departed(memory, ontology, lesson)
-    return lambda journal: memory.commit(change, rules, journal)
+    return lambda joint: memory.commit(change, rules, joint)
 
 
 def unlearning(
-    memory: SemanticMemory, ontology: Ontology, lessons: Sequence[str], links: Mapping[str, Sequence[Link]]
+    memory: SemanticMemory,
+    ontology: Ontology,
+    lessons: Sequence[str],
+    links: Mapping[str, Sequence[Link]],
+    revised: Sequence[Lesson] = (),
 ) -> Commit:
     """Return a function that removes lessons, with what follows from them only, and changes the links of views.
 
@@ -228,6 +226,8 @@ def unlearning(
         Ids of the lessons.
     links
         All links of each view that changes, by the id of the view.
+    revised
+        Lessons that replace those with their ids, in their places.
 
     Returns
     -------
@@ -239,18 +239,55 @@ def unlearning(
     UnknownLessonError
         If there is no such lesson.
     """
-    if len(lessons) <= 1:
+    if len(lessons) <= 1 and not revised:
         parts = [_departed(memory, ontology, lesson) for lesson in lessons]
         change = together(*(part for part, _ in parts), replacing_links(memory.store, links))
         rules = parts[0][1] if parts else memory.kept_up()
-        return lambda journal: memory.commit(change, rules, journal)
+        return lambda joint: memory.commit(change, rules, joint)
 
-    def write(copy: SemanticMemory, journal: str | None) -> None:
+    def write(copy: SemanticMemory, joint: JointWrite | None) -> None:
         for lesson in lessons:
-            copy.commit(*_departed(copy, ontology, lesson), journal)
-        copy.commit(replacing_links(copy.store, links), copy.kept_up(), journal)
+            copy.commit(*_departed(copy, ontology, lesson), joint)
+        for new in revised:
+            _replace(copy, ontology, new)
+        copy.commit(replacing_links(copy.store, links), copy.kept_up(), joint)
 
-    return lambda journal: memory.commit_in_bulk(lambda copy: write(copy, journal))
+    return lambda joint: memory.commit_in_bulk(lambda copy: write(copy, joint))
+
+
+def _replace(memory: SemanticMemory, ontology: Ontology, lesson: Lesson) -> None:
+    """Replace the lesson with an id by another one, also in the order and in the fit of relation words."""
+    number = ledger.place(memory.store, lesson.id)[0]
+    known, strength = informed(models_from_triples(memory.models(ModelSet.WORDS)))
+    memory.commit(*_departed(memory, ontology, lesson.id))
+    memory.commit(*_arrived(memory, ontology, [lesson], {}))
+    numbered = Change(operations=tuple(ledger.renumbering(memory.store, lesson.id, number)))
+    memory.commit(numbered, memory.kept_up())
+    if lesson.id in known:
+        fitted = [memory.contributions(id) for id in sorted(known) if memory.knows(id)]
+        memory.commit(_worded(memory, fit(_recollected_from(fitted, ontology), strength)), memory.kept_up())
+
+
+def sizes_before(memory: SemanticMemory, ontology: Ontology, lesson: str) -> list[ox.Triple]:
+    """Return the models of sizes that the lessons before a lesson teach.
+
+    Parameters
+    ----------
+    memory
+        The open memory.
+    ontology
+        The ontology.
+    lesson
+        Id of the lesson.
+
+    Returns
+    -------
+    list of ox.Triple
+        The models as the memory stores them.
+    """
+    known = memory.lessons()
+    before = [memory.contributions(id) for id in known[: known.index(lesson)]]
+    return _counted(_recollected_from(before, ontology), ontology)[2]
 
 
 def _departed(memory: SemanticMemory, ontology: Ontology, lesson: str) -> tuple[Change, str]:

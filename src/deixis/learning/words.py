@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
-from deixis.grammar.format import layout_script
+from deixis.grammar.layout.format import layout_script
 from deixis.grammar.script import Script
 from deixis.learning.lesson import Occasion, layout_concept, layout_name
 from deixis.learning.recollection import Recollection, Remembered, labelled

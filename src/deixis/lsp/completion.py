@@ -9,9 +9,9 @@ from enum import StrEnum
 
 from lark import Token
 
-from deixis.grammar.names import key_of
-from deixis.grammar.unfinished import Expected, expected_next
-from deixis.grammar.words import chains
+from deixis.grammar.layout.names import key_of
+from deixis.grammar.layout.unfinished import Expected, expected_next
+from deixis.grammar.layout.words import chains
 from deixis.lsp.document import MAX_STATEMENT, Document
 from deixis.ontology.relation import Reading
 

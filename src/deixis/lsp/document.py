@@ -10,10 +10,10 @@ from pathlib import Path
 from lark import Token
 
 from deixis.deadline import Deadline
-from deixis.grammar.language import Language, language_of
-from deixis.grammar.names import key_of
+from deixis.grammar.layout.language import Language, language_of
+from deixis.grammar.layout.names import key_of
+from deixis.grammar.layout.unfinished import UnfinishedScript, read_unfinished
 from deixis.grammar.script import Mention, Script, mentions
-from deixis.grammar.unfinished import UnfinishedScript, read_unfinished
 from deixis.ontology.facts import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from deixis.errors import DeixisError
-from deixis.grammar.format import format_script
-from deixis.grammar.names import MAX_NAME, key_of, unquote
+from deixis.grammar.layout.format import format_script
+from deixis.grammar.layout.names import MAX_NAME, key_of, unquote
 from deixis.grammar.script import Header, Include, RelationStatement
 from deixis.lsp.diagnostics import Problem
 from deixis.lsp.document import Document

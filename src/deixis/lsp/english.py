@@ -154,7 +154,7 @@ def _starts(before: str) -> Iterator[int]:
 
 def _words(document: EnglishText, typed: str) -> Iterator[tuple[str, Role, str]]:
     """Yield the names of the text, the phrases of relations, and the kinds, each with a short explanation."""
-    from deixis.grammar.english.words import prepositions
+    from deixis.grammar.english.vocabulary.relation_words import prepositions
     from deixis.ontology.tbox import default_ontology
 
     script = document.script

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deixis.deadline import Deadline
-from deixis.grammar.names import key_of
+from deixis.grammar.layout.names import key_of
 from deixis.lsp.document import Document, is_object, name_of
 from deixis.ontology.facts import Fact
 from deixis.ontology.kinds import Kind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from deixis.grammar.names import key_of
+from deixis.grammar.layout.names import key_of
 from deixis.lsp.document import Document
 from deixis.ontology.facts import Source
 

@@ -137,13 +137,15 @@ def draw_arrows(axes: Axes, arrows: Sequence[Arrow], colour: str, width: float, 
     axes.plot(x, y, "o", color=colour, markersize=3.5, alpha=alpha, zorder=order, scalex=False, scaley=False)
 
 
-def points_along(arrows: Sequence[Arrow]) -> list[Point]:
+def points_along(arrows: Sequence[Arrow], bend: float = BEND) -> list[Point]:
     """Return points along arrows as :func:`draw_arrows` bends them, for axes of equal scale.
 
     Parameters
     ----------
     arrows
         The arrows, in the unit of the axes.
+    bend
+        Distance of an arrow's control point from its straight line, as a share of its length.
 
     Returns
     -------
@@ -155,7 +157,7 @@ def points_along(arrows: Sequence[Arrow]) -> list[Point]:
     for begin, finish in arrows:
         start, end = np.array(begin), np.array(finish)
         aside = (end - start)[::-1] * [1.0, -1.0]
-        middle = (start + end) / 2 + BEND * aside
+        middle = (start + end) / 2 + bend * aside
         curve = (1 - share) ** 2 * start + 2 * share * (1 - share) * middle + share**2 * end
         points += [(float(x), float(y)) for x, y in curve]
     return points

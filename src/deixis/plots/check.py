@@ -1,4 +1,4 @@
-"""Pictures of checked tables: misplaced, miscoloured, missing, extra and undetermined things."""
+"""Pictures of checked tables: misplaced, turned, miscoloured, missing, extra and undetermined things."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def plot_check(checked: Check, path: str | Path) -> None:
-    """Draw the table from above: misplaced and extra things in red, undetermined ones dotted, and the verdict.
+    """Draw the table from above: misplaced, turned and extra things in red, undetermined ones dotted, and the verdict.
 
     Things of a wrong colour are hatched.
 
@@ -56,6 +56,7 @@ def check_figure(checked: Check, axes: Axes | None = None) -> Figure:
     found = [
         _listed("missing", [entry.role for entry in table.of(RoleVerdict.MISSING)]),
         _listed("misplaced", [entry.role for entry in table.of(RoleVerdict.MISPLACED)]),
+        _listed("turned", [entry.role for entry in table.turned]),
         _listed("of another colour", [entry.role for entry, _ in table.miscoloured]),
         _listed("extra", [entry.label or entry.perceived for entry in table.extra]),
     ]
@@ -79,6 +80,7 @@ def marks_of(checked: Check) -> Marks:
     """
     table = checked.table
     wrong = {entry.perceived for entry in table.of(RoleVerdict.MISPLACED) if entry.perceived is not None}
+    wrong |= {entry.perceived for entry in table.turned if entry.perceived is not None}
     return Marks(
         wrong=wrong | {entry.perceived for entry in table.extra},
         miscoloured={entry.perceived for entry, _ in table.miscoloured if entry.perceived is not None},

@@ -182,6 +182,27 @@ def canvas(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes
     return axes.figure.figure, axes
 
 
+def dress_chart(axes: Axes, title: str, across: str) -> None:
+    """Set the title, the label of the horizontal axis, and the colours and grid of a chart.
+
+    Parameters
+    ----------
+    axes
+        Axes with the drawn chart.
+    title
+        Title.
+    across
+        Label of the horizontal axis.
+    """
+    axes.set_title(title, color=INK, fontsize=10, loc="left")
+    axes.set_xlabel(across, color=INK, fontsize=9)
+    axes.tick_params(colors=INK, labelsize=8)
+    axes.set_facecolor(PAPER)
+    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
+    for side in axes.spines.values():
+        side.set_color(QUIET)
+
+
 def dress_table(axes: Axes, scene: Scene, title: str | None) -> None:
     """Set the labels, colours and title of a table seen from above; its aspect and margins are set before.
 

@@ -19,7 +19,7 @@ from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding
 from deixis.reasoning.grounding.options import DECIDED
-from deixis.report.grounding.ground import MAX_LISTED, at_most_many
+from deixis.report.grounding.ground import MAX_LISTED, at_most_many, probability_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,6 +50,9 @@ LEAST_ALPHA = 0.2
 
 MAX_CLEAR_ARROWS = 30
 """Maximum number of arrows of violated facts that names avoid."""
+
+WAY_BEND = 0.25
+"""Bend of the way of a misplaced object to its place, as a share of its length."""
 
 NO_BREAK = "\u00a0"
 
@@ -183,7 +186,7 @@ def grounding_figure(
     names = {match.perceived: match.object for match in found.matches.values()}
     sureness = {match.perceived: match.sureness for match in found.matches.values()}
     _draw_boxes(axes, scene, names, colours, marks, sureness)
-    ghosts = _draw_ghosts(axes, scene, found, marks.belongs)
+    ghosts, ways = _draw_ghosts(axes, scene, found, marks.belongs)
     ends = Ends(scene.objects)
     satisfied, violated = _arrows(found.satisfied, ends), _arrows(found.violated, ends)
     draw_arrows(axes, satisfied, QUIET, 0.8, 3)
@@ -196,7 +199,7 @@ def grounding_figure(
         else:
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), **legend)
     ends_of_arrows = [end for arrow in satisfied + violated for end in arrow]
-    clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS])]
+    clear = [*ends_of_arrows, *points_along(violated[:MAX_CLEAR_ARROWS]), *points_along(ways, WAY_BEND)]
     labels = {match.perceived: _doubtful_label(match, names, colours) for match in found.matches.values()}
     _finish(figure, axes, scene, labels, clear, title, ghosts, _words(found.violated, ends))
     return figure
@@ -215,7 +218,7 @@ def _doubtful_label(match: Match, names: Mapping[str, str], colours: Mapping[str
         return match.object
     if match.object in colours and len(match.alternatives) >= MAX_LISTED:
         return match.object
-    label = match.object if match.probability is None else f"{match.object} {match.probability:.2f}"
+    label = match.object if match.probability is None else f"{match.object} {probability_text(match.probability)}"
     if match.object in colours or not match.alternatives:
         return label
     others = [
@@ -236,12 +239,12 @@ def _words(entries: Sequence[FactOutcome], ends: Ends) -> list[tuple[str, Arrow]
 
 def _draw_ghosts(
     axes: Axes, scene: Scene, found: Grounding, belongs: Mapping[str, NDArray[np.float64]]
-) -> list[PerceivedObject]:
-    """Draw where objects belong, and the way there; return the ghosts, to be named."""
+) -> tuple[list[PerceivedObject], list[Arrow]]:
+    """Draw where objects belong, and the ways there; return the ghosts, to be named, and the ways."""
     from matplotlib.patches import FancyArrowPatch, Rectangle
 
     boxes = {thing.id: box for thing, box in zip(scene.objects, scene.boxes[:, :, :2], strict=True)}
-    ghosts = []
+    ghosts, ways = [], []
     for name, (low, high) in belongs.items():
         look: dict[str, Any] = {"edgecolor": BELONGS, "facecolor": BELONGS, "linestyle": (0, (2, 2)), "linewidth": 1.4}
         axes.add_patch(Rectangle(tuple(low), *(high - low), fill=False, zorder=6, **look))
@@ -250,12 +253,13 @@ def _draw_ghosts(
         if match is None:
             ghosts.append(PerceivedObject(f"ghost of {name}", tuple(low), tuple(high), label=f"{name} belongs here"))
             continue
+        start, end = boxes[match.perceived].mean(axis=0).tolist(), ((low + high) / 2).tolist()
+        ways.append(((start[0], start[1]), (end[0], end[1])))
         way = FancyArrowPatch(
-            tuple(boxes[match.perceived].mean(axis=0)),
-            tuple((low + high) / 2),
+            *ways[-1],
             arrowstyle="-|>",
             mutation_scale=12,
-            connectionstyle="arc3,rad=0.25",
+            connectionstyle=f"arc3,rad={WAY_BEND}",
             color=BELONGS,
             linewidth=1.8,
             linestyle=(0, (4, 2)),
@@ -263,7 +267,7 @@ def _draw_ghosts(
         )
         way.set_in_layout(False)
         axes.add_patch(way)
-    return ghosts
+    return ghosts, ways
 
 
 def _table_height(scene: Scene) -> float:

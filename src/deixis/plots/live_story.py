@@ -62,9 +62,9 @@ def write_story(robot: LiveRobot, folder: str | Path) -> Path:
     require_picture(place / OVERVIEW)
     moments = key_moments(robot.board, robot.began)
     for number, moment in enumerate(moments, 1):
-        _write([moment], place / _file(number))
+        write_moments([moment], place / _file(number))
     if moments:
-        _write(telling(moments), place / OVERVIEW)
+        write_moments(telling(moments), place / OVERVIEW)
     page = place / PAGE
     try:
         page.write_text(_page(moments), encoding="utf-8")
@@ -98,8 +98,21 @@ def _file(number: int) -> str:
     return f"moment{number:02}.png"
 
 
-def _write(moments: Sequence[Moment], path: Path) -> None:
-    """Draw moments side by side."""
+def write_moments(moments: Sequence[Moment], path: Path) -> None:
+    """Draw moments side by side, each with what is seen, known and said.
+
+    Parameters
+    ----------
+    moments
+        The moments, from left to right.
+    path
+        File of the picture, ``.png``.
+
+    Raises
+    ------
+    DeixisError
+        If the file cannot be written.
+    """
     figure, panels = new_figure(4.6 * len(moments), 4.8, ncols=len(moments), squeeze=False)
     for axes, moment in zip(panels[0], moments, strict=True):
         _draw(axes, moment)

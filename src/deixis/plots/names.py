@@ -55,6 +55,9 @@ HIDING = 3.0
 IN_THE_WAY = 40.0
 """Cost, in pixels, for each other thing whose own name would have to stand where this one does."""
 
+NEARER_TO_ANOTHER = 90.0
+"""Cost, in pixels, of a name without a line whose middle is nearer to another thing than to its own."""
+
 POINT = 8.0
 """Side of the square around a point that names avoid, in pixels."""
 
@@ -256,9 +259,20 @@ def _cheapest(
             total = place.cost + COVERED * float(covered) / place.box.area
             if not place.inside:
                 total += IN_THE_WAY * place.box.in_the_way_of(others)
+                if _leader(place, outline) is None and _seems_another(place.box, outline, others[~bears]):
+                    total += NEARER_TO_ANOTHER
             if total < least and not _crossing(place, outline, foreign, leaders):
                 best, least = place, total
     return best
+
+
+def _seems_another(name: Box, own: Box, others: NDArray[np.float64]) -> bool:
+    """Return True if the middle of a name is nearer to one of the boxes (n, 4) than to that of its own thing."""
+    middle = np.array([(name.left + name.right) / 2, (name.low + name.high) / 2])
+    boxes = np.vstack([np.array([own]), others])
+    outside = np.maximum(np.maximum(boxes[:, :2] - middle, middle - boxes[:, 2:]), 0.0)
+    distances = np.hypot(*outside.T)
+    return bool(distances[1:].min(initial=np.inf) < distances[0])
 
 
 def _crossing(place: NamePlace, outline: Box, foreign: NDArray[np.float64], leaders: Sequence[Segment]) -> bool:

@@ -108,7 +108,7 @@ def perceived_figure(scene: Scene) -> Figure:
     SceneError
         If the scene was not perceived from a cloud.
     """
-    from deixis.perception.detection.viewpoint import in_frame
+    from deixis.perception.detection.table.viewpoint import in_frame
     from deixis.perception.errors import SceneError
 
     if scene.detection is None:

@@ -394,6 +394,22 @@ def check_to_dict(checked: Check) -> dict[str, Any]:
             }
             for c in table.of(RoleVerdict.MISPLACED)
         ],
+        "turned": [
+            {
+                "object": c.role,
+                "perceived": c.perceived,
+                "statements": [
+                    {
+                        "statement": str(entry.statement),
+                        "line": None if entry.statement.source is None else entry.statement.source.line,
+                        "degrees": None if entry.turn is None else round(math.degrees(entry.turn), 1),
+                        "remedy": entry.remedy,
+                    }
+                    for entry in c.turned
+                ],
+            }
+            for c in table.turned
+        ],
         "miscoloured": [
             {
                 "object": c.role,

@@ -7,7 +7,8 @@ expected object holds until the object is seen (``sameAs`` then names the thing)
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import ClassVar
 
@@ -59,28 +60,69 @@ class Diary:
 
     def __init__(self, board: Board, tracked: bool = False) -> None:
         self.board, self._tracked = board, tracked
+        self._collected: list[Change] | None = None  # changes that will be written as one
         self._found: dict[Found, EpisodicFluent] = {}  # conclusions that hold, by statement
         self._ids: dict[str, str] = {}  # ids on the blackboard by those of the present scene
         self._places: dict[str, EpisodicFluent] = {}  # by id on the blackboard
         self._expected: dict[str, list[EpisodicFluent]] = {}  # by expected object, the words first
         earlier: list[Change] = []
         for each in board.now():
-            said, source = each.statement, each.source
-            if source.by != RobotModule.name or said.object is None or source.event is not None:
+            statement, source = each.statement, each.source
+            if source.by != RobotModule.name or statement.object is None or source.event is not None:
                 continue
             if tracked and source.origin is Origin.INFERRED:  # about the things of an earlier run
                 earlier.append(_end(each, board.seconds()))
-            elif said.predicate == AT:
-                self._places[said.subject] = each
+            elif statement.predicate == AT:
+                self._places[statement.subject] = each
             elif source.origin is Origin.INFERRED:
-                self._found[said.subject, said.predicate, said.object] = each
+                self._found[statement.subject, statement.predicate, statement.object] = each
         if earlier:
             board.write(*earlier)
+
+    @contextmanager
+    def collected(self) -> Iterator[list[Change]]:
+        """Collect the changes of a block instead of writing them.
+
+        Yields
+        ------
+        list of Change
+            The changes so far, which the caller writes after the block.
+        """
+        outer, self._collected = self._collected, []
+        try:
+            yield self._collected
+        finally:
+            self._collected = outer
+
+    @contextmanager
+    def as_one(self) -> Iterator[None]:
+        """Write all that a block writes as one, at its end: all of it or, if it is refused, nothing.
+
+        Yields
+        ------
+        None
+            Nothing.
+        """
+        found, expected = dict(self._found), dict(self._expected)
+        try:
+            with self.collected() as changes:
+                yield
+            self._write(*changes)
+        except BaseException:
+            self._found, self._expected = found, expected
+            raise
+
+    def _write(self, *changes: Change) -> None:
+        """Write changes as one, or collect them."""
+        if self._collected is not None:
+            self._collected.extend(changes)
+        elif changes:
+            self.board.write(*changes)
 
     def refresh(self) -> None:
         """Forget the fluents that the blackboard does not hold any more, because they were taken back."""
         held = {each.id for each in self.board.now()}
-        self._found = {said: each for said, each in self._found.items() if each.id in held}
+        self._found = {statement: each for statement, each in self._found.items() if each.id in held}
         self._places = {id: each for id, each in self._places.items() if each.id in held}
         left = {id: [each for each in fluents if each.id in held] for id, fluents in self._expected.items()}
         self._expected = {id: fluents for id, fluents in left.items() if fluents}
@@ -127,25 +169,42 @@ class Diary:
                 if apart[new, old] <= SAME_PLACE:
                     stayed[scene.ids[new]] = known[old]
         gone = set(known) - set(stayed.values())
-        changes: list[Change] = [_end(self._places.pop(id), at) for id in sorted(gone)]
-        self._found = {said: each for said, each in self._found.items() if said[0] not in gone}
+        changes: list[Change] = [_end(self._places[id], at) for id in sorted(gone)]
         changes += [_end(each, at) for id in sorted(gone) for each in self.board.now(Pattern(id, IS_A))]
-        self._ids = stayed
+        places = {id: each for id, each in self._places.items() if id not in gone}
         for thing in scene.objects:
             if thing.id not in stayed:
-                id = self._ids[thing.id] = self.board.new_id("t")
+                id = stayed[thing.id] = self.board.new_id("t")
                 box = json.dumps([round(value, 4) for value in (*thing.minimum, *thing.maximum)])
                 seen = Source(Origin.SEEN, RobotModule.name)
-                place = self._places[id] = self._fluent((id, AT, box), at, seen)
+                place = places[id] = self._fluent((id, AT, box), at, seen)
                 changes.append(Add(place))
                 if thing.label is not None:
                     changes.append(Add(self._fluent((id, IS_A, thing.label), at, seen, thing.confidence)))
-        if changes:
-            self.board.write(*changes)
+        self._write(*changes)
+        self._ids, self._places = stayed, places
+        self._found = {statement: each for statement, each in self._found.items() if statement[0] not in gone}
 
     # ---- being taught
 
-    def heard(self, text: str, by: str, at: float, event: str | None = None) -> str:
+    def event(self, event: str | None, kind: str) -> str | None:
+        """Return the id of what a person says or shows now.
+
+        Parameters
+        ----------
+        event
+            Its id, if another module wrote it.
+        kind
+            Beginning of a new id, such as ``sentence``.
+
+        Returns
+        -------
+        str or None
+            The id; None if other modules write what persons say, and none did.
+        """
+        return event if event is not None or self._tracked else self.board.new_id(kind)
+
+    def heard(self, text: str, by: str, at: float, event: str | None) -> None:
         """Write what a person said, unless another module did.
 
         Parameters
@@ -157,21 +216,13 @@ class Diary:
         at
             Time in seconds.
         event
-            Id of the sentence or of the lesson that it taught; a new one if None.
-
-        Returns
-        -------
-        str
-            Id of the event.
+            Id of the sentence.
         """
-        event = event or self.board.new_id("sentence")
         if not self._tracked:
-            words = " ".join(text.split())
             source = Source(Origin.SAID, by, event)
-            self.board.write(Add(self._fluent((by, SAID, words), at, source, finish=at + MOMENT)))
-        return event
+            self._write(Add(self._fluent((by, SAID, " ".join(text.split())), at, source, finish=at + MOMENT)))
 
-    def shown(self, thing: str, label: str, by: str, at: float) -> None:
+    def shown(self, thing: str, label: str, by: str, at: float, event: str | None) -> None:
         """Write that a person showed what a thing is, unless another module did; an earlier showing of it ends.
 
         Parameters
@@ -184,14 +235,15 @@ class Diary:
             Name of the person.
         at
             Time in seconds.
+        event
+            Id of the gesture.
         """
         if self._tracked:
             return
         id = self.id_of(thing)
         before = [each for each in self.board.now(Pattern(id, IS_A)) if each.source.origin is Origin.SHOWN]
-        source = Source(Origin.SHOWN, by, self.board.new_id("gesture"))
-        shown = self._fluent((id, IS_A, label), at, source)
-        self.board.write(*(_end(each, at) for each in before), Add(shown))
+        shown = self._fluent((id, IS_A, label), at, Source(Origin.SHOWN, by, event))
+        self._write(*(_end(each, at) for each in before), Add(shown))
 
     # ---- conclusions
 
@@ -211,18 +263,14 @@ class Diary:
         certainties
             Probability of a statement, if it is not certain.
         """
-        over = [said for said in self._found if said[1] in predicates and said not in found]
-        changes = self._end_conclusions(over, at)
+        ended = [key for key in self._found if key[1] in predicates and key not in found]
         source = Source(Origin.INFERRED, RobotModule.name)
-        for statement in sorted(set(found) - self._found.keys()):
-            added = self._fluent(statement, at, source, certainties.get(statement, 1.0))
-            self._found[statement] = added
-            changes.append(Add(added))
-        if changes:
-            self.board.write(*changes)
-
-    def _end_conclusions(self, statements: Collection[Found], at: float) -> list[Change]:
-        return [_end(self._found.pop(said), at) for said in statements]
+        new = {
+            statement: self._fluent(statement, at, source, certainties.get(statement, 1.0))
+            for statement in sorted(set(found) - self._found.keys())
+        }
+        self._write(*(_end(self._found[key], at) for key in ended), *map(Add, new.values()))
+        self._found = {key: each for key, each in self._found.items() if key not in ended} | new
 
     # ---- expected objects
 
@@ -237,16 +285,16 @@ class Diary:
             Id on the blackboard of other objects that the sentence names, as far as they are known.
         """
         names = {one.role: one.id for one in objects} | dict(landmarks)
-        changes = []
+        added: dict[str, list[EpisodicFluent]] = {}
         for one in objects:
             source = Source(Origin.SAID, one.by, one.event)
             properties = [(name, value and names.get(value, value)) for name, value in one.properties]
             for predicate, value in ((EXPECTED, " ".join(one.text.split())), (IS_A, one.name), *properties):
                 certainty = one.probability if predicate == EXPECTED else 1.0
-                added = self._fluent((one.id, predicate, value), one.since, source, certainty)
-                self._expected.setdefault(one.id, []).append(added)
-                changes.append(Add(added))
-        self.board.write(*changes)
+                fluent = self._fluent((one.id, predicate, value), one.since, source, certainty)
+                added.setdefault(one.id, []).append(fluent)
+        self._write(*(Add(each) for fluents in added.values() for each in fluents))
+        self._expected |= added
 
     def remembered(self, fluents: Collection[EpisodicFluent]) -> None:
         """Take over fluents of expected objects that an earlier run wrote.
@@ -273,9 +321,8 @@ class Diary:
         if not fluents:
             return
         if one.standing is Standing.EXPECTED:
-            self.board.write(Update(fluents[0].id, certainty=one.probability))
+            self._write(Update(fluents[0].id, certainty=one.probability))
             return
-        del self._expected[one.id]
         changes: list[Change] = [_end(each, at) for each in fluents]
         source = Source(Origin.INFERRED, RobotModule.name, one.event)
         if one.standing is Standing.SEEN and one.thing is not None:
@@ -284,7 +331,8 @@ class Diary:
             changes += [Add(self._fluent(statement, at, source, one.probability)) for statement in found]
         else:
             changes.append(Add(self._fluent((one.id, CONTRADICTED, one.reason), at, source)))
-        self.board.write(*changes)
+        self._write(*changes)
+        del self._expected[one.id]
 
     # ---- tables without a name
 
@@ -308,7 +356,7 @@ class Diary:
         if len(text) > MAX_TEXT:
             return None
         id = self.board.new_id("table")
-        self.board.write(Add(self._fluent((id, UNNAMED, text), at, Source(Origin.SEEN, RobotModule.name))))
+        self._write(Add(self._fluent((id, UNNAMED, text), at, Source(Origin.SEEN, RobotModule.name))))
         return id
 
     def kept(self) -> dict[str, tuple[Scene, bool]]:
@@ -324,7 +372,7 @@ class Diary:
         scenes = {each.statement.subject: read_scene(json.loads(each.statement.object or "{}")) for each in found}
         return {id: (scene, id in nameless) for id, scene in scenes.items()}
 
-    def named(self, tables: Collection[str], name: str | None, by: str, at: float) -> None:
+    def named(self, tables: Collection[str], name: str | None, by: str, at: float, event: str | None) -> None:
         """Write that a person named the layout of tables, or gave no name for it.
 
         Parameters
@@ -337,14 +385,15 @@ class Diary:
             Name of the person.
         at
             Time in seconds.
+        event
+            Id of the answer.
         """
-        source = Source(Origin.SAID, by, self.board.new_id("sentence"))
+        source = Source(Origin.SAID, by, event)
         predicate = NAMELESS if name is None else LAYOUT
         changes: list[Change] = [Add(self._fluent((id, predicate, name), at, source)) for id in tables]
         if name is not None:
             changes += [_end(each, at) for id in tables for each in self.board.now(Pattern(id, UNNAMED))]
-        if changes:
-            self.board.write(*changes)
+        self._write(*changes)
 
     def _fluent(
         self,

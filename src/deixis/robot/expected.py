@@ -3,7 +3,10 @@
 A sentence such as *there is a red ball on the left* is about what is present, not about a layout. Each look at the
 table grounds it by the engine that grounds layouts: a thing that fits becomes the object. Otherwise, the probability
 that the object is there falls with each look at its place, as far as that place is in view
-(:mod:`deixis.robot.places`).
+(:mod:`deixis.robot.places`; Bayesian search: L. D. Stone, *Theory of Optimal Search*, 1975).
+
+Objects that a description puts into the same representation as perceived ones are those of N. Mavridis and D. Roy,
+"Grounded situation models for robots: where words and percepts meet", IROS 2006.
 """
 
 from __future__ import annotations

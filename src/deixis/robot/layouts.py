@@ -308,8 +308,8 @@ class LearnedLayout:
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
-        told = {tuple(sorted((fact.subject, fact.object))) for fact in graph.facts() if fact.subject != fact.object}
-        for first, second in sorted(told):
+        related = {tuple(sorted((fact.subject, fact.object))) for fact in graph.facts() if fact.subject != fact.object}
+        for first, second in sorted(related):
             seen = self.experience.apart.get((first, second))
             if seen is None or seen.count < 0.5:
                 continue
@@ -356,7 +356,7 @@ class LearnedLayout:
 
 def _fullness(script: Script) -> tuple[int, int, str]:
     """Return what says how full a description is, the same for equal ones."""
-    from deixis.grammar.format import format_script
+    from deixis.grammar.layout.format import format_script
 
     graph = script.graph()
     return len(graph.nodes), len(tuple(graph.facts())), format_script(script)

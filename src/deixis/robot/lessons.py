@@ -12,6 +12,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from deixis.learning.tables import TaughtTable
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answer import Grounding
 
@@ -74,6 +75,10 @@ class Question:
             f"The words do not say which one it is: {listed}. The answer is worth {self.gain:.1f} nats, "
             f"and a question costs {QUESTION_COST:g}."
         )
+
+
+def _told(thing: str) -> Settled:
+    return Settled(thing, SettledBy.WORDS, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,6 +170,33 @@ class TableLesson:
             known[role] = settled
             rest = {name: {k: v for k, v in shares.items() if k != settled.thing} for name, shares in rest.items()}
         return replace(self, settled=known, waiting=rest)
+
+    def revised(self, table: TaughtTable | None) -> TableLesson:
+        """Return the lesson as the memory has it after something was taken back.
+
+        Parameters
+        ----------
+        table
+            The table of the lesson in the memory; None if the lesson was taken back.
+
+        Returns
+        -------
+        TableLesson
+            The lesson with the roles that are left. A role whose thing is not known any more waits again.
+        """
+        if table is None:
+            return replace(self, settled={}, waiting={})
+        roles = tuple(role.name for role in table.layout.roles)
+        settled = {
+            role: known if (known := self.settled.get(role)) and known.thing == thing else _told(thing)
+            for role, thing in table.things.items()
+        }
+        waiting: dict[str, Mapping[str | None, float]] = {
+            role: {known.thing: known.probability} for role, known in self.settled.items()
+        }
+        waiting.update(self.waiting)
+        waiting = {role: shares for role, shares in waiting.items() if role in roles and role not in settled}
+        return replace(self, settled=settled, waiting=waiting, roles=roles, present=table.present)
 
     def questions(self) -> tuple[Question, ...]:
         """Return the questions about the roles that wait, the one that tells most first.

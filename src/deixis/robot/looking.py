@@ -47,14 +47,14 @@ class Fault:
 
     def __str__(self) -> str:
         names = " and ".join(name.replace("_", " ") for name in self.names) or "an unknown thing"
-        said = {
+        sentences = {
             MistakeKind.MISSING: f"the {names} is missing",
             MistakeKind.EXTRA: f"{names} does not belong here",
             MistakeKind.DISPLACED: f"the {names} is in the wrong place",
             MistakeKind.TURNED: f"the {names} is turned",
             MistakeKind.SWAPPED: f"the {names} have changed places",
         }
-        return said[self.kind]
+        return sentences[self.kind]
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +173,7 @@ class TableKnowledge:
         tuple
             The recogniser; name, text and experience of each layout; words and sizes.
         """
-        from deixis.grammar.format import format_script
+        from deixis.grammar.layout.format import format_script
 
         layouts = tuple((one.name, format_script(one.script), one.experience) for one in self.layouts)
         return self.known, layouts, self.meaning
@@ -192,12 +192,12 @@ class TableKnowledge:
         TableKnowledge
             The knowledge with the shipped ontology.
         """
-        from deixis.grammar.parser import parse_script
+        from deixis.grammar.layout.parser import parse_script
         from deixis.ontology.tbox import default_ontology
 
         known, layouts, meaning = values
-        told = tuple(LearnedLayout(name, parse_script(text), seen) for name, text, seen in layouts)
-        return cls(known, told, meaning, default_ontology())
+        learned = tuple(LearnedLayout(name, parse_script(text), seen) for name, text, seen in layouts)
+        return cls(known, learned, meaning, default_ontology())
 
     def recognised(self, scene: Scene) -> Scene:
         """Return a scene with the names that recognition gives its things.

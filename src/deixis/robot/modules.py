@@ -30,6 +30,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Change, Logged, Update
 from deixis.memory.episodes.episode import EpisodicFluent
 from deixis.memory.folder import one_line
+from deixis.memory.journal import Part
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
 PAUSE = 0.2
@@ -63,6 +64,26 @@ class Board(Protocol):
         -------
         int
             Sequence number of the last change.
+
+        Raises
+        ------
+        AccessError
+            If a statement is not declared.
+        """
+        ...
+
+    def part(self, *changes: Change) -> Part:
+        """Return changes as a part of a write over several stores (:func:`deixis.memory.journal.write_together`).
+
+        Parameters
+        ----------
+        changes
+            Changes of statements that the module declares to write.
+
+        Returns
+        -------
+        Part
+            The part.
 
         Raises
         ------
@@ -280,17 +301,25 @@ class ModuleBoard(Board):
 
     def write(self, *changes: Change) -> int:
         """Write changes as one: all of them or, if one is refused, nothing."""
+        self._check_writable(changes)
+        return self._board.write(*changes, by=self._name)
+
+    def part(self, *changes: Change) -> Part:
+        """Return changes as a part of a write over several stores."""
+        self._check_writable(changes)
+        return self._board.part(*changes, by=self._name)
+
+    def _check_writable(self, changes: Sequence[Change]) -> None:
         for change in changes:
             known = None if isinstance(change, Add) else self._board.fluent(change.id)
-            said = [None if known is None else known.statement]
-            said += [change.fluent.statement] if isinstance(change, Add) else []
-            said += [change.statement] if isinstance(change, Update) else []
-            for statement in said:
+            statements = [None if known is None else known.statement]
+            statements += [change.fluent.statement] if isinstance(change, Add) else []
+            statements += [change.statement] if isinstance(change, Update) else []
+            for statement in statements:
                 if statement is not None and not _declared(self._writes, statement):
                     raise AccessError(
                         f"the module '{self._name}' must not write {statement}; it declares {_texts(self._writes)}"
                     )
-        return self._board.write(*changes, by=self._name)
 
     def holding(
         self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
@@ -404,15 +433,15 @@ def run_until_stopped(module: Module, board: Board, stopped: threading.Event, re
     report
         Called with one line for each error.
     """
-    pause, told = PAUSE, ""
+    pause, last_line = PAUSE, ""
     while not stopped.is_set():
         try:
             return module.run(board, stopped)
         except Exception as error:  # whatever a module raises, the robot goes on
             line = f"the module '{module.name}' failed and is run again: {type(error).__name__}: {one_line(error)}"
-            if line != told:
+            if line != last_line:
                 report(line)
-            told = line
+            last_line = line
             stopped.wait(pause)
             pause = min(2 * pause, 10.0)
 

@@ -17,7 +17,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from datetime import datetime
 from functools import cached_property
 from typing import Any
@@ -26,13 +26,21 @@ from deixis import extras
 from deixis.errors import DeixisError
 from deixis.memory import errors as memory_errors
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Logged, Update
-from deixis.memory.episodes.codec import decode_fluent, decode_logged, encode_fluent, logged_bytes
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, at
+from deixis.memory.episodes.changes import Change, Logged
+from deixis.memory.episodes.codec import (
+    change_of_list,
+    change_to_list,
+    decode_fluent,
+    decode_logged,
+    encode_fluent,
+    logged_bytes,
+)
+from deixis.memory.episodes.episode import EpisodicFluent
 from deixis.memory.episodes.subscription import Subscription
 from deixis.memory.errors import MemoryWriteError
-from deixis.reasoning.temporal.bounds import Bounds
-from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
+from deixis.memory.folder import EPISODES
+from deixis.memory.journal import Part
+from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.robot.modules import AccessError, Board, Clock, Module, ModuleBoard, ModuleSpec, Runner, run_until_stopped
 
 CALL_TIMEOUT = 10.0
@@ -49,6 +57,7 @@ class Hub:
         self._board, self._clock, self._report = board, clock, report
         self._token = secrets.token_hex(16)
         self._boards: dict[str, ModuleBoard] = {}
+        self._parts: dict[str, Part] = {}  # of the write over several stores that a module is at
         self._runners: dict[str, ProcessRunner] = {}
         self._endpoint = f"tcp/127.0.0.1:{_free_port()}"
         self._session = _open(listen=[self._endpoint])
@@ -97,15 +106,28 @@ class Hub:
     def _answer(self, query: Any) -> None:
         name = str(query.key_expr).rpartition("/")[2]
         try:
-            answer = {"answer": self._called(self._boards[name], json.loads(bytes(query.payload)))}
+            answer = {"answer": self._called(name, json.loads(bytes(query.payload)))}
         except Exception as error:  # whatever a call raises goes to the caller
             answer = {"error": type(error).__name__, "message": str(error)}
         query.reply(query.key_expr, json.dumps(answer).encode())
 
-    def _called(self, board: ModuleBoard, call: dict[str, Any]) -> Any:
+    def _called(self, name: str, call: dict[str, Any]) -> Any:
+        board = self._boards[name]
         match call["method"]:
+            case "begin":
+                if name in self._parts:  # its process was killed in a write over several stores
+                    self._parts.pop(name).settle()
+                return self._board.sequence
+            case "prepare":
+                part = board.part(*map(change_of_list, call["changes"]))
+                part.prepare(call["id"])
+                self._parts[name] = part
+            case "complete":
+                self._parts.pop(name).complete()
+            case "settle":
+                self._parts.pop(name).settle()
             case "write":
-                return board.write(*map(_change, call["changes"]))
+                return board.write(*map(change_of_list, call["changes"]))
             case "holding":
                 found = board.holding(Pattern(*call["pattern"]), call["start"], call["end"])
                 return [encode_fluent(each).decode() for each in found]
@@ -114,7 +136,7 @@ class Hub:
             case "new_id":
                 return board.new_id(call["prefix"])
             case "origin":
-                return [self._board.origin.isoformat(), self._board.sequence]
+                return self._board.origin.isoformat()
             case "log":
                 return self._log(board, call["since"])
             case other:
@@ -230,7 +252,11 @@ class RemoteBoard(Board):
 
     def write(self, *changes: Change) -> int:
         """Write changes as one: all of them or, if one is refused, nothing."""
-        return int(self._call(method="write", changes=[_to_json(change) for change in changes]))
+        return int(self._call(method="write", changes=[change_to_list(change) for change in changes]))
+
+    def part(self, *changes: Change) -> Part:
+        """Return changes as a part of a write over several stores."""
+        return _RemotePart(self, changes)
 
     def holding(
         self, pattern: Pattern = ANYTHING, start: float | None = None, end: float | None = None
@@ -251,8 +277,7 @@ class RemoteBoard(Board):
     @cached_property
     def origin(self) -> datetime:
         """Time from which the memory counts seconds."""
-        origin, _ = self._call(method="origin")
-        return datetime.fromisoformat(origin)
+        return datetime.fromisoformat(self._call(method="origin"))
 
     def seconds(self) -> float:
         """Return the present time, which never goes back."""
@@ -284,6 +309,24 @@ class RemoteBoard(Board):
                     raise _error(answer["error"], answer["message"])
                 return answer["answer"]
         raise MemoryWriteError("the owner of the blackboard did not answer; is it running?")
+
+
+class _RemotePart(Part):
+    """The part of the owner's blackboard in a write over several stores of a module."""
+
+    store = EPISODES
+
+    def __init__(self, board: RemoteBoard, changes: Sequence[Change]) -> None:
+        self._board, self._changes = board, changes
+
+    def prepare(self, id: str) -> None:
+        self._board._call(method="prepare", id=id, changes=[change_to_list(change) for change in self._changes])
+
+    def complete(self) -> None:
+        self._board._call(method="complete")
+
+    def settle(self) -> None:
+        self._board._call(method="settle")
 
 
 class _Feed:
@@ -342,7 +385,7 @@ def main() -> None:
     )
     feed.wake = subscription.notify
     notices = session.declare_subscriber(f"deixis/{token}/log/{module.name}", feed.notice)
-    feed.last = max(feed.last, board._call(method="origin")[1])
+    feed.last = max(feed.last, board._call(method="begin"))
     subscription.begin()
     subscription.notify()
     stopped = threading.Event()
@@ -394,52 +437,6 @@ def _free_port() -> int:
 
 def _parts(pattern: Pattern) -> list[str | None]:
     return [pattern.subject, pattern.predicate, pattern.object]
-
-
-def _to_json(change: Change) -> list[Any]:
-    match change:
-        case Add():
-            return ["add", encode_fluent(change.fluent).decode()]
-        case Finish():
-            return ["finish", change.id, _ends(change.at)]
-        case Delete():
-            return ["delete", change.id]
-        case Update():
-            said, source = change.statement, change.source
-            return [
-                "update",
-                change.id,
-                None if said is None else [said.subject, said.predicate, said.object],
-                None if change.start is None else _ends(change.start),
-                None if change.finish is None else _ends(change.finish),
-                change.certainty,
-                None if source is None else [source.origin.value, source.by, source.event],
-            ]
-
-
-def _change(data: list[Any]) -> Change:
-    match data:
-        case ["add", fluent]:
-            return Add(decode_fluent(fluent.encode()))
-        case ["finish", id, ends]:
-            return Finish(id, Bounds(*ends))
-        case ["delete", id]:
-            return Delete(id)
-        case ["update", id, said, start, finish, certainty, source]:
-            return Update(
-                id,
-                None if said is None else Statement(*said),
-                None if start is None else Bounds(*start),
-                None if finish is None else Bounds(*finish),
-                certainty,
-                None if source is None else Source(Origin(source[0]), *source[1:]),
-            )
-    raise ValueError("a change of an unknown kind")
-
-
-def _ends(time: float | Bounds) -> list[Any]:
-    bounds = at(time)
-    return [bounds.lower, bounds.upper, bounds.lower_open, bounds.upper_open]
 
 
 def _error(name: str, message: str) -> DeixisError:

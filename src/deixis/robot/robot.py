@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING, overload
 
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
-from deixis.grammar.format import format_script
+from deixis.grammar.layout.format import format_script
 from deixis.grammar.script import Script
 from deixis.learning.experience import Experience
 from deixis.learning.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+from deixis.memory.episodes.changes import Change
+from deixis.memory.episodes.episode import event_of
 from deixis.memory.errors import MemoryWriteError
+from deixis.memory.journal import Part
 from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
@@ -35,14 +38,13 @@ from deixis.robot.modules import Board, ModuleBoard
 from deixis.robot.places import places_of
 from deixis.robot.unnamed import MIN_THINGS, NOTICED_FROM, LayoutQuestion, UnnamedKind, is_same_table, place_among
 from deixis.session import Session
-from deixis.view_store import category_name
+from deixis.view_store import category_name, new_category_name
 from deixis.workflows.knowledge.episodes import Consolidation, consolidate, named_layout
 from deixis.workflows.knowledge.recall import EXPECTED, IS_A
-from deixis.workflows.knowledge.unlearn import complete_unlearning
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
-    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.knowledge.learn import Learned, Recording
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
 
@@ -94,6 +96,39 @@ class Robot:
     -----
     Things are named by their ids in the scene that is seen now. Times are in seconds since the origin of the
     blackboard; without one, it is now. Methods are called by one thread at a time.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from deixis.workflows.knowledge.unlearn import Selection
+    >>> lower, upper = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0]], [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02]]
+    >>> table = Scene.from_boxes(lower, upper)
+    >>> folder = tempfile.TemporaryDirectory()
+    >>> robot = Robot(folder.name + "/memory")
+    >>> robot.sees_a_table
+    False
+    >>> robot.sees(table, at=0.0) is robot.scene
+    True
+    >>> robot.told("layout supper; fork left of plate; knife right of plate", by="Ada", at=1.0).taught
+    ('fork', 'plate', 'knife')
+    >>> robot.layout(), {thing: max(names, key=names.get) for thing, names in robot.names().items()}
+    ('supper', {'o1': 'fork', 'o2': 'plate', 'o3': 'knife'})
+    >>> robot.look().layout, [layout.name for layout in robot.knowledge().layouts]
+    ('supper', ['supper'])
+    >>> robot.watches(at=2.0)
+    >>> robot.sees(Scene.from_boxes(lower[:2], upper[:2]), at=3.0)
+    <Scene <scene>: 2 objects, 3-D boxes in m, seen from the chair>
+    >>> [str(fault) for fault in robot.check()]
+    ['the knife is missing']
+    >>> robot.consolidate().lessons, robot.reconsider(), len(robot.diary.board.now()) > 0
+    ({}, (), True)
+    >>> robot.unlearn(Selection(lesson="supper-1")).lessons
+    ('supper-1',)
+    >>> robot.remember()
+    >>> robot.layouts
+    {}
+    >>> robot.close()
+    >>> folder.cleanup()
     """
 
     def __init__(self, memory: Session | str | Path, board: Board | None = None) -> None:
@@ -135,7 +170,6 @@ class Robot:
                 self._own = Blackboard.open(self.session.path, create=True)
             except MemoryWriteError:  # a memory that can only be read
                 self._own = Blackboard.transient()
-            complete_unlearning(self._own, self.session.knowledge_store)
             self._diary = Diary(ModuleBoard(self._own, RobotModule()))
             self._remember_expected()
             self._remember_unnamed()
@@ -149,7 +183,7 @@ class Robot:
 
         A new robot does this itself. Call it after something else than the robot changed the memory.
         """
-        from deixis.grammar.parser import parse_script
+        from deixis.grammar.layout.parser import parse_script
 
         self.layouts = {}
         tables = {table.lesson: table for table in self.session.tables()}
@@ -158,9 +192,7 @@ class Robot:
             seen, name = table.experience(self.session.ontology.relations), table.layout.name
             known = self.layouts.get(name, LearnedLayout(name, script))
             self.layouts[name] = known.with_table(script, seen)
-        for number, lesson in enumerate(self.lessons):
-            if lesson.id not in tables:
-                self.lessons[number] = replace(lesson, settled={}, waiting={})
+        self.lessons = [lesson.revised(tables.get(lesson.id)) for lesson in self.lessons]
         if self._diary is not None:
             self._diary.refresh()
             self._remember_expected()
@@ -385,7 +417,9 @@ class Robot:
 
     # ---- being taught
 
-    def shown(self, label: str, thing: str, by: str = "user", at: float | None = None) -> Taught:
+    def shown(
+        self, label: str, thing: str, by: str = "user", at: float | None = None, event: str | None = None
+    ) -> Taught:
         """Learn what a thing looks like that a person points at and names.
 
         Parameters
@@ -398,6 +432,8 @@ class Robot:
             Name of the person.
         at
             Time in seconds.
+        event
+            Id on the blackboard of the gesture or of what was said; a new one if None.
 
         Returns
         -------
@@ -412,13 +448,21 @@ class Robot:
             if plain_name(role) == plain_name(label)
         ][:1]
         settles = (pointed[0][0].id, pointed[0][1]) if pointed else None
-        taught = self.session.teach(self.scene, thing, label, by, settles)
+        category = self.session.category_meant(new_category_name(label))
+        now, event = max(self._known_at, self._time(at)), self.diary.event(event, "gesture")
+        with self.diary.collected() as changes:
+            self.diary.shown(thing, category, by, now, event)
+        named = None if event is None else event_of(self.diary.board.origin, event)
+        taught = self.session.teach(self.scene, thing, category, by, settles, named, self._part(changes))
         for lesson, role in pointed:
             self._settle(lesson, role, Settled(thing, SettledBy.POINTING, 1.0))
-        self._known_at = max(self._known_at, self._time(at))
-        self.diary.shown(thing, taught.category, by, self._known_at)
+        self._known_at = now
         self._forget_look()
         return taught
+
+    def _part(self, changes: Sequence[Change]) -> Part | None:
+        """Return changes of the blackboard as a part of a write over all stores; None for no changes."""
+        return self.diary.board.part(*changes) if changes else None
 
     @overload
     def told(self, text: Script, by: str = ..., at: float | None = ..., event: str | None = ...) -> Told: ...
@@ -463,23 +507,28 @@ class Robot:
         if isinstance(text, str) and (presence := self._presence(text)) is not None:
             return self._told_presence(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
-        self._known_at = max(self._known_at, self._time(at))
         seen = self.knowledge().recognised(self.scene)
-        learned = self.session.learn(script, seen, teacher=by)
-        lesson = self._learned(script, self.scene, learned)
         words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
-        self.diary.heard(words, by, self._time(at), learned.lesson.id)
-        return Told(lesson, learned)
+        now, event = self._time(at), self.diary.event(event, "sentence")
+        with self.diary.collected() as changes:
+            self.diary.heard(words, by, now, event)
+        learned = self.session.learn(
+            script, seen, teacher=by, events=() if event is None else (event,), episodes=lambda _: self._part(changes)
+        )
+        self._known_at = max(self._known_at, now)
+        return Told(self._learned(script, self.scene, learned), learned)
 
     def _layout(self, text: str) -> Script:
         """Return the layout that a text describes, with the name that the text gives it."""
+        from deixis.workflows.layouts.read import read_layout_or_english
+
         name, rest = named_layout(text)
-        script = understood(rest, self.session)
+        script = read_layout_or_english(rest, self.session.ontology)
         return script if name is None else replace(script, name=name)
 
     def _presence(self, text: str) -> Script | None:
         """Return a text as a script, if it is English about objects that are there."""
-        from deixis.grammar.parser import parse_script
+        from deixis.grammar.layout.parser import parse_script
         from deixis.workflows.layouts.read import read_script
 
         if named_layout(text)[0] is not None:
@@ -504,22 +553,28 @@ class Robot:
         self, script: Script, text: str, by: str, at: float, event: str | None
     ) -> tuple[ExpectedObject, ...]:
         """Expect the objects that a sentence introduces, and do not expect those that it says are absent."""
-        event = self.diary.heard(text, by, at, event)
+        event = event or self.diary.board.new_id("sentence")
         absent = script.reading.absent if script.reading is not None else ()
-        for place, one in enumerate(self.expected):
-            if one.standing is Standing.EXPECTED and one.name in map(plain_name, absent):
-                self.expected[place] = one.contradicted(f"{by} said that it is not there")
-                self.diary.looked_for(self.expected[place], at)
+        known = [
+            one.contradicted(f"{by} said that it is not there")
+            if one.standing is Standing.EXPECTED and one.name in map(plain_name, absent)
+            else one
+            for one in self.expected
+        ]
         new = [
             ExpectedObject(self.diary.board.new_id("e"), role, script, text, by, event, at)
             for role in introduced(script)
         ]
-        self.diary.expects(new, self._landmarks(script))
-        first = len(self.expected)
-        self.expected += new
+        with self.diary.as_one():
+            self.diary.heard(text, by, at, event)
+            for before, one in zip(self.expected, known, strict=True):
+                if one is not before:
+                    self.diary.looked_for(one, at)
+            self.diary.expects(new, self._landmarks(script))
+        self.expected = [*known, *new]
         if self._scene is not None:
-            self._look_for_expected(at, self.expected[first:])
-        return tuple(self.expected[first:])
+            self._look_for_expected(at, new)
+        return tuple(self.expected[len(known) :])
 
     def _landmarks(self, script: Script) -> dict[str, str]:
         """Return the ids on the blackboard of the objects of a sentence that are surely seen."""
@@ -603,8 +658,8 @@ class Robot:
     @property
     def questions(self) -> tuple[Question, ...]:
         """Questions about the present table that are worth their cost, the one that tells most first."""
-        asked = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
-        worth = [question for question in asked if question.gain > QUESTION_COST]
+        questions = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
+        worth = [question for question in questions if question.gain > QUESTION_COST]
         return tuple(sorted(worth, key=lambda question: -question.gain))
 
     @property
@@ -615,7 +670,9 @@ class Robot:
             return None
         return LayoutQuestion(found[1])
 
-    def name_layout(self, question: LayoutQuestion, name: str | None, by: str = "user") -> tuple[TableLesson, ...]:
+    def name_layout(
+        self, question: LayoutQuestion, name: str | None, by: str = "user", event: str | None = None
+    ) -> tuple[TableLesson, ...]:
         """Take the name of a layout that came again, and learn the layout from all tables of its kind.
 
         Parameters
@@ -626,6 +683,8 @@ class Robot:
             Name of the layout; None if it has none, so that it is not asked again.
         by
             Name of the person who answers.
+        event
+            Id on the blackboard of the answer; a new one if None.
 
         Returns
         -------
@@ -638,22 +697,43 @@ class Robot:
             If the name is empty.
         ScriptError
             If the name cannot be that of a layout.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> lower = [[0, 0, 0], [0.1, 0, 0], [0.4, 0, 0], [0.1, 0.3, 0]]
+        >>> upper = [[0.03, 0.2, 0.02], [0.35, 0.25, 0.02], [0.43, 0.2, 0.02], [0.2, 0.4, 0.1]]
+        >>> folder = tempfile.TemporaryDirectory()
+        >>> robot = Robot(folder.name + "/memory")
+        >>> for shift in (0.0, 0.02, 0.04):
+        ...     table = robot.sees(Scene.from_boxes(np.add(lower, shift), np.add(upper, shift)))
+        >>> robot.layout_question.text
+        'I have seen 3 tables like this; what is it called?'
+        >>> [lesson.layout for lesson in robot.name_layout(robot.layout_question, "supper")]
+        ['supper', 'supper', 'supper']
+        >>> robot.close()
+        >>> folder.cleanup()
         """
         kind = question.kind
         kept = [table.kept for table in kind.tables if table.kept is not None]
         place = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
+        event = event or self.diary.board.new_id("sentence")
         if name is None:
+            self.diary.named(kept, None, by, self._time(None), event)
             if place is not None:
                 self.unnamed[place] = replace(self.unnamed[place], asked=True)
-            self.diary.named(kept, None, by, self._time(None))
             return ()
         script = kind.script(category_name(name), self.session.ontology)
         examples = [(script, table.labelled) for table in kind.tables]
-        learned = self.session.learn_all(examples, teacher=by)
+        with self.diary.collected() as changes:
+            self.diary.named(kept, script.name, by, self._time(None), event)
+        learned = self.session.learn_all(
+            examples, teacher=by, events=(event,) if changes else (), episodes=lambda _: self._part(changes)
+        )
         lessons = [self._learned(script, table.scene, one) for table, one in zip(kind.tables, learned, strict=True)]
         if place is not None:
             del self.unnamed[place]
-        self.diary.named(kept, script.name, by, self._time(None))
         return tuple(lessons)
 
     def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
@@ -672,6 +752,30 @@ class Robot:
         ------
         RobotError
             If the scene has no such thing, or the role does not wait any more.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import numpy as np
+        >>> from deixis.perception.scene import PerceivedObject
+        >>> points = np.random.default_rng(1).random((300, 3)) * (0.03, 0.2, 0.02)
+        >>> things = []
+        >>> for id, x, width in (("o1", 0, 1), ("o2", 0.05, 1), ("o3", 0.1, 8)):
+        ...     cloud = PointCloud((points * (width, 1, 1) + (x, 0, 0)).astype(np.float32))
+        ...     things.append(PerceivedObject(id, (x, 0, 0), (x + width * 0.03, 0.2, 0.02), cloud=cloud))
+        >>> folder = tempfile.TemporaryDirectory()
+        >>> robot = Robot(folder.name + "/memory")
+        >>> table = robot.sees(Scene(tuple(things)))
+        >>> robot.shown("plate", "o3").category
+        'plate'
+        >>> robot.told("layout supper; fork left of plate; spoon left of plate").waiting
+        ('fork', 'spoon')
+        >>> question = robot.questions[0]
+        >>> robot.answers(question, "o2")
+        >>> robot.lessons[0].settled[question.role].thing, [each.role for each in robot.questions]
+        ('o2', ['fork'])
+        >>> robot.close()
+        >>> folder.cleanup()
         """
         lesson = self.lessons[question.lesson]
         if question.role not in lesson.waiting:
@@ -747,10 +851,13 @@ class _Pupil:
         self.ontology = robot.session.ontology
         self.remembers, self.layouts = robot.session.remembers, robot.session.layouts
         self.has_views, self.categories = robot.session.has_views, robot.session.categories
+        self.lessons_of_events = robot.session.lessons_of_events
 
-    def learn(self, script: Script, scene: Scene) -> Learned:
+    def learn(
+        self, script: Script, scene: Scene, *, events: Sequence[str] = (), episodes: Recording | None = None
+    ) -> Learned:
         """Learn a layout from a table, with the counts of its layout."""
-        learned = self._robot.session.learn(script, scene)
+        learned = self._robot.session.learn(script, scene, events=events, episodes=episodes)
         self._robot._learned(script, scene, learned)
         return learned
 
@@ -773,31 +880,3 @@ def perceived(cloud: PointCloud) -> Scene:
     from deixis.workflows.scenes.perceive import perceive
 
     return joined_behind_others(perceive(smoothed(cloud)))
-
-
-def understood(text: str, session: Session) -> Script:
-    """Read a text as a layout script, or else as English.
-
-    Parameters
-    ----------
-    text
-        The text.
-    session
-        Session with the words.
-
-    Returns
-    -------
-    Script
-        The script.
-
-    Raises
-    ------
-    ScriptError
-        If it is neither.
-    """
-    from deixis.workflows.layouts.read import read_script
-
-    try:
-        return read_script(text=text, ontology=session.ontology)
-    except ScriptError:
-        return read_script(text=text, ontology=session.ontology, english=True)

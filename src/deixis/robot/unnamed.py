@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from deixis.grammar.format import layout_script
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.format import layout_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.learning.experience import COMPARED, TOLERANCE, Experience
 from deixis.ontology.facts import Fact

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from schemas import errors_in
+from stored_pictures import assert_as_stored
 
 from deixis.cli.app import main
 from deixis.experiments.figure6 import Figure6, Points, Spread, run
@@ -48,6 +49,10 @@ def test_up_to_interchangeability_is_never_worse(result: Figure6) -> None:
                 panel.accuracy[f"{what}, {choice}"] for what in ("right", "right up to interchangeability")
             )
             assert exactly.mean <= roughly.mean
+
+
+def test_the_chart_is_as_stored(result: Figure6) -> None:
+    assert_as_stored("figure6", Path(result.pictures[1]))
 
 
 def test_facts_drop_exactly_the_absent(result: Figure6) -> None:

@@ -7,6 +7,7 @@ import json
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stdout
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from schemas import errors_in
+from stored_pictures import assert_as_stored
 
 from deixis.cli.app import main
 from deixis.deadline import Deadline
@@ -21,6 +23,7 @@ from deixis.experiments.scoreboard.board import Board, groups, relative, right_u
 from deixis.experiments.scoreboard.calibration import Forecasts, calibration
 from deixis.experiments.scoreboard.cases import Group, Setting, generated_cases
 from deixis.experiments.scoreboard.contestants import DEFAULT, Contestant, ContestantAnswer
+from deixis.experiments.scoreboard.plot import plot_scoreboard
 from deixis.experiments.scoreboard.report import lines, verdict
 from deixis.experiments.scoreboard.run import Scoreboard, ScoreboardPlan, run, steps
 from deixis.experiments.scoreboard.statistics import holm, interval, paired_p
@@ -219,6 +222,12 @@ def test_limits_use_the_tables_of_the_board(tiny: Scoreboard) -> None:
         assert one.incomplete == 0
         assert one.right.mean == tiny.main.mean(DEFAULT, one.setting, "right").mean
         assert one.short.mean == pytest.approx(one.words.mean - one.right.mean)
+
+
+def test_the_chart_is_as_stored(tiny: Scoreboard, tmp_path: Path) -> None:
+    scores = tuple(replace(score, seconds=1e-4 * score.setting.objects) for score in tiny.main.scores)
+    plot_scoreboard(replace(tiny, main=replace(tiny.main, scores=scores)), tmp_path / "board.png")
+    assert_as_stored("scoreboard", tmp_path / "board.png")
 
 
 def _command(*options: str) -> str:

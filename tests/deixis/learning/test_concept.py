@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.grammar.format import format_script, layout_script
+from deixis.grammar.layout.format import format_script, layout_script
 from deixis.learning.concept import concept_of
 from deixis.learning.experience import Tally
 from deixis.learning.lesson import layout_concept

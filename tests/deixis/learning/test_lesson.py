@@ -13,7 +13,7 @@ from commands import deixis
 from deixis.errors import UnknownTermError
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
-from deixis.grammar.format import layout_script
+from deixis.grammar.layout.format import layout_script
 from deixis.learning.lesson import layout_concept, layout_name
 from deixis.memory.on_demand import default_memory
 from deixis.memory.semantic.exchange import export_memory

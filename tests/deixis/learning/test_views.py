@@ -25,8 +25,8 @@ from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.recognition.calibration import COLOUR_WEIGHT
-from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.tableware import make
 
 THINGS = (("plate", 1), ("plate", 2), ("fork", 1), ("fork", 2))
 

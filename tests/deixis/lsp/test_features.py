@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from timing import processor_time_below
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.lsp.completion import Role, completions
 from deixis.lsp.diagnostics import Problem, errors, warnings
 from deixis.lsp.document import Document

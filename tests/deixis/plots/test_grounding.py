@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.figure import save
 from deixis.plots.grounding import Marks, grounding_figure

@@ -10,11 +10,11 @@ import pytest
 from commands import deixis
 from matplotlib.figure import Figure
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.learning.views import Recognised
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
-from deixis.perception.detection.viewpoint import in_frame
+from deixis.perception.detection.table.viewpoint import in_frame
 from deixis.perception.recognition.calibration import Calibration
 from deixis.perception.recognition.recogniser import Recognition
 from deixis.perception.scene import PerceivedObject, Scene

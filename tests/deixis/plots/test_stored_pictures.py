@@ -1,21 +1,17 @@
-"""Compare a picture of each type with the stored one.
-
-After a change that is meant, look at the new pictures and store them::
-
-    DEIXIS_STORE_PICTURES=1 python -m pytest tests/deixis/plots/test_stored_pictures.py
-"""
+"""Compare a picture of each type with the stored one."""
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from source_tree import ROOT
+from stored_pictures import CHARTS, STORED, assert_as_stored
 
 import deixis
 
@@ -23,10 +19,6 @@ pytest.importorskip("matplotlib")
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-STORED = Path(__file__).parent / "stored"
-TOLERANCE = 4.0
-"""Root mean square difference of grey values, 0 to 255, that other versions of fonts and renderers may make."""
 
 DPI = 60
 EXAMPLES = ROOT / "examples"
@@ -80,6 +72,25 @@ def recognised_table() -> Figure:
         return session.recognise(scene_in_a_cloud(8)).plot()
 
 
+def story(path: Path) -> None:
+    """Draw two moments of a live run, seen as discs and a bar in a small image."""
+    from deixis.plots.live_story import write_moments
+    from deixis.robot.live.moments import Moment
+
+    y, x = np.mgrid[0:120, 0:160]
+    owner = np.full((120, 160), -1)
+    owner[(x - 60) ** 2 + (y - 60) ** 2 < 900] = 0
+    owner[(abs(x - 120) < 6) & (abs(y - 60) < 35)] = 1
+    image = np.array([(120, 90, 60), (210, 215, 225), (170, 172, 178)], np.uint8)[owner + 1]
+    view = path.with_suffix(".npz")
+    np.savez(view, image=np.kron(image, np.ones((4, 4, 1), np.uint8)), owner=owner, ids=np.array(["t1", "t2"]))
+    none: frozenset[str] = frozenset()
+    words = (("teacher", "This is a plate."), ("robot", "I see: t1 is a plate."))
+    first = Moment(1.0, view, {"t1": "plate", "t2": None}, none, frozenset({"t1"}), words, None, ())
+    last = Moment(9.0, view, {"t1": "plate", "t2": "fork"}, none, none, (), "lunch", ("the knife is missing",))
+    write_moments([first, last], path)
+
+
 PICTURES: list[Callable[[], Figure]] = [
     decided_grounding,
     doubtful_grounding,
@@ -94,16 +105,16 @@ PICTURES: list[Callable[[], Figure]] = [
 
 @pytest.mark.parametrize("draw", PICTURES, ids=lambda draw: draw.__name__)
 def test_a_picture_is_as_stored(draw: Callable[[], Figure], tmp_path: Path) -> None:
-    from matplotlib.testing.compare import compare_images
+    drawn = tmp_path / "drawn.png"
+    draw().savefig(drawn, dpi=DPI)
+    assert_as_stored(draw.__name__, drawn)
 
-    stored, drawn = STORED / f"{draw.__name__}.png", tmp_path / f"{draw.__name__}.png"
-    figure = draw()
-    figure.savefig(drawn, dpi=DPI)
-    if os.environ.get("DEIXIS_STORE_PICTURES"):
-        STORED.mkdir(exist_ok=True)
-        stored.write_bytes(drawn.read_bytes())
-    assert compare_images(str(stored), str(drawn), TOLERANCE) is None
+
+def test_the_story_is_as_stored(tmp_path: Path) -> None:
+    story(tmp_path / "story.png")
+    assert_as_stored("story", tmp_path / "story.png")
 
 
 def test_every_stored_picture_is_compared() -> None:
-    assert {path.stem for path in STORED.glob("*.png")} == {draw.__name__ for draw in PICTURES}
+    names = {"story", *CHARTS, *(draw.__name__ for draw in PICTURES)}
+    assert {path.stem for path in STORED.glob("*.png")} == names

@@ -17,7 +17,7 @@ from deixis.cli import common
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.grammar.errors import ScriptTimeError
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.kernels import compile_grounding
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError, SettingError

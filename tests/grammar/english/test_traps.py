@@ -22,3 +22,16 @@ def test_doubtful_fact_is_reported_and_not_asserted() -> None:
     (problem,) = reading.sentences[0].problems
     assert problem.hint is not None
     assert "The radio is under the drawer." in problem.hint
+
+
+def test_notes_on_the_same_words_are_in_the_order_of_the_facts() -> None:
+    reading = read_english("Two jugs are on the A brush lies on the towels.").reading
+    assert reading is not None
+    hints = [problem.hint for problem in reading.sentences[0].problems]
+    assert hints == [
+        "write 'There are 2: the jug 1 and the jug 2.'",
+        "write 'The jug 1 is on the brush.'",
+        "write 'The jug 2 is on the brush.'",
+        "write 'The jug 1 is on the towels.'",
+        "write 'The jug 2 is on the towels.'",
+    ]

@@ -17,10 +17,10 @@ from deixis.grammar.formats.calculi import CalculusFileError, read_calculus
 from deixis.reasoning.qualitative.calculi.calculus import TableCalculus, bits
 from deixis.reasoning.qualitative.calculi.endpoints import composition_in
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 
 def write(folder: Path, name: str, found: TableCalculus, more: str = "", signs: dict[str, str] | None = None) -> Path:

@@ -21,7 +21,7 @@ from deixis.perception.detection.settings import (
     PlaneSettings,
     SurfaceSettings,
 )
-from deixis.perception.detection.viewpoint import moved
+from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
 
 Look = Callable[..., PointCloud]

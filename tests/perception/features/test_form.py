@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.form import LEVELS, PARTS, STATIONS, FormDescriber, form_parts
-from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.tableware import make
 
 Points = NDArray[np.float64]
 EYE = (0.0, -0.8, 0.6)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.orientation import Orientation, orientation, with_headings
+from deixis.perception.features.orientation import MIN_PROBABILITY, Orientation, orientation, with_headings
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.tableware import make
 
 
 def cloud(kind: str, seed: int = 3) -> PointCloud:
@@ -23,7 +23,7 @@ def cloud(kind: str, seed: int = 3) -> PointCloud:
 )
 def test_front_is_the_head_or_the_handle(kind: str, part: str) -> None:
     found = orientation(cloud(kind).points)
-    assert found.part == part and found.confidence > 0.7
+    assert found.part == part and found.confidence > MIN_PROBABILITY
     assert found.front is not None and found.front[1] > math.cos(math.radians(20))
 
 

@@ -195,8 +195,8 @@ CATALOGUE: list[tuple[Any, str]] = [
     ({}, "'objects' is missing; add the list of the objects"),
     ({"objects": None}, "'objects' must be a list, got null"),
     ({"objects": {}}, "'objects' must be a list, got an object"),
-    ({"object": []}, f"'object' is not a key here; the keys are {SCENE_KEYS}"),
-    ({"objects": [], "Frame": "x"}, f"'Frame' is not a key here; the keys are {SCENE_KEYS}"),
+    ({"object": []}, f"'object' is not a key here, did you mean 'objects'?; the keys are {SCENE_KEYS}"),
+    ({"objects": [], "Frame": "x"}, f"'Frame' is not a key here, did you mean 'frame'?; the keys are {SCENE_KEYS}"),
     ({"objects": [], "unit": "inch"}, "unknown unit 'inch'; use one of m, cm, mm, px"),
     ({"objects": [], "unit": 1}, "'unit' must be a string, got a number"),
     ({"objects": [], "unit": None}, "'unit' must be a string, got null"),
@@ -209,7 +209,12 @@ CATALOGUE: list[tuple[Any, str]] = [
     (without("id"), "objects[0]: 'id' is missing"),
     (without("min"), "objects[0]: 'min' is missing"),
     (without("max"), "objects[0]: 'max' is missing"),
-    (one(lable="fork"), f"objects[0]: 'lable' is not a key here; the keys are {KEYS}"),
+    (one(lable="fork"), f"objects[0]: 'lable' is not a key here, did you mean 'label'?; the keys are {KEYS}"),
+    (
+        one(centre=[0, 0], size=[1, 1]),
+        "objects[0]: 'centre' is not a key here; 'size' is not a key here; "
+        f"give the corners of a box as 'min' and 'max'; the keys are {KEYS}",
+    ),
     (one(id=5.5), "objects[0]: 'id' must be a string, got a number"),
     (one(id=""), "objects[0]: 'id' must be a string that is not blank, got \"\""),
     (one(id="\ud800"), "objects[0]: 'id' contains half of a surrogate pair; correct it"),
@@ -279,11 +284,14 @@ def test_a_malformed_scene_is_refused_with_place_and_reason(data: Any, message: 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", ":1:1: this is not valid JSON: Expecting value"),
+        ("", ":1:1: this is not valid JSON: the text is empty"),
         ("{", ":1:2: this is not valid JSON: "),
         ('{"objects": [],}', ": this is not valid JSON: "),
-        ('{\n  "objects": [}\n', ":2:15: this is not valid JSON: Expecting value"),
-        ('{"objects": []} x', ":1:17: this is not valid JSON: Extra data"),
+        (
+            '{\n  "objects": [}\n',
+            ":2:15: this is not valid JSON: the '[' at 2:14 is not closed; add ']' before this '}'",
+        ),
+        ('{"objects": []} x', ":1:17: this is not valid JSON: there is more text after the end of the JSON"),
         ("{'objects': []}", ":1:2: this is not valid JSON: "),
         (
             '{"objects": [{"id": "o1", "min": [0, NaN], "max": [1, 1]}]}',
@@ -332,7 +340,7 @@ def test_a_file_that_is_not_utf_8_is_refused_with_the_byte(tmp_path: Path) -> No
 def test_a_folder_a_missing_file_and_a_bad_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"this is a folder; give a \.scene\.json file"):
         read_scene(tmp_path)
-    with pytest.raises(SceneError, match=r"none\.scene\.json: cannot be read: No such file"):
+    with pytest.raises(SceneError, match=r"none\.scene\.json: there is no such file"):
         read_scene(tmp_path / "none.scene.json")
     with pytest.raises(SceneError, match="cannot be read"):
         read_scene("a\0b.scene.json")

@@ -11,8 +11,8 @@ from solid_checks import boxes_within, deepest, distances, surface_points
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import LaidTable, Placement, TableTop, lay
+from deixis.perception.simulator.meshes.solids import thick_sheet
 from deixis.perception.simulator.scatter import MAX_THINGS, MIN_GAP, scattered
-from deixis.perception.simulator.solids import thick_sheet
 
 TOUCHING = 0.0003
 """Maximum gap in metres between things that touch: the clearance, and rounding in single precision."""

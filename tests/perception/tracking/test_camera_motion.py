@@ -5,10 +5,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from deixis.perception.simulator.camera import Camera, looking_pose
-from deixis.perception.simulator.camera_paths import CameraPath, HeadMotion, Walk
+from deixis.perception.simulator.cameras.camera import Camera, looking_pose
+from deixis.perception.simulator.films.camera_paths import CameraPath, HeadMotion, Walk
+from deixis.perception.simulator.films.motion import FilmedFrame, Move, Rest, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.simulator.motion import FilmedFrame, Move, Rest, film
 from deixis.perception.tracking.camera_motion import moved_by
 from deixis.perception.tracking.image import FrameImage, Optics, table_view
 from deixis.perception.tracking.reference import Reference

@@ -1,8 +1,11 @@
 """Tracker: identity and place of things that are hidden, moved, taken away and brought."""
 
+import gc
+import weakref
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +13,8 @@ import pytest
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
 from deixis.perception.errors import CloudError
+from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.simulator.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.thing import Situation
 from deixis.perception.tracking.tracker import Tracker
@@ -157,9 +160,13 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
     moving = [sum(thing.moving for thing in now.things) for _, now in moved_mug()]
     assert max(moving) == 1  # the plate rests, which costs nothing
     with Tracker(HALF) as tracker:
-        needed = []
+        needed: list[int] = []
+        kept: list[weakref.ref[Any]] = []
         for frame in film([PLATE, MUG], [Rest(0.2), TakeAway("mug"), Rest(1.0)]).frames(3, scale=0.4):
             tracker.update(frame.cloud, frame.at)
             needed.append(tracker.particles)
+            kept = kept or [weakref.ref(thing) for thing in tracker._things]
         assert needed[0] == 0 < max(needed) and needed[-1] == 0
+        gc.collect()
+        assert [each() is None for each in kept] == [False, True], "the pipeline of the mug is freed with its memory"
         assert np.unique(tracker.owners()).tolist() == [-1, 0]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims
@@ -122,7 +122,12 @@ def aimed(text: str, fronts: dict[str, tuple[float, float]], heads: dict[str, tu
         ("fork pointing left", (0.0, 1.0), "violated", "it points 90"),
         ("fork pointing away", None, "undecidable", "which of its ends"),
         ("fork pointing left", None, "violated", "it lies 90"),
-        ("fork facing left", (0.0, 1.0), "undecidable", "its direction is not known"),
+        ("fork facing left", (0.0, 1.0), "undecidable", "which of its sides"),
+        ("fork facing left", (1.0, 0.0), "violated", "it points 180"),
+        ("fork facing left", None, "undecidable", "its direction is not known"),
+        ("fork with its handle to the viewer", (0.0, 1.0), "satisfied", "its handle points 0"),
+        ("fork with its handle to the plate", (1.0, 0.0), "violated", "away from 'plate'"),
+        ("fork with its tines to the plate", (1.0, 0.0), "satisfied", "away from 'plate'"),
         ("plate pointing left", None, "undecidable", "its direction is not known"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.claim_facts import COMPARATIVES, ROWS, facts_of_claims

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.implications import Implications
 

@@ -79,7 +79,7 @@ def test_a_fact_is_implied_exactly_if_all_pictures_share_it(
 @given(stated=facts)
 def test_bit_sets_and_block_algebra_agree(stated: list[Triple]) -> None:
     """Compare with the closure of the constraint network of another module."""
-    from deixis.reasoning.qualitative.networks.closure import close
+    from deixis.reasoning.qualitative.networks.closure.algebraic import close
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
 
     implied = implications(stated)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -34,3 +35,14 @@ def test_turning_a_scene_keeps_the_angles_between_things(angle: float, mirrored:
     after = poses.turned(angle, mirrored)
     assert after.fronts[0] @ after.fronts[1] == pytest.approx(0.6)
     assert coaxial(after, after)[0, 1] == pytest.approx(coaxial(poses, poses)[0, 1])
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(-math.pi, math.pi), st.booleans(), st.booleans())
+def test_aim_angles_do_not_depend_on_the_frame(way: float, turn: float, facing: bool, handle: bool) -> None:
+    head, aim = (np.array([math.cos(way + off), math.sin(way + off)]) for off in (0.0, 1.0))
+    poses = replace(Poses.of_boxes(np.array([KNIFE, PLATE])), heads=np.array([head, [np.nan, np.nan]]))
+    turned = poses.turned(turn)
+    wanted = replace(poses, fronts=np.array([aim, aim])).turned(turn).fronts[0]
+    before, after = poses.aim_angles(aim, facing, handle), turned.aim_angles(wanted, facing, handle)
+    assert after == pytest.approx(before, abs=1e-6, nan_ok=True)
+    assert np.isnan(before[1]) and (np.isnan(before[0]) or before[0] == pytest.approx(math.pi - 1 if handle else 1.0))

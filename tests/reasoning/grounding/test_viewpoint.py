@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.experiments.place_settings import formal_setting
-from deixis.grammar.parser import parse_script, read_layout
+from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts import fact_tables

@@ -5,10 +5,15 @@ from __future__ import annotations
 import inspect
 
 import pytest
-from documentation.sections import findings, lacks, public_functions
+from documentation.sections import findings, lacks, public_functions, without_example
 
 import deixis
 import deixis.testing
+from deixis.answers import Answer
+from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.perceptual.level import LevelMemory
+from deixis.memory.semantic.store import SemanticMemory
+from deixis.robot.robot import Robot
 
 pytest.importorskip("pygls")
 pytest.importorskip("matplotlib")
@@ -64,12 +69,8 @@ def test_an_overriding_method_inherits_no_incomplete_sections() -> None:
 
 
 WITHOUT_EXAMPLE = {
-    "LayoutConcept": "made by learning; the example of Session shows one",
-    "QueryResult": "the answer of Session.query, which the example of Session shows",
     "Prediction": "the answer of `predict`, whose example shows one",
-    "Recall": "needs a memory with episodes; docs/guides/recall.md has examples that run",
     "Recognised": "needs a memory with taught views; docs/tutorial/seeing.md has examples that run",
-    "RecognisedActivity": "needs learned activities; docs/guides/activities.md has examples that run",
     "Unlearned": "needs a memory with lessons; docs/guides/unlearn.md has examples that run",
 }
 """Exported names whose docstring has no example, with the reason."""
@@ -79,3 +80,45 @@ def test_exported_names_have_examples() -> None:
     exported = {name: getattr(module, name) for module in (deixis, deixis.testing) for name in module.__all__}
     lacking = {name for name, value in exported.items() if ">>> " not in (inspect.getdoc(value) or "")}
     assert lacking == WITHOUT_EXAMPLE.keys()
+
+
+STORES = (Blackboard, LevelMemory, Robot, SemanticMemory)
+"""Classes whose methods need examples besides those that ``deixis`` and ``deixis.testing`` export."""
+
+NEEDS_OPTIONAL_PACKAGE = {
+    "plot": "needs matplotlib; examples/ground.ipynb has an example that runs",
+    "to_dataframe": "needs pandas; tests/deixis/test_answers.py has an example that runs",
+}
+"""Methods of :class:`~deixis.answers.Answer` without an example, with the reason."""
+
+
+def test_methods_of_exported_classes_have_examples() -> None:
+    exported = [getattr(module, name) for module in (deixis, deixis.testing) for name in module.__all__]
+    classes = [member for member in (*exported, *STORES) if inspect.isclass(member)]
+    lacking = {(kind.__name__, name) for kind in classes for name in without_example(kind)}
+    answers = [kind.__name__ for kind in classes if issubclass(kind, Answer)]
+    assert lacking == {(answer, name) for answer in answers for name in NEEDS_OPTIONAL_PACKAGE}
+
+
+class Counter:
+    """A counter.
+
+    Examples
+    --------
+    >>> Counter().count(2)
+    """
+
+    def count(self, times: int) -> None:
+        """Count."""
+
+    def reset(self) -> None:
+        """Begin again."""
+
+    @property
+    def total(self) -> int:
+        """Number of times."""
+        return 0
+
+
+def test_methods_that_no_example_of_the_class_calls_are_found() -> None:
+    assert without_example(Counter) == ["reset", "total"]

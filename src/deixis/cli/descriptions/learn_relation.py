@@ -48,7 +48,7 @@ def learn_relation(
         ),
     ] = None,
     models: Models = None,
-    strength: Annotated[float, typer.Option(help="Weight of the shipped models, above 0.")] = 3.0,
+    strength: Annotated[float, typer.Option(metavar="WEIGHT", help="Weight of the shipped models, above 0.")] = 3.0,
     reset: Annotated[bool, typer.Option("--reset", help="Remove the learned models; keep the lessons.")] = False,
     memory: MemoryDir = None,
     no_memory: NoMemory = False,
@@ -94,7 +94,7 @@ def learn_relation(
 
 def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_json: bool) -> None:
     """Learn the weights of ``deixis refer`` from a file of descriptions, and write them to ``out``."""
-    from deixis.cli.output import read_lines
+    from deixis.cli.output import read_text
     from deixis.errors import DeixisError
     from deixis.report.descriptions.relation import learned_reference_lines, learned_reference_to_dict
     from deixis.workflows.descriptions.learn_reference import learn_reference, write_reference
@@ -103,7 +103,7 @@ def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_j
         raise DeixisError("--descriptions needs a file for the weights; name it with -o FILE.json")
     require_ending(out, (".json",), "a file of weights")
     require_writable([out], [descriptions])
-    learned = learn_reference(read_lines(descriptions), descriptions.parent, strength)
+    learned = learn_reference(read_text(descriptions).splitlines(), descriptions.parent, strength)
     write_reference(learned.model, out, f"Learned from {learned.descriptions} descriptions in {descriptions.name}")
     if as_json:
         print_json(learned_reference_to_dict(learned, str(out)))

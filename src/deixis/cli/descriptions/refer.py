@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from deixis.cli.common import NO, UNDECIDED, AsJson, HideLabels, Image, print_json, print_line, print_lines
+from deixis.cli.common import (
+    NO,
+    UNDECIDED,
+    AsJson,
+    HideLabels,
+    Image,
+    note_unit,
+    print_json,
+    print_line,
+    print_lines,
+)
 from deixis.cli.output import StandardInput
 from deixis.printable import visible_line
 
@@ -41,11 +51,14 @@ def refer(
         str | None, typer.Option(metavar="ID", help="Have the object with this id answer the questions.")
     ] = None,
     until: Annotated[
-        float, typer.Option(metavar="P", help="Probability from which on --ask and --oracle ask no more, up to 0.95.")
+        float, typer.Option(metavar="P", help="--ask and --oracle stop at this probability, at most 0.95.")
     ] = 0.95,
     models: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="Weights of deixis learn-relation --descriptions (.json), not the shipped."),
+        typer.Option(
+            metavar="FILE",
+            help="Weights (.json) that learn-relation --descriptions wrote, instead of the shipped ones.",
+        ),
     ] = None,
     attributes: Annotated[
         Path | None,
@@ -90,6 +103,7 @@ def refer(
 
     out = sys.stderr if as_json else sys.stdout
     seen = load_scene(scene, hide_labels, image)
+    note_unit(seen)
     if picked is not None:
         if memory is None:
             raise typer.BadParameter("--picked needs --memory DIR, which is to learn the adjectives")
@@ -140,13 +154,13 @@ def _remember(text: str, scene: Scene, picked: str, memory: Path) -> None:
 
 
 def _answer_lines(file: str, until: float, model: Model | None) -> None:
-    from deixis.cli.output import read_lines
+    from deixis.cli.output import read_text
     from deixis.workflows.descriptions.refer import refer_batch
 
     if file == "-":
         lines, folder = _standard_lines(), Path()
     else:
-        lines, folder = iter(read_lines(Path(file))), Path(file).parent
+        lines, folder = iter(read_text(Path(file)).splitlines()), Path(file).parent
     for answer in refer_batch(lines, folder, until, model):
         print_line(json.dumps(answer, ensure_ascii=False))
 

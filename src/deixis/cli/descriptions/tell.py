@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli.common import NO, AsJson, HideLabels, Image, TimeLimit, print_json, print_lines
+from deixis.cli.common import NO, AsJson, HideLabels, Image, TimeLimit, note_unit, print_json, print_lines
 
 
 def tell(
@@ -30,6 +30,8 @@ def tell(
     from deixis.workflows.layouts.read import load_scene
 
     given = source if holds_facts(source) else load_scene(source, hide_labels, image)
+    if not isinstance(given, str):
+        note_unit(given)
     telling = run(given, all_facts=all_facts, time_limit=time_limit)
     if as_json:
         print_json(telling.to_dict())

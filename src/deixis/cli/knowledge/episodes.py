@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import StrEnum
@@ -20,7 +19,7 @@ from deixis.cli.common import (
     print_line,
     print_lines,
     print_note,
-    print_written,
+    print_or_write,
     require_ending,
 )
 
@@ -229,11 +228,7 @@ def export(
         require_ending(out, (".json",), "a file of fluents")
     with _board(memory) as board:
         text = text_of_fluents(board, _pattern(*pattern), *(window or (None, None)))
-    if out is None:
-        sys.stdout.write(text)
-    else:
-        out.write_text(text, encoding="utf-8")
-        print_written(out)
+    print_or_write(text, out)
 
 
 @episodes_app.command("record")

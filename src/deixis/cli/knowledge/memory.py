@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from enum import StrEnum
 from pathlib import Path
@@ -18,6 +17,7 @@ from deixis.cli.common import (
     print_line,
     print_lines,
     print_note,
+    print_or_write,
     print_written,
     require_ending,
     require_memory,
@@ -80,7 +80,7 @@ def export(
         from deixis.memory.episodes.exchange import export_episodes
 
         with Blackboard.open(where) as board:
-            _put(export_episodes(board), out)
+            print_or_write(export_episodes(board), out)
         return
     _export_concepts(where, out, format)
 
@@ -103,20 +103,11 @@ def _export_concepts(memory: Path, out: Path | None, format: DumpFormat) -> None
         if views and not session.remembers():
             raise DeixisError(f"the memory at {memory} has views, but no lessons yet; {_VIEWS_TOO}")
         text = export_memory(session.memory(), format.value)
-    _put(text, out)
+    print_or_write(text, out)
     if views:
         print_note(f"the memory also has views, which are not in this export; {_VIEWS_TOO}")
     if has_episodes(memory):
         print_note("the memory also has episodes, which are not in this export; '--format episodes' writes them")
-
-
-def _put(text: str, out: Path | None) -> None:
-    """Print a text, or write it to a file."""
-    if out is None:
-        sys.stdout.write(text)
-    else:
-        out.write_text(text, encoding="utf-8")
-        print_written(out)
 
 
 @memory_app.command("import")

@@ -43,13 +43,14 @@ def query(
     as_json: AsJson = False,
 ) -> None:
     """Run a SPARQL query over the memory; exit 3 without any rows where a limit is reached."""
+    from deixis.cli.output import read_text
     from deixis.errors import DeixisError
     from deixis.session import Session
 
     if (sparql is None) == (file is None):
         raise DeixisError("query: give either a query or a file with -f")
     with Session(memory) as session:
-        result = session.query(_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
+        result = session.query(read_text(file) if file is not None else sparql or "", time_limit, memory_limit * 2**20)
         if as_json or format is TableFormat.JSON:
             sys.stdout.writelines(result.json_parts())
             sys.stdout.write("\n")
@@ -65,12 +66,3 @@ def query(
                 print_note(note)
         if result.boolean is False:
             raise typer.Exit(NO)
-
-
-def _text(file: Path) -> str:
-    from deixis.errors import DeixisError
-
-    try:
-        return file.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error

@@ -19,7 +19,7 @@ def unlearn(
     sentence: Annotated[str | None, typer.Option(metavar="TEXT", help="What lessons in these words taught.")] = None,
     label: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="What 'teach' called so.", autocompletion=complete_categories),
+        typer.Option(metavar="NAME", help="What 'teach' gave this name.", autocompletion=complete_categories),
     ] = None,
     view: Annotated[str | None, typer.Option(metavar="ID", help="What 'teach' said of one view.")] = None,
     table: Annotated[str | None, typer.Option(metavar="SCENE", help="What was taught with this scene.")] = None,

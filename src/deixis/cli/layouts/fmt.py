@@ -20,8 +20,8 @@ def fmt(
 ) -> None:
     """Print a script in its canonical form, with its comments."""
     from deixis.errors import DeixisError
-    from deixis.grammar.format import format_script
-    from deixis.grammar.parser import read_layout
+    from deixis.grammar.layout.format import format_script
+    from deixis.grammar.layout.parser import read_layout
 
     if write and check:
         raise DeixisError("fmt: --check and --write exclude each other")

@@ -29,8 +29,10 @@ def imagine(
         Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the table as a scene (.scene.json).")
     ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the table (.png, .svg, .pdf).")] = None,
-    count: Annotated[int, typer.Option(min=1, max=1000, help="Number of different tables; files are numbered.")] = 1,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the random sizes and places.")] = 0,
+    count: Annotated[
+        int, typer.Option(metavar="N", min=1, max=1000, help="Number of different tables; files are numbered.")
+    ] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the random sizes and places.")] = 0,
     any_size: Annotated[bool, typer.Option("--any-size", help="Allow unusual sizes.")] = False,
     time_limit: Annotated[float, typer.Option(min=0.0, metavar="SECONDS", help="Time for each table.")] = 30.0,
     as_json: AsJson = False,

@@ -34,7 +34,7 @@ def read(
     if as_json or format is ReadFormat.JSON:
         print_json(reading_to_dict(script))
     elif format is ReadFormat.LAYOUT:
-        from deixis.grammar.format import format_script
+        from deixis.grammar.layout.format import format_script
 
         sys.stdout.write(format_script(script))
     else:

@@ -30,7 +30,7 @@ def ground(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Match a told activity with fluents: what each step is, what is missing or in another order; exit 1 if any is."""
+    """Match a told activity with fluents; exit 1 if a step is missing or in another order."""
     from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
     from deixis.workflows.reasoning.activities import ground as run
 
@@ -88,7 +88,7 @@ def predict(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Predict what is laid next and where, from learned activities and a told order; exit 1 if nothing more comes."""
+    """Predict what is laid next and where; exit 1 if nothing more comes."""
     from deixis.report.reasoning.activities import predicted_lines, predicted_to_dict
     from deixis.workflows.reasoning.activities import predict as run
 

@@ -105,7 +105,7 @@ def _report(file: str, solved: list[SolvedNetwork], out: Path | None, as_json: b
 
 
 def _code(solved: list[SolvedNetwork]) -> int:
-    from deixis.reasoning.qualitative.networks.search import Verdict
+    from deixis.reasoning.qualitative.networks.search.consistency import Verdict
 
     verdicts = {each.verdict for each in solved}
     if Verdict.INCONSISTENT in verdicts:

@@ -14,14 +14,16 @@ experiment = typer.Typer(
     help="Run an experiment from the paper, or one of ours.", no_args_is_help=True, rich_markup_mode=None
 )
 
-Seed = Annotated[int, typer.Option(min=0, help="Seed of the random numbers.")]
+Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the random numbers.")]
 
 
 @experiment.command()
 def figure6(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder for the pictures.")] = Path("out"),
-    variants: Annotated[int, typer.Option(min=1, help="Number of generated place settings.")] = 50,
-    orders: Annotated[int, typer.Option(min=1, help="Number of random node orders to average over.")] = 200,
+    variants: Annotated[int, typer.Option(metavar="N", min=1, help="Number of generated place settings.")] = 50,
+    orders: Annotated[
+        int, typer.Option(metavar="N", min=1, help="Number of random node orders to average over.")
+    ] = 200,
     seed: Seed = 1,
     as_json: AsJson = False,
 ) -> None:
@@ -41,7 +43,9 @@ def scoreboard(
     seed: Seed = 1,
     time_limit: Annotated[float, typer.Option(min=0.01, metavar="SECONDS", help="Per engine and case.")] = 5.0,
     quick: Annotated[bool, typer.Option("--quick", help="Run a small part, in a minute or two.")] = False,
-    size: Annotated[list[int] | None, typer.Option(min=4, max=1000, help="Only tables of this many objects.")] = None,
+    size: Annotated[
+        list[int] | None, typer.Option(metavar="N", min=4, max=1000, help="Only tables of this many objects.")
+    ] = None,
     plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw it (.png, .svg, .pdf).")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -69,7 +73,7 @@ def scoreboard(
 
 @experiment.command("open-ended")
 def open_ended(
-    orders: Annotated[int, typer.Option(min=1, help="Number of random teaching orders.")] = 10,
+    orders: Annotated[int, typer.Option(metavar="N", min=1, help="Number of random teaching orders.")] = 10,
     seed: Seed = 1,
     quick: Annotated[bool, typer.Option("--quick", help="Nine kinds, no meshes, at most three orders.")] = False,
     cache: Annotated[

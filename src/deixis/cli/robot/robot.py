@@ -47,8 +47,8 @@ def run(
     layout: Annotated[
         str | None, typer.Option(metavar="SCRIPT", help="How the simulated table is laid; default: a shipped one.")
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the simulated story.")] = 0,
-    rate: Annotated[float, typer.Option(min=0.5, max=30, help="Frames a second of the simulator.")] = 4.0,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the simulated story.")] = 0,
+    rate: Annotated[float, typer.Option(metavar="HZ", min=0.5, max=30, help="Frames a second of the simulator.")] = 4.0,
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
     words: Annotated[

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -171,11 +173,17 @@ def _running(tour: Tour, out: Path) -> None:
     ):
         robot.wait()
         write_story(robot, out / "live")
-    tour.listing(lines)
+    tour.listing(sorted(lines, key=_began))  # a sentence is printed at its end, with the time of its beginning
     tour.picture(
         f"live/{OVERVIEW}",
         "A teacher points at a thing, describes the layout, and asks what is wrong",
     )
+
+
+def _began(line: str) -> float:
+    """Return the seconds with which a line of the conversation begins; infinity for a line without a time."""
+    seconds = re.match(r" *(\d+\.\d) s  ", line)
+    return float(seconds[1]) if seconds else math.inf
 
 
 def full_text(name: str) -> list[str]:

@@ -33,7 +33,7 @@ def perceive(
     intrinsics: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json) of a depth image.")
     ] = None,
-    viewpoint: Annotated[str, typer.Option(help="Name of the side where the camera is.")] = "chair",
+    viewpoint: Annotated[str, typer.Option(metavar="NAME", help="Name of the side where the camera is.")] = "chair",
     table: Annotated[int, typer.Option(metavar="N", min=1, help="Number of the table, if there are several.")] = 1,
     up: Annotated[
         tuple[float, float, float] | None,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from deixis.cli.common import AsJson, Image, SceneFile, print_lines
+from deixis.cli.common import AsJson, Image, SceneFile, note_unit, print_lines
 from deixis.cli.completion import complete_related
 
 
@@ -59,6 +59,7 @@ def relate(
     if axis is not None and calculus not in ALONG_AN_AXIS and calculus in RELATED:
         raise SettingError(f"--axis goes with {' and '.join(ALONG_AN_AXIS)} only; {calculus} has no axis")
     seen = load_scene(scene, image=image)
+    note_unit(seen)
     codes = codes_of(seen.boxes, calculus, axis=axis or "x", tolerance=tolerance, reference=reference)
     related = Related(calculus, seen.ids, codes)
     fitting = None

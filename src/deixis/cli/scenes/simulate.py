@@ -34,12 +34,12 @@ def simulate(
         Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write the labelled cloud (.pcd, .ply).")
     ] = None,
     truth: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the true scene (.scene.json).")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the random things, places and noise.")] = 0,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the random things, places and noise.")] = 0,
     random: Annotated[int | None, typer.Option(metavar="N", help="1 to 300 random things instead of a layout.")] = None,
     mesh: Annotated[
         list[str] | None, typer.Option(metavar="NAME=FILE", help="A mesh (.ply, .obj, .stl; z up) for an object.")
     ] = None,
-    mesh_unit: Annotated[str, typer.Option(help="Unit of the meshes: m, cm or mm.")] = "m",
+    mesh_unit: Annotated[str, typer.Option(metavar="UNIT", help="Unit of the meshes: m, cm or mm.")] = "m",
     cloth: Annotated[bool, typer.Option("--cloth", help="Put a white cloth on the table.")] = False,
     camera_height: Annotated[float, typer.Option(metavar="METRES", help="Height of the camera above the table.")] = 0.7,
     camera_back: Annotated[float, typer.Option(metavar="METRES", help="From the table's edge to the camera.")] = 0.0,
@@ -47,8 +47,12 @@ def simulate(
     intrinsics: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json); default: a Kinect.")
     ] = None,
-    noise: Annotated[float, typer.Option(help="Multiple of the noise of a Kinect; 0: no noise.")] = 1.0,
-    missing: Annotated[float, typer.Option(help="Share of points that are missing at random.")] = 0.005,
+    noise: Annotated[
+        float, typer.Option(metavar="FACTOR", help="Multiple of the noise of a Kinect; 0: no noise.")
+    ] = 1.0,
+    missing: Annotated[
+        float, typer.Option(metavar="SHARE", help="Share of points that are missing at random.")
+    ] = 0.005,
     quantised: Annotated[bool, typer.Option("--quantised", help="Round depths to the steps of a Kinect.")] = False,
     table_frame: Annotated[
         bool, typer.Option("--table-frame", help="Write the cloud in the table's frame, not the camera's.")
@@ -58,8 +62,8 @@ def simulate(
     """Lay a table from a layout, or at random, and simulate a depth camera that looks at it."""
     from deixis.errors import DeixisError
     from deixis.perception.clouds.depth import read_intrinsics
-    from deixis.perception.simulator.camera import KINECT
-    from deixis.perception.simulator.depth import DepthSensor, in_table_frame
+    from deixis.perception.simulator.cameras.camera import KINECT
+    from deixis.perception.simulator.cameras.depth import DepthSensor, in_table_frame
     from deixis.workflows.layouts.lay_table import NoTableError
     from deixis.workflows.scenes.simulate import CameraSetup
     from deixis.workflows.scenes.simulate import simulate as run

@@ -30,9 +30,9 @@ def track(
         Path | None, typer.Option(metavar="FILE", help="Camera intrinsics (.json) of depth images.")
     ] = None,
     live: Annotated[bool, typer.Option("--live", help="Drop frames that come too fast.")] = False,
-    things: Annotated[int, typer.Option(min=1, max=12, help="Simulator: things at the start.")] = 4,
-    actions: Annotated[int, typer.Option(min=0, max=100, help="Simulator: actions of the hand.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, help="Simulator: seed of things, actions and noise.")] = 0,
+    things: Annotated[int, typer.Option(metavar="N", min=1, max=12, help="Simulator: things at the start.")] = 4,
+    actions: Annotated[int, typer.Option(metavar="N", min=0, max=100, help="Simulator: actions of the hand.")] = 4,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Simulator: seed of things, actions and noise.")] = 0,
     camera: Annotated[str, typer.Option(metavar="PATH", help="Simulator: still, sway or walk.")] = "still",
     record: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write the frames as a recorded sequence, too.")
@@ -41,6 +41,7 @@ def track(
     as_json: AsJson = False,
 ) -> None:
     """Follow the things on a table through a stream of clouds: what is where, since when."""
+    from deixis.perception.errors import CloudError
     from deixis.report.scenes.track import event_line, situation_to_dict, tracking_lines, tracking_to_dict
     from deixis.workflows.scenes.track import track as run
 
@@ -53,6 +54,9 @@ def track(
 
     stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed), camera)
     found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
+    if not found.frames:
+        reason = found.notes[0] if found.notes else "the source has none"
+        raise CloudError(f"at least one frame must be usable, got none of {found.left_out}; {reason}")
     if as_json:
         print_json(tracking_to_dict(found))
     elif not lines:
@@ -71,8 +75,8 @@ def _source(
     from deixis.workflows.scenes.track import cloud_source
 
     if names == ["simulator"]:
-        from deixis.perception.simulator.camera_paths import camera_path
-        from deixis.perception.simulator.stories import FilmSource, random_film
+        from deixis.perception.simulator.films.camera_paths import camera_path
+        from deixis.perception.simulator.films.stories import FilmSource, random_film
 
         things, actions, seed = simulated
         return FilmSource(random_film(things, actions, seed, path=camera_path(camera, seed)), rate, seed)

@@ -23,7 +23,7 @@ from deixis.extras import require
 from deixis.grammar.utterances import Utterance
 from deixis.ontology.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.simulator.depth import DepthSensor
+from deixis.perception.simulator.cameras.depth import DepthSensor
 from deixis.perception.simulator.teacher import Teacher
 from deixis.robot.looking import Look, TableKnowledge
 from deixis.robot.robot import Robot, perceived

@@ -32,7 +32,13 @@ _Said = tuple[MistakeKind, frozenset[str]]
 
 @dataclass(frozen=True)
 class Count:
-    """Number of successes among a number of trials, with Wilson's interval of 95 %."""
+    """Number of successes among a number of trials, with Wilson's interval of 95 %.
+
+    Notes
+    -----
+    The interval is that of E. B. Wilson, "Probable inference, the law of succession, and statistical inference",
+    Journal of the American Statistical Association 22, 1927.
+    """
 
     right: int = 0
     of: int = 0

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from deixis.grammar.script import Script
 from deixis.ontology.kinds import plain_name
 from deixis.perception.simulator.laying import LaidTable, LaidThing, Placement, lay, top_under
-from deixis.perception.simulator.tableware import make
+from deixis.perception.simulator.meshes.tableware import make
 from deixis.reasoning.comparison.explanation import MistakeKind
 from deixis.reasoning.entailment.realisation.verification import facts_that_hold
 from deixis.workflows.layouts.lay_table import LaidScript, lay_script
@@ -264,7 +264,7 @@ class _Table:
 
 def _shifted(thing: LaidThing, by: Array, turn: float = 0.0) -> LaidThing:
     """Return a thing that is turned about the middle of its box, and then moved in plan."""
-    from deixis.perception.simulator.solids import moved
+    from deixis.perception.simulator.meshes.solids import moved
 
     middle = thing.box[:, :2].mean(axis=0)
     centred = moved(thing.mesh, by=(-float(middle[0]), -float(middle[1]), 0.0))

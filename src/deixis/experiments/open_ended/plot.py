@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.experiments.open_ended.run import OpenEnded
 from deixis.perception.recognition.learners.teaching import Course
-from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
+from deixis.plots.figure import INK, dress_chart, new_figure, save
 
 COLOURS = ("#1f4e79", "#e0a02c", "#c0392b", "#7f8c8d", "#5a9a5a", "#8e6bbf", "#2a9d9d", "#b5703c", "#d46a9f")
 Curve = Callable[[Course], NDArray[np.float64]]
@@ -47,13 +47,7 @@ def plot_open_ended(found: OpenEnded, path: str | Path) -> None:
                 panel.plot(
                     np.arange(1, len(mean) + 1), mean, color=COLOURS[number % len(COLOURS)], linewidth=width, label=name
                 )
-            panel.set_title(f"{one.name}: {title}", color=INK, fontsize=10, loc="left")
-            panel.set_xlabel("question and correction iterations", color=INK, fontsize=9)
-            panel.tick_params(colors=INK, labelsize=8)
-            panel.set_facecolor(PAPER)
-            panel.grid(color=QUIET, alpha=0.25, linewidth=0.6)
-            for side in panel.spines.values():
-                side.set_color(QUIET)
+            dress_chart(panel, f"{one.name}: {title}", "question and correction iterations")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9, labelcolor=INK)
     save(figure, path)

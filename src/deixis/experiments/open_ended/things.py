@@ -15,8 +15,8 @@ from deixis.experiments.open_ended.described_views import ThingViews
 from deixis.experiments.open_ended.mesh_list import CORRECTED, EXCLUDED
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.clouds.mesh_file import read_mesh
-from deixis.perception.simulator.tableware import make
-from deixis.perception.simulator.views import views_of
+from deixis.perception.simulator.cameras.views import views_of
+from deixis.perception.simulator.meshes.tableware import make
 
 FOLDER = "tabletop-meshes"
 SETTING = "place_setting"

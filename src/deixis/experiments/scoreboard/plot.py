@@ -12,7 +12,7 @@ from deixis.experiments.scoreboard.board import Board, median_seconds
 from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Group
 from deixis.experiments.scoreboard.contestants import DEFAULT
 from deixis.experiments.scoreboard.run import Scoreboard
-from deixis.plots.figure import INK, PAPER, QUIET, new_figure, save
+from deixis.plots.figure import INK, QUIET, dress_chart, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,16 +71,6 @@ def plot_scoreboard(found: Scoreboard, path: str | Path) -> None:
     save(figure, path)
 
 
-def _dress(axes: Axes, title: str, across: str) -> None:
-    axes.set_title(title, color=INK, fontsize=10, loc="left")
-    axes.set_xlabel(across, color=INK, fontsize=9)
-    axes.tick_params(colors=INK, labelsize=8)
-    axes.set_facecolor(PAPER)
-    axes.grid(color=QUIET, alpha=0.25, linewidth=0.6)
-    for side in axes.spines.values():
-        side.set_color(QUIET)
-
-
 def _sizes(axes: Axes, sizes: Sequence[int]) -> None:
     axes.set_xscale("log")
     axes.set_xticks(sizes, [str(size) for size in sizes])
@@ -110,7 +100,7 @@ def _by_size(axes: Axes, board: Board, off: float, measure: str, title: str) -> 
     _sizes(axes, sizes)
     least = min((mean for line in axes.containers for mean in line[0].get_ydata()), default=0.0)
     axes.set_ylim(max(MIN_VALUE_SHOWN, min(0.0, least)), 1.02)
-    _dress(axes, title, "objects")
+    dress_chart(axes, title, "objects")
 
 
 def _times(axes: Axes, board: Board) -> None:
@@ -124,7 +114,7 @@ def _times(axes: Axes, board: Board) -> None:
     _sizes(axes, sizes)
     axes.set_yscale("log")
     axes.tick_params(axis="y", which="minor", labelleft=False)
-    _dress(axes, "time to the full answer, seconds", "objects")
+    dress_chart(axes, "time to the full answer, seconds", "objects")
 
 
 def _limits(axes: Axes, found: Scoreboard) -> None:
@@ -150,7 +140,7 @@ def _limits(axes: Axes, found: Scoreboard) -> None:
     axes.legend(fontsize=8, frameon=False, labelcolor=INK, loc="lower right")
     axes.set_ylim(0, 1.02)
     axes.set_xticks(found.plan.facts_each)
-    _dress(axes, f"share right and its limit, {largest} objects", "facts an object")
+    dress_chart(axes, f"share right and its limit, {largest} objects", "facts an object")
 
 
 def _reliability(axes: Axes, found: Scoreboard) -> None:
@@ -166,7 +156,7 @@ def _reliability(axes: Axes, found: Scoreboard) -> None:
     look = {"frameon": False, "labelcolor": INK, "ncols": 2, "columnspacing": 0.8}
     axes.legend(fontsize=6.5, loc="upper left", title=title, title_fontsize=7, **look)
     axes.set_ylabel("share right", color=INK, fontsize=9)
-    _dress(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
+    dress_chart(axes, f"calibration of {DEFAULT}", "probability that the answer gives")
     rows = 1 + (len(found.calibrations()) + 1) // 2  # room for the legend, above the curves
     axes.set_ylim(-0.05, 1.05 + 0.11 * rows)
     axes.set_yticks(np.linspace(0.0, 1.0, 6))
@@ -190,7 +180,7 @@ def _bars(axes: Axes, found: Scoreboard) -> None:
             error_kw={"elinewidth": 0.8, "capsize": 2, "ecolor": INK},
         )
     names = ["photographs" if group.objects == PHOTOGRAPHS else f"{100 * group.off:.0f} % off" for group in shown]
-    _dress(axes, f"ablations, share right, {largest} objects of known kinds", "")
+    dress_chart(axes, f"ablations, share right, {largest} objects of known kinds", "")
     axes.set_xticks(range(len(shown)), names)
     axes.set_ylim(0, 1.3)
     axes.legend(fontsize=8, frameon=False, labelcolor=INK, ncols=2, loc="upper right")

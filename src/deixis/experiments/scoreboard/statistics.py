@@ -37,6 +37,10 @@ def interval(values: Sequence[float] | NDArray[np.float64]) -> Interval:
     Interval
         Mean, half width (nan for fewer than two known values) and number of known values.
 
+    Notes
+    -----
+    Student, "The probable error of a mean", Biometrika 6, 1908.
+
     Examples
     --------
     >>> found = interval([0.0, 1.0, 1.0])

@@ -9,9 +9,11 @@ from deixis.answers import share
 from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Member, Pivotal
+    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, LeftOut, Member, Pivotal
 
 MAX_LISTED = 12
 """Maximum number of names, and of pivotal facts, to list one by one."""
@@ -70,19 +72,36 @@ def grounding_lines(found: Grounding) -> list[str]:
     lines += [violation(f"    violated: {violation_text(entry)}") for entry in found.violated]
     own = [one for one in found.frames if one.frame in FRAMES]
     lines += [f"    {one.fact}: {FRAMES[one.frame]} (probability {one.probability:.2f})" for one in own[:MAX_LISTED]]
-    if found.fits is not None:
+    if found.fits is not None and found.outcomes and (found.matches or found.unmatched_perceived):
         lines.append(f"The description fits this scene with probability {_probability(found.fits).strip()}.")
-    left_out = (*found.unmatched_objects, *found.unmatched_perceived)
-    for reason in dict.fromkeys(left.reason for left in left_out):
-        names = [left.name for left in left_out if left.reason == reason]
-        if len(names) > MAX_LISTED:
-            names = [", ".join(at_most_many(names)) + " (--json lists all)"]
-        lines += [f"Left out: {name}: {reason}." for name in names]
+    lines += left_out_lines((*found.unmatched_objects, *found.unmatched_perceived))
     pivotal = [line for entry in found.pivotal or () if (line := _pivotal_line(entry, found))]
     lines += pivotal[:MAX_LISTED]
     if len(pivotal) > MAX_LISTED:
         lines.append(f"and {len(pivotal) - MAX_LISTED} more facts that the answer depends on (--json lists all)")
     return [*lines, _standing_line(found), *(f"Note: {note}." for note in found.notes)]
+
+
+def left_out_lines(left_out: Sequence[LeftOut]) -> list[str]:
+    """Return what was left out, in one line for each reason.
+
+    Parameters
+    ----------
+    left_out
+        Described or perceived objects without a match.
+
+    Returns
+    -------
+    list of str
+        The names with their reason.
+    """
+    lines = []
+    for reason in dict.fromkeys(left.reason for left in left_out):
+        names = [left.name for left in left_out if left.reason == reason]
+        listed = ", ".join(at_most_many(names)) + (" (--json lists all)" if len(names) > MAX_LISTED else "")
+        each = "for each, " if len(names) > 1 and not {"it", "its"}.isdisjoint(reason.split()) else ""
+        lines.append(f"Left out: {listed}: {each}{reason}.")
+    return lines
 
 
 def sureness_lines(found: Grounding) -> list[str]:
@@ -251,6 +270,27 @@ def _match_line(match: Match) -> str:
 
 def _thing(other: Alternative) -> str:
     return other.perceived or "not there"
+
+
+def probability_text(value: float) -> str:
+    """Return a probability with two digits; 1 only where it is certain, and below 0.99 where it is not decided.
+
+    Parameters
+    ----------
+    value
+        Probability of a match, in [0, 1].
+
+    Returns
+    -------
+    str
+        The digits.
+
+    Examples
+    --------
+    >>> probability_text(0.9899), probability_text(0.9999), probability_text(1.0)
+    ('0.98', '0.99', '1')
+    """
+    return _probability(value).strip()
 
 
 def _probability(value: float) -> str:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from deixis.report.marks import doubt
-
 if TYPE_CHECKING:
     from deixis.workflows.knowledge.unlearn import Unlearned
 
@@ -37,8 +35,8 @@ def unlearned_lines(found: Unlearned) -> Iterator[str]:
     if found.fluents:
         yield f"fluents {', '.join(found.fluents[:20])}{' …' if len(found.fluents) > 20 else ''}"
     summary = found.summary()
-    for lesson in found.containing:
-        yield doubt(f"lesson {lesson} has the sentence among others and stays; --lesson {lesson} takes all of it back")
+    for lesson in found.revised:
+        yield f"lesson {lesson}: learned again from its other sentences"
     yield f"{summary[0].upper()}{summary[1:]}." if found else "Nothing that was taught matches."
 
 
@@ -68,5 +66,5 @@ def unlearned_to_dict(found: Unlearned) -> dict[str, Any]:
         "lessons": list(found.lessons),
         "views": views,
         "fluents": list(found.fluents),
-        "containing": list(found.containing),
+        "revised": list(found.revised),
     }

@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from deixis.ontology.kinds import with_article
-from deixis.report.grounding.ground import violation_text
+from deixis.report.grounding.ground import left_out_lines, violation_text
 from deixis.report.marks import doubt, violation
 
 MAX_LISTED = 12
@@ -196,8 +196,8 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     lines += [f"{word}." for word in learned.kept_names]
     if learned.doubtful:
         lines.append("Recorded as not decided, so no view was learned: " + ", ".join(learned.doubtful))
-    lines += [f"Left out: {left.name}: {left.reason}." for left in learned.grounding.unmatched_objects]
-    return lines
+    lines += left_out_lines(learned.grounding.unmatched_objects)
+    return lines + [f"Note: {note}." for note in learned.grounding.notes]
 
 
 def check_lines(checked: Check) -> list[str]:
@@ -230,22 +230,32 @@ def check_lines(checked: Check) -> list[str]:
         exchanged = f", where {entry.in_place_of} belongs" if entry.in_place_of else ""
         lines.append(violation(f"misplaced   {entry.role} ({entry.perceived}){exchanged}"))
         lines += [violation(f"            {violation_text(broken)}") for broken in entry.broken]
+    turned_by_claim = {turned.statement: entry for entry in table.turned for turned in entry.turned}
+    for entry in table.turned:
+        for turned in entry.turned:
+            lines.append(violation(f"turned      {entry.role} ({entry.perceived}): {turned.remedy}"))
+            place = f" ({turned.statement.source})" if turned.statement.source else ""
+            lines.append(violation(f"            {turned.statement}{place} does not hold"))
     blamed = {entry.role for entry in table.of(RoleVerdict.MISPLACED)}
     for broken in table.broken:
-        if not blamed & {broken.fact.subject, broken.fact.object}:
+        if not blamed & {broken.fact.subject, broken.fact.object} and broken.fact not in turned_by_claim:
             lines.append(violation(f"broken      {violation_text(broken)}"))
     for entry, other in table.miscoloured:
         seen = f"{other.seen.label}, not {other.described.label}"
         lines.append(violation(f"miscoloured {entry.role} ({entry.perceived}): {seen}"))
     lines += [violation(f"extra       {extra.perceived}: {extra.reason}") for extra in table.extra]
-    lines += [violation(f"broken      {_claim_text(entry)}") for entry in violated(table.claims)]
+    lines += [
+        violation(f"broken      {_claim_text(entry)}")
+        for entry in violated(table.claims)
+        if entry.claim not in turned_by_claim
+    ]
     lines += [violation(f"unexpected  {violation_text(entry)}") for entry in table.unexpected]
     hedged = (entry for entry in table.claims if entry.claim.weight < 1 and entry.verdict is ClaimVerdict.VIOLATED)
     lines += [violation(f"unexpected  {_claim_text(entry)}") for entry in hedged]
     unsure = (entry for entry in table.claims if entry.verdict is ClaimVerdict.UNDECIDABLE)
     lines += [doubt(f"unchecked   {_claim_text(entry)}") for entry in unsure]
     lines += [
-        doubt(f"undetermined {entry.role}: {entry.perceived}, {_known_by(entry)}")
+        doubt(f"undetermined {entry.role}: {entry.perceived} {_known_by(entry)}")
         for entry in table.of(RoleVerdict.UNDETERMINED)
     ]
     lines += [f"absent      {entry.role}, which is optional" for entry in table.of(RoleVerdict.ABSENT)]
@@ -262,10 +272,10 @@ def _known_by(entry: RoleCheck) -> str:
     from deixis.reasoning.comparison.checking import SURE_CONFIDENCE
 
     if entry.label is None or entry.confidence is None:
-        return "by its place alone"
+        return "lies in its place, but nothing shows what it is"
     if entry.confidence < SURE_CONFIDENCE:
-        return f"labelled '{entry.label}' with confidence {entry.confidence:.2f}, below {SURE_CONFIDENCE:g}"
-    return f"labelled '{entry.label}', which does not decide it"
+        return f"is labelled '{entry.label}' with confidence {entry.confidence:.3g}, below {SURE_CONFIDENCE:g}"
+    return f"is labelled '{entry.label}', which does not decide it"
 
 
 def stats_lines(counted: dict[str, Any], lessons: Sequence[str]) -> list[str]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from deixis.report.marks import doubt, violation
 
 if TYPE_CHECKING:
+    from deixis.reasoning.qualitative.networks.closure.rounds import Step
     from deixis.reasoning.qualitative.networks.network import Constraint, Network
-    from deixis.reasoning.qualitative.networks.rounds import Step
     from deixis.workflows.reasoning.solve import SolvedNetwork
 
 MAX_CONFLICT_LISTED = 50
@@ -99,7 +99,7 @@ def reason_lines(solved: SolvedNetwork, conflict: bool = True) -> Iterator[str]:
         elif solved.step is None:
             yield f"Nothing follows about {first} and {second}."
         else:
-            from deixis.reasoning.qualitative.networks.rounds import step_lines
+            from deixis.reasoning.qualitative.networks.closure.rounds import step_lines
 
             yield from step_lines(solved.step, solved.text.network)
 

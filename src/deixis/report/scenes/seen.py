@@ -147,7 +147,8 @@ def _distances_line(candidate: Candidate) -> str:
 def answer_words(answer: Recognition) -> str:
     """Return a label and its probability.
 
-    Without a label, return ``unknown`` with the probability of an unknown thing, then the most likely candidates.
+    Without a label, return what the thing may be, most probable first: its candidates, the first of them with a
+    question mark if it is more probable than ``unknown``, and ``unknown``, the case of no known category.
 
     Parameters
     ----------
@@ -157,11 +158,15 @@ def answer_words(answer: Recognition) -> str:
     Returns
     -------
     str
-        Label or ``unknown``, its probability, and at most :data:`MAX_NAMES` candidates.
+        Label and its probability, or at most :data:`MAX_NAMES` candidates and ``unknown`` with theirs.
     """
-    listed = [one for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
-    perhaps = "".join(f", {one.category} {one.probability:.2f}" for one in listed) if answer.label is None else ""
-    return f"{answer.label or 'unknown':<20} {answer.probability:.2f}{perhaps}"
+    if answer.label is not None or not answer.candidates:
+        return f"{answer.label or 'unknown':<20} {answer.probability:.2f}"
+    listed = [(one.probability, one.category) for one in answer.candidates[:MAX_NAMES] if one.probability >= MIN_LISTED]
+    ranked = sorted([*listed, (answer.unknown, "unknown")], key=lambda pair: -pair[0])
+    (probability, first), rest = ranked[0], ranked[1:]
+    name = first if first == "unknown" else f"{first}?"
+    return f"{name:<20} {probability:.2f}" + "".join(f", {other} {value:.2f}" for value, other in rest)
 
 
 def recognised_to_dict(found: Recognised) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import ClassVar
 
@@ -70,6 +70,7 @@ class Learner(Module):
         self._robot: Robot | None = None
         self._outbox = Outbox()
         self._handled: int | None = None
+        self._rest: list[Callable[[], None]] = []  # what is still to be done about the last change
         self._asked: Question | None = None
         self._announced: dict[str, Standing] = {}  # what was said about each expected object
         self._named: LayoutQuestion | None = None  # the question for a name that was asked
@@ -102,38 +103,46 @@ class Learner(Module):
         if change.after is None:
             return
         self._outbox.new_id(board)
-        if change.sequence != self._handled:  # else only what the robot says is still to be written
-            waiting, at = len(self._outbox), change.after.start.lower
+        fluent = change.after
+        if change.sequence != self._handled:  # else what was learned is kept, and only the rest comes again
+            self._rest = [lambda: self._react(change, fluent, board)]
+            self._handled = change.sequence
+        while self._rest:
+            step, waiting = self._rest.pop(0), len(self._outbox)
             try:
-                self._react(change, change.after, board)
+                step()
             except MemoryWriteError:
                 self._outbox.cut(waiting)
+                self._rest.insert(0, step)
                 raise  # the change comes again, until the disk has room
             except Exception as error:
                 reason = str(error) if isinstance(error, DeixisError) else f"{type(error).__name__}: {error}"
-                self._say(f"I could not use {change.after.statement}: {reason}", at, board)
-            self._handled = change.sequence
+                self._say(f"I could not use {fluent.statement}: {reason}", fluent.start.lower, board)
         self._outbox.flush(board)
+
+    def _then(self, *steps: Callable[[], None]) -> None:
+        """Do steps after what was learned; if the disk is full, they come again, and what was learned does not."""
+        self._rest.extend(steps)
 
     def _react(self, change: Logged, fluent: EpisodicFluent, board: Board) -> None:
         """Decide what follows from a change."""
         if self._robot is None:  # the memory is opened when it is first needed
             self._robot = Robot(self._memory, board)
-        said, at = fluent.statement, fluent.start.lower
-        if said.predicate == WATCHED:
+        statement, at = fluent.statement, fluent.start.lower
+        if statement.predicate == WATCHED:
             self.robot.watches(fluent.finish.lower)
             self._announce(fluent.finish.lower, board)
-        elif said.predicate == RECORDED and not fluent.is_open:
+        elif statement.predicate == RECORDED and not fluent.is_open:
             self._consolidate(fluent.finish.upper, board)
         if change.kind != "add":
             return
-        if said.predicate == TABLE and said.object is not None:
-            self._look(Path(said.object), at, board)
-        elif said.predicate == CALLED and said.object is not None:
-            self._shown(said.object, said.subject, fluent.source.by, at, board)
-        elif said.predicate == SAID and said.object is not None:
-            self._heard(said.object, fluent, board)
-        elif said.predicate == ENDED:
+        if statement.predicate == TABLE and statement.object is not None:
+            self._look(Path(statement.object), at, board)
+        elif statement.predicate == CALLED and statement.object is not None:
+            self._shown(statement.object, statement.subject, fluent, board)
+        elif statement.predicate == SAID and statement.object is not None:
+            self._heard(statement.object, fluent, board)
+        elif statement.predicate == ENDED:
             self._add((self.name, DONE, "story"), at, board)
 
     def _look(self, file: Path, at: float, board: Board) -> None:
@@ -164,7 +173,7 @@ class Learner(Module):
             if self._named is not None:
                 self._say(f"{self._named.text} {self._named.why}", at, board)
 
-    def _learned_name(self, text: str, by: str, at: float, board: Board) -> bool:
+    def _learned_name(self, text: str, by: str, at: float, board: Board, event: str | None) -> bool:
         """Take a text as the name that was asked for; return False if it is not an answer."""
         assert self._named is not None
         given = _NAME.fullmatch(text.strip())
@@ -172,7 +181,7 @@ class Learner(Module):
             return False
         question, name = self._named, given["name"]
         try:
-            lessons = self.robot.name_layout(question, name, by)
+            lessons = self.robot.name_layout(question, name, by, event)
         except MemoryWriteError:
             raise
         except DeixisError as error:
@@ -180,9 +189,9 @@ class Learner(Module):
             self._named = None
             return True
         self._named = None
-        told = f"Thank you: I know '{name}' from {len(lessons)} tables." if name else "I will not ask for it again."
-        self._say(told, at, board)
-        self._understand(board, at)
+        reply = f"Thank you: I know '{name}' from {len(lessons)} tables." if name else "I will not ask for it again."
+        self._say(reply, at, board)
+        self._then(lambda: self._understand(board, at))
         return True
 
     def _announce(self, at: float, board: Board) -> None:
@@ -197,22 +206,22 @@ class Learner(Module):
             else:
                 self._say(f"I do not see {spoken}: {one.reason}.", at, board)
 
-    def _shown(self, label: str, thing: str, by: str, at: float, board: Board) -> None:
+    def _shown(self, label: str, thing: str, fluent: EpisodicFluent, board: Board) -> None:
+        at = fluent.start.lower
         try:
-            self.robot.shown(label, thing, by, at)
+            self.robot.shown(label, thing, fluent.source.by, at, fluent.source.event)
         except MemoryWriteError:
             raise
         except DeixisError as error:
             self._say(f"I could not learn '{label}': {error}", at, board)
             return
-        self._understand(board, at)
-        self._say(f"I see: {thing} is a {label}.", at, board)
+        self._then(lambda: self._understand(board, at), lambda: self._say(f"I see: {thing} is a {label}.", at, board))
 
     def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
         by, at = fluent.source.by, fluent.start.lower
         names = named(text)[1] is not None
         answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or not names
-        if self._named is not None and answers and self._learned_name(text, by, at, board):
+        if self._named is not None and answers and self._learned_name(text, by, at, board, fluent.source.event):
             return
         if names:
             return  # the senses say which thing it names
@@ -225,21 +234,24 @@ class Learner(Module):
         if self._asked is not None and self._settled(text, by, at, board):
             return
         try:
-            told = self.robot.told(text, by, at, fluent.source.event)
+            result = self.robot.told(text, by, at, fluent.source.event)
         except MemoryWriteError:
             raise
         except DeixisError as error:
             seen = self.robot.sees_a_table
             self._say(f"I did not understand: {str(error).splitlines()[0]}" if seen else NOT_SEEN, at, board)
             return
-        if isinstance(told, Told):
-            taught = _listed(told.taught) or "nothing new"
-            waiting = f" I am not sure yet about: {_listed(told.waiting)}." if told.waiting else ""
-            self._understand(board, at)
-            self._say(f"I learned how '{told.lesson.layout}' is laid. I know now: {taught}.{waiting}", at, board)
-            self._ask(at, board)
+        if isinstance(result, Told):
+            taught = _listed(result.taught) or "nothing new"
+            waiting = f" I am not sure yet about: {_listed(result.waiting)}." if result.waiting else ""
+            learned = f"I learned how '{result.lesson.layout}' is laid. I know now: {taught}.{waiting}"
+            self._then(
+                lambda: self._understand(board, at),
+                lambda: self._say(learned, at, board),
+                lambda: self._ask(at, board),
+            )
             return
-        if left := [one.name for one in told if one.standing is Standing.EXPECTED]:
+        if left := [one.name for one in result if one.standing is Standing.EXPECTED]:
             self._say(f"I do not see it yet; I expect: {_listed(left)}.", at, board)
         self._announce(at, board)
 
@@ -260,9 +272,12 @@ class Learner(Module):
         self.robot.answers(question, given, by)
         self._asked = None
         name = question.role.replace("_", " ")
-        self._understand(board, at)
-        self._say(f"Thank you: {given} is the {name}." if given else f"Then the {name} is not here.", at, board)
-        self._ask(at, board)
+        answer = f"Thank you: {given} is the {name}." if given else f"Then the {name} is not here."
+        self._then(
+            lambda: self._understand(board, at),
+            lambda: self._say(answer, at, board),
+            lambda: self._ask(at, board),
+        )
         return True
 
     def _answer(self, question: str, by: str, at: float, board: Board) -> str:

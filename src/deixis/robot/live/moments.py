@@ -68,19 +68,19 @@ def key_moments(board: Blackboard, began: float) -> tuple[Moment, ...]:
     tuple of Moment
         The moments in the order of time.
     """
-    told = [each for each in board.holding(start=began) if each.start.lower >= began - LATER]
-    times = sorted({each.start.lower for each in told if each.statement.predicate in (SAID, TABLE)})
+    fluents = [each for each in board.holding(start=began) if each.start.lower >= began - LATER]
+    times = sorted({each.start.lower for each in fluents if each.statement.predicate in (SAID, TABLE)})
     found: list[Moment] = []
     for at in times:
         before = found[-1].things if found else {}
-        moment = _moment(board, told, at, began, before)
+        moment = _moment(board, fluents, at, began, before)
         if moment.said or moment.things != before:
             found.append(moment)
     return tuple(found)
 
 
 def _moment(
-    board: Blackboard, told: Sequence[EpisodicFluent], at: float, began: float, before: Mapping[str, str | None]
+    board: Blackboard, fluents: Sequence[EpisodicFluent], at: float, began: float, before: Mapping[str, str | None]
 ) -> Moment:
     def holding(predicate: str) -> list[EpisodicFluent]:
         found = board.holding(Pattern(predicate=predicate), at + LATER, at + LATER)
@@ -88,14 +88,14 @@ def _moment(
 
     names = {each.statement.subject: each.statement.object for each in holding(IS_A)}
     things = {each.statement.subject: names.get(each.statement.subject) for each in holding(AT)}
-    looks = [each for each in told if each.statement.predicate == TABLE and each.start.lower <= at + LATER]
-    spoken = [each for each in told if each.statement.predicate in (SAID, SAYS, NOTICED) and each.start.lower == at]
+    looks = [each for each in fluents if each.statement.predicate == TABLE and each.start.lower <= at + LATER]
+    spoken = [each for each in fluents if each.statement.predicate in (SAID, SAYS, NOTICED) and each.start.lower == at]
     words = [each for each in spoken if each.statement.predicate == SAID]
     end = max((each.finish.upper for each in words), default=at)
     aims = board.holding(Pattern(predicate=POINTED_AT), at - SAME_MOMENT, end + SAME_MOMENT) if words else ()
     named = frozenset(
         each.statement.subject
-        for each in told
+        for each in fluents
         if each.statement.predicate in (CALLED, NOT_CALLED) and each.start.lower == at
     )
     who = {SAYS: "robot", NOTICED: "note"}

@@ -121,11 +121,11 @@ class LiveRobot:
         speaker
             Name of the person.
         """
-        said = Utterance(text, 0.0, speaker=speaker)  # checked here, so that the caller gets the error
+        utterance = Utterance(text, 0.0, speaker=speaker)  # checked here, so that the caller gets the error
         by, at = printed_line(speaker), self.board.seconds()
         typed = episodic(
             self.board.new_id("f"),
-            (by, TYPED, printed_line(said.text, MAX_CHARACTERS)),
+            (by, TYPED, printed_line(utterance.text, MAX_CHARACTERS)),
             start=at,
             source=Source(Origin.SAID, by),
         )
@@ -228,11 +228,11 @@ def live_robot(
 
 def _line(fluent: EpisodicFluent) -> str | None:
     """Return what a fluent says as a line of the conversation; None if it is not a part of it."""
-    said = fluent.statement
-    who = {SAID: said.subject, SAYS: "robot", NOTICED: "note"}.get(said.predicate)
-    if said.predicate == DROPPED:
-        return f"note: {said.object} frames came too late and were left out"
-    return None if who is None else f"{who}: {said.object}"
+    statement = fluent.statement
+    who = {SAID: statement.subject, SAYS: "robot", NOTICED: "note"}.get(statement.predicate)
+    if statement.predicate == DROPPED:
+        return f"note: {statement.object} frames came too late and were left out"
+    return None if who is None else f"{who}: {statement.object}"
 
 
 def _end_earlier(board: Blackboard) -> None:

@@ -226,10 +226,10 @@ class _Writer:
     def hear(self, typed: EpisodicFluent, at_once: bool = False) -> None:
         """Take in typed words, which are said at the present time of the story."""
         self._begin()
-        said = Utterance(
+        utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
         )
-        self._waiting.append((said, typed.id))
+        self._waiting.append((utterance, typed.id))
         if at_once:
             self._hear(math.inf)
         self.flush()
@@ -314,8 +314,8 @@ class _Writer:
         """Write that the story has ended, once."""
         if not self.ended:
             self.ended = True
-            said = ("story", ENDED) if reason is None else ("story", ENDED, reason)
-            self._outbox.add(self._add(said, self._at, Source(Origin.SEEN, "senses")))
+            statement = ("story", ENDED) if reason is None else ("story", ENDED, reason)
+            self._outbox.add(self._add(statement, self._at, Source(Origin.SEEN, "senses")))
         self.flush()
 
     def _note(self, about: str, text: str) -> None:
@@ -498,39 +498,40 @@ class _Writer:
     def _hear(self, now: float) -> None:
         """Write the words of which the moment, in which people may still point, has passed."""
         while self._waiting and now > self._waiting[0][0].end + SAME_MOMENT + STILL:
-            said, typed = self._waiting.pop(0)
-            self._attempt(
-                partial(self._write_said, _printable(said)), f"what was said at {said.at:g} s could not be used"
-            )
+            utterance, typed = self._waiting.pop(0)
+            failure = f"the utterance at {utterance.at:g} s could not be used"
+            self._attempt(partial(self._write_utterance, _printable(utterance)), failure)
             if typed is not None:
-                self._outbox.add(Finish(typed, max(self._board.seconds(), self._time(said.at))))
+                self._outbox.add(Finish(typed, max(self._board.seconds(), self._time(utterance.at))))
 
-    def _write_said(self, said: Utterance) -> None:
+    def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and what they name."""
-        source = Source(Origin.SAID, said.speaker, f"words at {said.at:.1f} s")
-        finish = said.end if said.end > said.at else said.at + MOMENT
-        self._outbox.add(
-            self._add((said.speaker, SAID, said.text), said.at, source, max(said.confidence, 0.01), finish)
-        )
+        source = Source(Origin.SAID, utterance.speaker, f"words at {utterance.at:.1f} s")
+        finish = utterance.end if utterance.end > utterance.at else utterance.at + MOMENT
+        statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
+        self._outbox.add(self._add(statement, utterance.at, source, certainty, finish))
         shown = replace(source, origin=Origin.SHOWN)
-        for label in self._labels(said):
+        for label in self._labels(utterance):
             if label.target is not None and label.refused is None and label.name is not None:
                 what = (label.target, CALLED if label.positive else NOT_CALLED, label.name)
-                self._outbox.add(self._add(what, said.at, shown, label.probability))
+                self._outbox.add(self._add(what, utterance.at, shown, label.probability))
             elif label.name is not None and label.refused is not None:
                 noticed = f"'{label.name}' was not learned: {label.refused}. {label.question or ''}".strip()
-                self._outbox.add(self._add((said.speaker, NOTICED, noticed), said.at, shown))
+                self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
 
-    def _labels(self, said: Utterance) -> Sequence[PointedLabel]:
+    def _labels(self, utterance: Utterance) -> Sequence[PointedLabel]:
         """Return what words name: the thing whose id they have (*t3 is a fork*), or what is pointed at meanwhile."""
+        thing, name = named(utterance.text)
+        if name is not None and (thing is not None or not self._things.objects):
+            label = PointedLabel(utterance, name.name, name.positive, thing, utterance.confidence)
+            if thing in self._things.ids:
+                return (label,)
+            table = "no table was seen yet" if self._situation.frame is None else "nothing is on the table"
+            why = f"there is no {thing} on the table" if thing is not None and self._things.objects else table
+            return (replace(label, refused=why),)
         if not self._things.objects:
             return ()
-        thing, name = named(said.text)
-        if thing is not None and name is not None:
-            label = PointedLabel(said, name.name, name.positive, thing, said.confidence)
-            known = thing in self._things.ids
-            return (label if known else replace(label, refused=f"there is no {thing} on the table"),)
-        return taught_labels([pointed_label(said, tuple(self._pointings), self._things)], self._things)[0]
+        return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
 
     # ---- writing
 
@@ -571,9 +572,10 @@ def _states(situation: Situation) -> tuple[tuple[str, float, str], ...]:
     return tuple((thing.id, thing.since, thing.state) for thing in situation.things)
 
 
-def _printable(said: Utterance) -> Utterance:
+def _printable(utterance: Utterance) -> Utterance:
     """Return words with the characters that the blackboard keeps."""
-    return replace(said, text=printed_line(said.text, MAX_CHARACTERS), speaker=printed_line(said.speaker))
+    text, speaker = printed_line(utterance.text, MAX_CHARACTERS), printed_line(utterance.speaker)
+    return replace(utterance, text=text, speaker=speaker)
 
 
 def _reason(error: Exception) -> str:

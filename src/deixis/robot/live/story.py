@@ -28,7 +28,7 @@ from deixis.robot.modules import made
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.perception.simulator.camera import Camera
+    from deixis.perception.simulator.cameras.camera import Camera
     from deixis.perception.simulator.laying import LaidThing
 
 Event = Frame | Skeleton | Utterance
@@ -157,7 +157,7 @@ class StorySettings:
         else:
             found = recorded_story(self.source, self.intrinsics, self.grows)
         if self.words is not None:
-            words = sorted((*found.words, *read_utterances(self.words)), key=lambda said: said.at)
+            words = sorted((*found.words, *read_utterances(self.words)), key=lambda utterance: utterance.at)
             found = replace(found, words=tuple(words))
         if not (self.live or self.grows or driver):
             return found
@@ -262,9 +262,9 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     SimulationError
         If no table can be laid as the script says.
     """
-    from deixis.perception.simulator.camera import chair_camera
+    from deixis.perception.simulator.cameras.camera import chair_camera
+    from deixis.perception.simulator.films.motion import Bring, Rest, Stage
     from deixis.perception.simulator.laying import LaidTable, top_under, truth_scene
-    from deixis.perception.simulator.motion import Bring, Rest, Stage
     from deixis.perception.simulator.teacher import Teacher
     from deixis.workflows.descriptions.tell import tell
     from deixis.workflows.layouts.lay_table import lay_script

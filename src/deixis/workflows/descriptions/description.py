@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from deixis.grammar.english.entities import plain_noun
+from deixis.grammar.english.discourse.entities import plain_noun
 from deixis.grammar.english.tree import Adjective, NounPhrase, Predicate, Sentence, Viewpoint
-from deixis.grammar.english.words import ORDINALS
+from deixis.grammar.english.vocabulary.function_words import ORDINALS
 from deixis.reasoning.grounding.reference.query import Description, Person, Property, Query, Relation, Viewer
 
 SURROUNDINGS = frozenset(

@@ -12,12 +12,13 @@ import numpy as np
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.english.telling import MAX_NUMBERED, Designation, ToldSentence
-from deixis.grammar.english.wording import relation_words
+from deixis.grammar.english.telling.telling import MAX_NUMBERED, Designation, ToldSentence
+from deixis.grammar.english.telling.wording import relation_words
 from deixis.grammar.reading import StatedFact
 from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.reasoning.grounding.evidence.aims import stated_direction
 from deixis.reasoning.grounding.evidence.colours import colour_terms
 from deixis.reasoning.grounding.reference.expressions import (
     Attributes,
@@ -178,10 +179,26 @@ def _sentences(
     for i in order:
         for word, mark in descriptions[i].relations:
             stated.append(Fact(scene.ids[i], (ontology.relations[word],), scene.ids[mark]))
+        stated += _directions(scene, i)
     facts = [StatedFact(content, 0, (0, 0)) for content in stated]
     names = {name: "_".join([*d.words.split(), *([str(d.number)] if d.number else [])]) for name, d in words.items()}
     plan = Plan(facts, words, "table", ontology, names)
     return plan, plan.readable(deadline)
+
+
+MAX_OFF_DIRECTION = np.pi / 6
+"""Maximum angle in radians between the direction of a thing and the word that is said of it."""
+
+
+def _directions(scene: Scene, i: int) -> Iterator[Claim]:
+    """Yield in which direction a thing points, if a heading shows that and a word says it well."""
+    thing, poses = scene.objects[i], scene.poses
+    if thing.heading is None or poses is None:
+        return
+    for value in ("left", "right", "away", "viewer"):
+        wanted = stated_direction(value)
+        if wanted is not None and poses.aim_angles(wanted)[i] <= MAX_OFF_DIRECTION:
+            yield Claim("pointing", (thing.id,), value=value)
 
 
 # Whether it finds the objects -----------------------------------------------------------------------------------------
@@ -207,11 +224,11 @@ def _rivals(
     except DeixisError:
         return found
     assert script.reading is not None
-    meant = plan.names_read(script.reading)
+    object_of_name = plan.names_read(script.reading)
     place = {name: i for i, name in enumerate(scene.ids)}
     for name, match in grounding.matches.items():
-        if name in meant:
-            i = place[meant[name]]
+        if name in object_of_name:
+            i = place[object_of_name[name]]
             taken = {match.perceived, *(() if match.decided else match.could_be)}
             found[i] = tuple(place[other] for other in taken if place[other] != i) or found[i] * (not match.decided)
     return found

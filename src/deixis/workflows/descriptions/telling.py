@@ -10,8 +10,8 @@ from typing import Any
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
-from deixis.grammar.english.telling import MAX_NUMBERED, Designation, ToldSentence, tell_facts
-from deixis.grammar.english.words import adjectives
+from deixis.grammar.english.telling.telling import MAX_NUMBERED, Designation, ToldSentence, tell_facts
+from deixis.grammar.english.vocabulary.adjectives import adjectives
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.reading import Reading, StatedFact, joined_choices
 from deixis.ontology.claims import Claim
@@ -304,9 +304,9 @@ class Plan:
         if len(starts) != len(sentences):
             return set(range(len(self.facts)))
         for number, sentence in enumerate(sentences):
-            meant = {part: i for i in sentence.facts for part in _parts(self.facts[i], {})}
+            intended = {part: i for i in sentence.facts for part in _parts(self.facts[i], {})}
             got = read.get(number, set())
-            if not set(meant) <= got or any(part not in meant and not self._is_of_a_name(part) for part in got):
+            if not set(intended) <= got or any(part not in intended and not self._is_of_a_name(part) for part in got):
                 wrong.update(sentence.facts)
         return wrong
 

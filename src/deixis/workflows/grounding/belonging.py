@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
-from deixis.grammar.format import layout_script
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.format import layout_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.workflows.layouts.imagine import imagine
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 TIME_LIMIT = 2.0
 """Seconds for the example table that distances are taken from."""
+
+MAX_PUSHES = 12
+"""Maximum number of moves that free a place from the places of other objects."""
 
 Box = NDArray[np.float64]
 """A box from above, shape (2, 2): least corner, greatest corner, in the scene's unit."""
@@ -29,7 +32,9 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
 
     Two objects that changed places belong in each other's. Every other place is taken from an example table that
     satisfies the layout: the object keeps its distances there to the objects that the layout relates it to, as far as
-    these are in place or their own places are known, and the median over them is taken.
+    these are in place or their own places are known, and the median over them is taken; only those that it lies on or
+    in count, if there are any. A place moves aside if it overlaps that of an object from which it is apart in the
+    example.
 
     Parameters
     ----------
@@ -71,12 +76,52 @@ def places_of(checked: Check, time_limit: float = TIME_LIMIT) -> dict[str, Box]:
         if name not in example:
             continue
         neighbours = [other for other in shared if other in related.get(name, ())] or shared
+        neighbours = [other for other in neighbours if _contains(example[other], example[name])] or neighbours
         own = roles[name].perceived
         size = np.ptp(boxes[own], axis=0) if own is not None else scale * np.ptp(example[name], axis=0)
         centres = [_beside(anchors[other], example[other], example[name], size, scale) for other in neighbours]
         centre = np.median(centres, axis=0)
-        found[name] = np.stack([centre - size / 2, centre + size / 2])
+        box = np.stack([centre - size / 2, centre + size / 2])
+        places = in_place | found
+        found[name] = _cleared(
+            box, example[name], [(places[other], example[other]) for other in places if other in example]
+        )
     return found
+
+
+def _cleared(box: Box, example: Box, others: Sequence[tuple[Box, Box]]) -> Box:
+    """Return a box moved away from the places of others that it overlaps and that it is apart from in the example.
+
+    ``others`` are places with their boxes in the example. The box moves in the direction in which the example has it
+    beside the other, along the axis that takes the shorter way. It stays where it was if no such way is found.
+    """
+    apart = [(place, other) for place, other in others if not _overlap(example, other)]
+    moved = box
+    for _ in range(MAX_PUSHES):
+        hit = next(((place, other) for place, other in apart if _overlap(moved, place)), None)
+        if hit is None:
+            return moved
+        place, other = hit
+        ways: list[NDArray[np.float64]] = []
+        for axis in (0, 1):
+            way = np.zeros(2)
+            if example[0, axis] >= other[1, axis]:
+                way[axis] = place[1, axis] - moved[0, axis]
+            elif example[1, axis] <= other[0, axis]:
+                way[axis] = place[0, axis] - moved[1, axis]
+            else:
+                continue
+            ways.append(1.02 * way)
+        moved = moved + min(ways, key=lambda way: float(np.abs(way).sum()))
+    return box
+
+
+def _contains(outer: Box, inner: Box) -> bool:
+    return bool((outer[0] <= inner[0]).all() and (inner[1] <= outer[1]).all())
+
+
+def _overlap(first: Box, second: Box) -> bool:
+    return bool((np.minimum(first[1], second[1]) > np.maximum(first[0], second[0])).all())
 
 
 def _example(checked: Check, time_limit: float) -> Mapping[str, Box]:

@@ -17,6 +17,7 @@ from deixis.learning.scene_evidence import (
     graph_evidence,
     scene_labels,
     surface_thing,
+    unit_notes,
     viewpoint_notes,
 )
 from deixis.ontology.tbox import default_ontology
@@ -50,6 +51,8 @@ class Check(Answer):
     (True, "of 'formal_dinner': nothing wrong, 12 undetermined")
     >>> found.to_text().splitlines()[-1]
     'correct     0 of 12'
+    >>> found.conforms, found.report.count("sh:ValidationResult")
+    (True, 0)
     """
 
     layout: LayoutConcept
@@ -143,8 +146,10 @@ def check(
     # a check takes labels as identities
     evidence = graph_evidence(graph, scene, known, meaning, label_error=0.0, claims=concept.claims)
     evidence = evidence.with_surface(surface_thing(concept.surface, graph, scene, known.kinds))
-    evidence = replace(evidence, consistent=implied.consistent)
-    notes = viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
+    groups = tuple(role.name for role in concept.roles if role.is_group)
+    evidence = replace(evidence, consistent=implied.consistent, uncounted=groups)
+    notes = unit_notes(scene, [role.name for role in concept.roles], known)
+    notes += viewpoint_notes(concept.viewpoint, scene) + conflict_notes(find_conflict(implied))
     labels, engine = scene_labels(scene), engine_named("exact", sides=AS_IT_STANDS)
     table = checked_table(evidence, labels, known.kinds, engine, time_limit, scene.colours, known.colours)
     found = table.grounding

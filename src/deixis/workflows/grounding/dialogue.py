@@ -294,10 +294,10 @@ def _listed(id: str, situation: Situation) -> str:
 
 def _allowed(question: Question, situation: Situation) -> dict[str, str]:
     """Return the meaning of each text that can be typed; the id of a thing takes precedence over an equal word."""
-    meant = [DONT_KNOW] if question.kind is QuestionKind.POINTING else [YES, NO, DONT_KNOW]
+    meanings = [DONT_KNOW] if question.kind is QuestionKind.POINTING else [YES, NO, DONT_KNOW]
     if question.kind is QuestionKind.POINTING or _may_be_absent(question):
-        meant.append(ABSENT)
-    allowed = {word: meaning for meaning in meant for word in _WORDS[meaning]}
+        meanings.append(ABSENT)
+    allowed = {word: meaning for meaning in meanings for word in _WORDS[meaning]}
     if question.kind is QuestionKind.POINTING:
         allowed |= {id: id for id in situation.things}
     return allowed

@@ -382,7 +382,8 @@ def answer(request: GroundingRequest, stage: Stage = lambda _: nullcontext()) ->
     from deixis.workflows.grounding.viewpoint import ground_from_sides, recover_scene
 
     deadline, contradiction = request.due, _contradiction(request)
-    notes = viewpoint_notes(request.script.viewpoint, request.scene) + unit_notes(request.script, request.scene)
+    notes = unit_notes(request.scene, request.script.objects, request.script.ontology)
+    notes += viewpoint_notes(request.script.viewpoint, request.scene)
     stated = request.scene.from_viewer()
     side = None
     if request.viewpoint != ViewpointName.STATED:

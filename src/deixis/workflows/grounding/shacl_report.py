@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 
 import pyoxigraph as ox
 
+from deixis.ontology.claims import Claim
 from deixis.ontology.lessons.shapes import layout_shapes, scene_data
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.relation import Relation, Relations
@@ -44,11 +46,11 @@ def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relatio
     fills = {entry.perceived: entry.role for entry in check.roles if entry.perceived is not None}
     related = satisfied_relations(layout, scene, fills, relations)
     coloured = {entry.perceived: other.seen.iri for entry, other in check.miscoloured if entry.perceived is not None}
-    decided = {
-        entry.claim: entry.verdict is ClaimVerdict.SATISFIED
-        for entry in check.claims
-        if entry.verdict not in (ClaimVerdict.UNDECIDABLE, ClaimVerdict.OPEN)
-    }
+    decided: dict[Claim, bool] = {}
+    for outcome in check.claims:
+        if outcome.verdict not in (ClaimVerdict.UNDECIDABLE, ClaimVerdict.OPEN):
+            held_so_far = decided.get(outcome.claim, True)
+            decided[outcome.claim] = held_so_far and outcome.verdict is ClaimVerdict.SATISFIED
     held = {position: decided[claim] for position, claim in enumerate(layout.claims, 1) if claim in decided}
     things = tuple(id for id in scene.ids if id != check.surface)
     data = scene_data(layout, things, fills, related, coloured, held)
@@ -69,7 +71,8 @@ def satisfied_relations(
 ) -> Iterator[tuple[str, Relation, str]]:
     """Yield each relation that a fact of the layout names and that holds between the things in its roles.
 
-    A word that only a model decides holds from a degree of one half on, by the shipped models.
+    A word that only a model decides holds from a degree of one half on, by the shipped models. A direction that the
+    scene does not show holds as it is stated, so that it is not reported.
 
     Parameters
     ----------
@@ -87,18 +90,23 @@ def satisfied_relations(
     tuple
         Id of the subject, relation, and id of the object.
     """
-    thing = {role: id for id, role in fills.items()}
+    things: dict[str, list[str]] = {}
+    for id, role in fills.items():
+        things.setdefault(role, []).append(id)
     seen, position = scene.relations(relations), {id: i for i, id in enumerate(scene.ids)}
-    degrees = None if seen.boxes is None else WordDegrees(pair_geometry(seen.boxes), shipped_models())
+    degrees = None if seen.boxes is None else WordDegrees(pair_geometry(seen.boxes, scene.poses), shipped_models())
     for fact in layout.facts:
-        subject, object = thing.get(fact.subject), thing.get(fact.object)
-        if subject is None or object is None:
-            continue
-        pair = position[subject], position[object]
-        for relation in fact.relations:
+        pairs = product(things.get(fact.subject, ()), things.get(fact.object, ()), fact.relations)
+        for subject, object, relation in pairs:
+            if subject == object:
+                continue
+            pair = position[subject], position[object]
             if relation.by_model:
                 held = degrees is None or bool(degrees.of(relation)[pair] >= HELD_FROM)
+                if degrees is not None and degrees.undecided(relation.word)[pair]:
+                    held = fact.positive
             else:
                 held = bool(relations.degrees[relation.index, seen.names[pair]] > 0)
+                held = held or (degrees is not None and bool(degrees.held_by_front(relation.word)[pair]))
             if held:
                 yield subject, relation, object

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -30,9 +31,10 @@ from deixis.reasoning.temporal.timeline import Timeline
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.ontology.lessons.types import LayoutConcept
+    from deixis.memory.journal import Part
+    from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.perception.scene import Scene
-    from deixis.workflows.knowledge.learn import Learned
+    from deixis.workflows.knowledge.learn import Learned, Recording
 
 MAX_SITUATIONS = 200
 """Maximum number of situations of an aggregate whose spatial consistency is checked."""
@@ -65,6 +67,10 @@ class _Board(Holding, Protocol):
         """Write changes as one."""
         ...
 
+    def part(self, *changes: Change) -> Part:
+        """Return changes as a part of a write over several stores."""
+        ...
+
 
 _Episodes = Blackboard | _Board
 
@@ -77,8 +83,14 @@ class _Learner(Protocol):
         """Words that scripts may use."""
         ...
 
-    def learn(self, script: Script, scene: Scene) -> Learned:
+    def learn(
+        self, script: Script, scene: Scene, *, events: Sequence[str] = (), episodes: Recording | None = None
+    ) -> Learned:
         """Ground a script in a scene, and keep the layout and the look of its objects."""
+        ...
+
+    def lessons_of_events(self) -> dict[str, str]:
+        """Return the lessons that sentences taught, by their events."""
         ...
 
     def remembers(self) -> bool:
@@ -438,18 +450,6 @@ def _box(text: str) -> tuple[float, ...] | None:
     return tuple(corners.ravel().tolist()) if fits else None
 
 
-def _understood(sentences: Sequence[str], session: _Learner) -> Script:
-    """Return the script that words state, in the layout language or else in English."""
-    from deixis.grammar.errors import ScriptError
-    from deixis.workflows.layouts.read import read_script
-
-    text = "\n".join(sentences)
-    try:
-        return read_script(text=text, ontology=session.ontology)
-    except ScriptError:
-        return read_script(text=text, ontology=session.ontology, english=True)
-
-
 @dataclass(frozen=True)
 class Consolidation:
     """Lessons learned from experiences by their names, and why other experiences taught nothing."""
@@ -522,41 +522,57 @@ def consolidate(
             f for f in fluents if f.statement.predicate == "said" and f.start.lower >= each.start
         ]
         scene = scene_of(fluents, last)
-        taught = next((f.source.event for f in words if f.source.event in known), None)
+        lesson_of_event = {**session.lessons_of_events(), **dict(zip(known, known, strict=True))}
+        taught = next((lesson_of_event[f.source.event] for f in words if f.source.event in lesson_of_event), None)
         if taught is None:
             if not words or scene is None:
                 left_out[each.name] = "nothing was said in it" if not words else "no thing has a place in it"
                 if scene is not None and undescribed is not None:
                     undescribed(scene)
-                    _mark(board, each, "", by)
+                    _write(board, _mark(board, each, None, by), by)
                 continue
             try:
-                taught = _learned(each, [str(f.statement.object) for f in words], scene, session)
+                taught = _learned(each, words, scene, session, partial(_marked, board, each, by))
             except DeixisError as error:
                 left_out[each.name] = str(error).splitlines()[0]
                 continue
+        else:
+            _write(board, _mark(board, each, taught, by), by)
         lessons[each.name] = taught
-        _mark(board, each, taught, by)
     return Consolidation(lessons, left_out)
 
 
-def _learned(experience: Experience, said: Sequence[str], scene: Scene, session: _Learner) -> str:
+def _learned(
+    experience: Experience, words: Sequence[EpisodicFluent], scene: Scene, session: _Learner, episodes: Recording
+) -> str:
     """Learn the layout that words describe from a table, and return the id of the lesson."""
-    name, rest = named_layout("\n".join(said))
-    script = _understood([rest], session)
+    from deixis.workflows.layouts.read import read_layout_or_english
+
+    name, rest = named_layout("\n".join(str(each.statement.object) for each in words))
+    script = read_layout_or_english(rest, session.ontology)
     if own := script.name or name:
         script = replace(script, name=own)
     else:
         script = replace(script, name=re.sub(r"\W+", "_", experience.name), title=experience.name)
-    return session.learn(script, scene).lesson.id
+    events = list(dict.fromkeys(each.source.event for each in words if each.source.event is not None))
+    return session.learn(script, scene, events=events, episodes=episodes).lesson.id
 
 
-def _mark(board: _Episodes, experience: Experience, lesson: str, by: str) -> None:
-    """Write that an experience was consolidated, and which lesson it taught."""
+def _marked(board: _Episodes, experience: Experience, by: str, lessons: Sequence[Lesson]) -> Part:
+    """Return what the blackboard says of the lesson of an experience, as a part of its write."""
+    mark = _mark(board, experience, lessons[0].id, by)
+    return board.part(mark, by=by) if isinstance(board, Blackboard) else board.part(mark)
+
+
+def _write(board: _Episodes, change: Change, by: str) -> None:
+    board.write(change, by=by) if isinstance(board, Blackboard) else board.write(change)
+
+
+def _mark(board: _Episodes, experience: Experience, lesson: str | None, by: str) -> Change:
+    """Return the change that says that an experience was consolidated, and which lesson it taught."""
     source = Source(Origin.INFERRED, by, experience.id)
-    statement = (experience.name, CONSOLIDATED, lesson or None)
-    marker = Add(episodic(board.new_id("c"), statement, start=experience.finish, source=source))
-    board.write(marker, by=by) if isinstance(board, Blackboard) else board.write(marker)
+    statement = (experience.name, CONSOLIDATED, lesson)
+    return Add(episodic(board.new_id("c"), statement, start=experience.finish, source=source))
 
 
 def consolidate_in_background(

@@ -23,8 +23,13 @@ from deixis.workflows.scenes.views_of_lessons import keep_lessons
 
 if TYPE_CHECKING:
     from deixis.learning.views import KeptName, Taught
+    from deixis.memory.journal import Part
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson
+
+
+Recording = Callable[["Sequence[Lesson]"], "Part | None"]
+"""A function that returns what the blackboard says of new lessons: the part of the episodes in the write of these."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class Learned:
     @property
     def categories(self) -> tuple[str, ...]:
         """The objects whose category it taught."""
-        return tuple(match.object for match in self.lesson.categories())
+        return tuple(dict.fromkeys(self.lesson.category_of(match) for match in self.lesson.categories()))
 
     @property
     def doubtful(self) -> tuple[str, ...]:
@@ -55,6 +60,8 @@ def learn(
     time_limit: float = DEFAULT_TIME_LIMIT,
     progress: Callable[[int, int], None] | None = None,
     teacher: str = ANONYMOUS,
+    events: Sequence[str] = (),
+    episodes: Recording | None = None,
 ) -> tuple[Learned, ...]:
     """Ground scripts, each in its scene, and keep the layouts and what their objects look like: all of them, or none.
 
@@ -78,6 +85,10 @@ def learn(
         Called with the number of grounded examples and of all.
     teacher
         Name of the person who teaches.
+    events
+        Ids in the episodes of what the teacher said.
+    episodes
+        Function that returns what the blackboard says of the lessons, which is written in the same step.
 
     Returns
     -------
@@ -98,7 +109,7 @@ def learn(
     taken: set[str] = set()
     learned = []
     for done, (script, scene) in enumerate(pairs, 1):
-        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken, teacher))
+        learned.append(_lesson(script, scene, knowledge, engine, time_limit, taken, teacher, events))
         if progress is not None:
             progress(done, len(pairs))
     if not learned:
@@ -106,7 +117,9 @@ def learn(
     groups = [views.except_taught(seen) for _, seen in learned]
     new_views = {one.lesson.id: new for (one, _), (new, _) in zip(learned, groups, strict=True)}
     named = {one.lesson.id: seen for one, seen in learned}
-    found, left = [], list(keep_lessons([one.lesson for one, _ in learned], new_views, knowledge, views, named))
+    lessons = [one.lesson for one, _ in learned]
+    part = None if episodes is None else episodes(lessons)
+    found, left = [], list(keep_lessons(lessons, new_views, knowledge, views, named, part))
     for (one, _), (new, kept) in zip(learned, groups, strict=True):
         found.append(replace(one, seen=tuple(left[: len(new)]), kept_names=kept))
         del left[: len(new)]
@@ -121,6 +134,7 @@ def _lesson(
     time_limit: float,
     taken: set[str],
     teacher: str,
+    events: Sequence[str],
 ) -> tuple[Learned, list[View]]:
     """Return the lesson that a script and a scene are, not kept yet, and its views; put its id among those taken."""
     from deixis.learning.lesson import Occasion, layout_name, lesson_of
@@ -140,5 +154,7 @@ def _lesson(
     knows = knowledge.memory().knows if knowledge.exists() else lambda name: False
     lesson_id = next_lesson_id(layout_name(script), lambda name: name in taken or knows(name))
     taken.add(lesson_id)
-    lesson = lesson_of(script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION, teacher))
-    return Learned(lesson, found), views_of_matches(scene, lesson.matches)
+    lesson = lesson_of(
+        script, scene, found, lesson_id, Occasion(started, datetime.now(UTC), VERSION, teacher, tuple(events))
+    )
+    return Learned(lesson, found), views_of_matches(scene, lesson.matches, lesson.category_of)

@@ -76,6 +76,21 @@ class Recall(Answer):
     ``facts`` are the fluents that answer it, in order of time. ``known`` is False if nothing recorded answers it, and
     ``reason`` then says why. ``answer`` is a sentence, ``search`` finds the facts, ``asked`` is the time of asking, and
     ``origin`` the time from which fluents count seconds.
+
+    Examples
+    --------
+    >>> from deixis.memory.episodes.blackboard import Blackboard
+    >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+    >>> board, seen = Blackboard.transient(datetime(2026, 5, 1, 12, tzinfo=UTC)), Source(Origin.SEEN, "tracker")
+    >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
+    >>> for fact in facts:
+    ...     number = board.add(episodic(board.new_id("f"), fact, start=60.0, source=seen), by="tracker")
+    >>> found = recall("where is the fork?", board, 3600.0)
+    >>> found.known, [str(fact.fluent.statement) for fact in found.facts]
+    (True, ['left(t1, t2)'])
+    >>> found.moment(60.0) == datetime(2026, 5, 1, 12, 1, tzinfo=UTC)
+    True
+    >>> board.close()
     """
 
     question: RecallQuestion
@@ -323,17 +338,17 @@ class _Remembering:
         edge = Edge.FINISHES if event is Event.GOES else Edge.STARTS
         return FluentSearch(things, self.places, None, None, None, edge, start, end, pick, event, self.places)
 
-    def search(self, asked: RecallQuestion) -> FluentSearch:
+    def search(self, question: RecallQuestion) -> FluentSearch:
         """Return the search of the fluents that answer a question."""
-        kind = asked.kind
-        things = None if asked.thing is None else self.resolve(asked.thing)
+        kind = question.kind
+        things = None if question.thing is None else self.resolve(question.thing)
         if kind in EVENTS or kind in ("when_did", "whether_did"):
-            return self._search_of_event(asked, things)
+            return self._search_of_event(question, things)
         if kind in ("shown", "said", "who", "happened"):
-            return self._search_of_statements(asked, things)
+            return self._search_of_statements(question, things)
         if kind in OF_EXPECTED:
-            return self._search_of_expected(asked)
-        start, end, pick = self.window(asked.when, event=False)
+            return self._search_of_expected(question)
+        start, end, pick = self.window(question.when, event=False)
         edge = Edge.FINISHES if pick is Pick.LAST else Edge.STARTS if pick is Pick.FIRST else Edge.HOLDS
         if kind == "when_held":
             start, end, pick, edge = -math.inf, self.asked, Pick.ALL, Edge.HOLDS
@@ -341,7 +356,7 @@ class _Remembering:
         if kind in ("where_put", "seen_last"):
             found = replace(found, edge=Edge.HOLDS if kind == "seen_last" else Edge.STARTS, pick=Pick.LAST)
             found = replace(found, start=-math.inf, end=self.asked)
-        if asked.relation is None:
+        if question.relation is None:
             if kind in ("where", "where_put", "seen_last") and self.relations:
                 by_relation = replace(found, predicates=self.relations)
                 found = by_relation if by_relation.run(self.board) else found
@@ -352,10 +367,10 @@ class _Remembering:
                 if kind == "where" and not found.run(self.board):
                     return replace(found, predicates=words)
             return found
-        related = replace(found, predicates=frozenset({asked.relation}))
-        if asked.other in SURFACES and asked.relation == "on" and not self._is_known(asked.other):
+        related = replace(found, predicates=frozenset({question.relation}))
+        if question.other in SURFACES and question.relation == "on" and not self._is_known(question.other):
             return related if related.run(self.board) else found
-        return replace(related, objects=None if asked.other is None else self.resolve(asked.other))
+        return replace(related, objects=None if question.other is None else self.resolve(question.other))
 
     def _is_known(self, noun: str) -> bool:
         try:
@@ -363,39 +378,39 @@ class _Remembering:
         except _NotKnownError:
             return False
 
-    def _search_of_expected(self, asked: RecallQuestion) -> FluentSearch:
+    def _search_of_expected(self, question: RecallQuestion) -> FluentSearch:
         """Return the search of objects that persons said are there: those not seen yet, not there, or seen."""
-        by = self._persons(asked)
+        by = self._persons(question)
         things = frozenset(thing for thing, person in self.expected.items() if by is None or person in by)
-        predicate = frozenset({OF_EXPECTED[asked.kind]})
-        if asked.kind == "unseen":
+        predicate = frozenset({OF_EXPECTED[question.kind]})
+        if question.kind == "unseen":
             return FluentSearch(things, predicate, edge=Edge.HOLDS, start=self.asked, end=self.asked)
         return FluentSearch(things, predicate, edge=Edge.STARTS, end=self.asked)
 
-    def _search_of_event(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
-        start, end, pick = self.window(asked.when, event=True)
-        pick = Pick(asked.order) if asked.order else pick
-        if asked.event == "shown":
+    def _search_of_event(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        start, end, pick = self.window(question.when, event=True)
+        pick = Pick(question.order) if question.order else pick
+        if question.event == "shown":
             return FluentSearch(things, None, None, frozenset({Origin.SHOWN}), None, Edge.STARTS, start, end, pick)
-        event = EVENTS[asked.event or asked.kind]
+        event = EVENTS[question.event or question.kind]
         return self.event_search(event, things, start, end, pick)
 
-    def _search_of_statements(self, asked: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
-        start, end, pick = self.window(asked.when, event=True)
-        pick = Pick(asked.order) if asked.order else pick
-        by = self._persons(asked)
-        if asked.kind == "happened":
+    def _search_of_statements(self, question: RecallQuestion, things: frozenset[str] | None) -> FluentSearch:
+        start, end, pick = self.window(question.when, event=True)
+        pick = Pick(question.order) if question.order else pick
+        by = self._persons(question)
+        if question.kind == "happened":
             return FluentSearch(None, self.places, None, None, None, Edge.STARTS, start, end, pick)
-        if asked.kind == "said":
+        if question.kind == "said":
             statement = FluentSearch(None, None, None, frozenset({Origin.SAID}), by, Edge.STARTS, start, end, pick)
             sentences = replace(statement, predicates=frozenset({SAID}))
             return sentences if sentences.run(self.board) else statement
-        origins = frozenset({Origin.SHOWN, Origin.SAID} if asked.kind == "who" else {Origin.SHOWN})
+        origins = frozenset({Origin.SHOWN, Origin.SAID} if question.kind == "who" else {Origin.SHOWN})
         return FluentSearch(things, None, None, origins, by, Edge.STARTS, start, end, pick)
 
-    def _persons(self, asked: RecallQuestion) -> frozenset[str] | None:
-        wanted = asked.speaker or self.speaker
-        if wanted is None or asked.kind not in ("shown", "said", *OF_EXPECTED):
+    def _persons(self, question: RecallQuestion) -> frozenset[str] | None:
+        wanted = question.speaker or self.speaker
+        if wanted is None or question.kind not in ("shown", "said", *OF_EXPECTED):
             return None
         origins = (Origin.SAID, Origin.SHOWN)
         known = {each.source.by for each in self.board.holding() if each.source.origin in origins}
@@ -407,28 +422,28 @@ class _Remembering:
 
     # ---- answers
 
-    def answer(self, asked: RecallQuestion) -> Recall:
+    def answer(self, question: RecallQuestion) -> Recall:
         """Return the answer to a question."""
         search = None
-        if asked.kind == "whether" and asked.other in SIDES and not self._is_known(asked.other):
-            asked = replace(
-                asked, kind="whether_there", thing=f"{asked.other} {asked.thing}", relation=None, other=None
+        if question.kind == "whether" and question.other in SIDES and not self._is_known(question.other):
+            question = replace(
+                question, kind="whether_there", thing=f"{question.other} {question.thing}", relation=None, other=None
             )
         try:
-            search = self.search(asked)
+            search = self.search(question)
             found = search.run(self.board)
             unseen = frozenset(each.statement.subject for each in found) & self.expected.keys()
-            if asked.kind == "whether" and unseen and len(unseen) == len({each.statement.subject for each in found}):
-                asked, words = replace(asked, kind="whether_there"), frozenset({EXPECTED})
+            if question.kind == "whether" and unseen and len(unseen) == len({each.statement.subject for each in found}):
+                question, words = replace(question, kind="whether_there"), frozenset({EXPECTED})
                 search = replace(search, subjects=unseen, predicates=words, objects=None)
                 found = search.run(self.board)
-            otherwise = self._otherwise(asked, search) if not found else ()
+            otherwise = self._otherwise(question, search) if not found else ()
             if not found and not otherwise:
-                raise _NotKnownError(self._reason(asked))
+                raise _NotKnownError(self._reason(question))
         except _NotKnownError as error:
             reason = str(error)
-            return Recall(asked, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
-        made = Recall(asked, self._named(found), search, "", None, self.asked, self.board.origin)
+            return Recall(question, (), search, f"Not known: {reason}.", reason, self.asked, self.board.origin)
+        made = Recall(question, self._named(found), search, "", None, self.asked, self.board.origin)
         if otherwise:
             sentences = "; ".join(_distinct(_fact(made, fact) for fact in self._named(otherwise)))
             return replace(made, answer=f"No: {sentences}.")
@@ -445,32 +460,32 @@ class _Remembering:
             for each in found
         )
 
-    def _otherwise(self, asked: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
+    def _otherwise(self, question: RecallQuestion, search: FluentSearch) -> tuple[EpisodicFluent, ...]:
         """Return where the thing of a yes-or-no question was instead, if that is recorded."""
-        if asked.kind == "whether_did" and asked.event != "shown":
+        if question.kind == "whether_did" and question.event != "shown":
             held = replace(search, edge=Edge.HOLDS, event=None, pick=Pick.ALL, predicates=self.relations or self.places)
             return held.run(self.board)
-        if asked.kind not in ("whether", "whether_there"):
+        if question.kind not in ("whether", "whether_there"):
             return ()
         wrong = replace(search, predicates=frozenset({CONTRADICTED}), edge=Edge.STARTS, objects=None)
         missing = replace(wrong, start=-math.inf, pick=Pick.LAST).run(self.board)
-        if asked.kind == "whether_there":
+        if question.kind == "whether_there":
             return missing
         return replace(search, predicates=self.relations, objects=None).run(self.board) or missing
 
-    def _reason(self, asked: RecallQuestion) -> str:
+    def _reason(self, question: RecallQuestion) -> str:
         """Return why nothing answers a question."""
-        if asked.kind == "where" and asked.when.kind in ("unstated", "now"):
-            gone = self.event_search(Event.GOES, self.resolve(asked.thing or ""), -math.inf, self.asked, Pick.LAST)
+        if question.kind == "where" and question.when.kind in ("unstated", "now"):
+            gone = self.event_search(Event.GOES, self.resolve(question.thing or ""), -math.inf, self.asked, Pick.LAST)
             found = gone.run(self.board)
             if found:
                 clock = _clock(self._moment(found[-1].finish.upper), self._present())
-                return f"the {asked.thing} is gone since {clock}"
-            return f"no place of the {asked.thing} is recorded"
-        if asked.kind == "where" and asked.when.kind == "before":
-            return f"no place of the {asked.thing} has ended; it is where it was at first"
-        what = _UNRECORDED.get(asked.kind, "nothing that answers it is recorded")
-        return what if asked.when.kind in ("unstated", "now") else f"{what} for that time"
+                return f"the {question.thing} is gone since {clock}"
+            return f"no place of the {question.thing} is recorded"
+        if question.kind == "where" and question.when.kind == "before":
+            return f"no place of the {question.thing} has ended; it is where it was at first"
+        what = _UNRECORDED.get(question.kind, "nothing that answers it is recorded")
+        return what if question.when.kind in ("unstated", "now") else f"{what} for that time"
 
     def _present(self) -> datetime:
         return self._moment(self.asked)
@@ -529,8 +544,8 @@ def _local_span(moment: Moment, present: datetime) -> tuple[datetime, datetime]:
 
 def _sentence(found: Recall) -> str:
     """Return the answer to a question in words."""
-    asked, facts = found.question, found.facts
-    kind = asked.kind
+    question, facts = found.question, found.facts
+    kind = question.kind
     if kind == "whether_there" and all(fact.fluent.statement.predicate == EXPECTED for fact in facts):
         sure = max(fact.fluent.certainty for fact in facts)
         statement = "; ".join(_distinct(_fact(found, fact) for fact in facts))
@@ -541,7 +556,7 @@ def _sentence(found: Recall) -> str:
         number = len({fact.fluent.statement.subject for fact in facts})
         return f"{number}: {', '.join(sorted(_distinct(f'the {fact.name}' for fact in facts)))}."
     if kind in ("gone", "come", "moved", "when_did", "whether_did"):
-        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[asked.event or kind]
+        words = {"gone": "went", "come": "came", "moved": "was moved", "shown": "was shown"}[question.event or kind]
         edge = [fact.fluent.finish if words == "went" else fact.fluent.start for fact in facts]
         sentences = _distinct(f"the {fact.name} {words} {_at(found, end.lower, end.upper)}{_source(fact)}"
                          for fact, end in zip(facts, edge, strict=True))  # fmt: skip
@@ -572,10 +587,10 @@ def _fact(found: Recall, fact: Recalled) -> str:
     if statement.predicate == SAID:
         return f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
     elif statement.predicate == EXPECTED:
-        told = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
+        sentence = f"{fluent.source.by} said at {_time(found, fluent.start.lower, fluent.start.upper)}: {words}"
         if not fluent.is_open:
-            return f"{told}; expected to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
-        return f"{told}; the {fact.name} was not seen yet, probability {fluent.certainty:.2g}"
+            return f"{sentence}; expected to {_time(found, fluent.finish.lower, fluent.finish.upper)}"
+        return f"{sentence}; the {fact.name} was not seen yet, probability {fluent.certainty:.2g}"
     elif statement.predicate in (CONTRADICTED, SAME_AS):
         then = f"at {_time(found, fluent.start.lower, fluent.start.upper)}"
         if statement.predicate == CONTRADICTED:

@@ -9,10 +9,9 @@ was seen stays.
 from __future__ import annotations
 
 import json
-import re
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
 from math import isfinite
@@ -23,32 +22,29 @@ from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
-from deixis.memory.episodes.changes import Add, Delete
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.blackboard import open_episodes
+from deixis.memory.episodes.changes import Change, Delete, Update
+from deixis.memory.episodes.episode import EVENT, EpisodicFluent, Origin
+from deixis.memory.episodes.experiences import without_lessons
+from deixis.memory.journal import Part, write_together
+from deixis.ontology.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.temporal.fluent import Pattern, Statement
+from deixis.reasoning.temporal.fluent import Statement
 from deixis.view_store import SETTLES, ViewStore, category_name
 from deixis.workflows.descriptions.remembered_attributes import CALLED, NOT_CALLED
+from deixis.workflows.knowledge.sentences import plain
 from deixis.workflows.layouts.read import as_scene
 
 if TYPE_CHECKING:
-    from deixis.learning.update import Commit
     from deixis.memory.episodes.blackboard import Blackboard
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.ontology.lessons.read import Provenance
+    from deixis.ontology.lessons.types import Lesson
 
-
-_SENTENCE_ENDS = re.compile(r"(?<=[.!?])\s+|[;\n]+")
 
 NAMED = frozenset({"isA", "called"})
 """Predicates of the category that a person names."""
-
-PENDING = "unlearning"
-"""Predicate of what is being taken back: lessons, id of the journal, and fluents."""
-
-IDS_IN_A_FLUENT = 2000
-"""Maximum number of ids in one fluent of an unlearning."""
 
 UNLEARN = "unlearn"
 """Name under which the log of the blackboard records what was taken back."""
@@ -58,9 +54,10 @@ UNLEARN = "unlearn"
 class Selection:
     """Choice of what to take back. A lesson or a teaching of a view is taken back if all given parts hold of it.
 
-    ``lesson`` and ``sentence`` select lessons, and what these taught; ``label`` and ``view`` select what a person
-    taught about views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and ``until`` the
-    first moment after the last one, both with a time zone.
+    ``lesson`` selects a lesson, and what it taught; ``sentence`` selects lessons in these words, and this sentence of
+    the others that have it, with all that came only from it; ``label`` and ``view`` select what a person taught about
+    views. ``table`` is a scene, or the name of its file. ``since`` is the first moment and ``until`` the first moment
+    after the last one, both with a time zone.
     """
 
     lesson: str | None = None
@@ -126,16 +123,16 @@ class Unlearned(Answer):
     """Lessons, views and fluents that were taken back.
 
     A view is forgotten, or has another category or source now; ``fluents`` are the ids of what persons said or showed.
-    ``containing`` are lessons that have the sentence among others, and stay.
+    ``revised`` are lessons that lost the sentence, and teach what their other sentences state.
     """
 
     lessons: tuple[str, ...] = ()
     views: tuple[ViewChange, ...] = ()
     fluents: tuple[str, ...] = ()
-    containing: tuple[str, ...] = ()
+    revised: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.lessons or self.views or self.fluents)
+        return bool(self.lessons or self.revised or self.views or self.fluents)
 
     def summary(self) -> str:
         """Return the numbers of lessons and views."""
@@ -144,11 +141,12 @@ class Unlearned(Answer):
             f"{count(len(self.lessons), 'lesson')} taken back, {count(gone, 'view')} forgotten, "
             f"{count(len(self.views) - gone, 'view')} changed"
             + (f", {count(len(self.fluents), 'fluent')} deleted" if self.fluents else "")
+            + (f", {count(len(self.revised), 'lesson')} without the sentence" if self.revised else "")
         )
 
 
 def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, dry_run: bool = False) -> Unlearned:
-    """Take back everything that a selection came from, in one step over both stores.
+    """Take back everything that a selection came from, in one step over all stores.
 
     Parameters
     ----------
@@ -175,116 +173,76 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
     """
     chosen = _Chosen(selection)
     lessons = _lessons(chosen, knowledge) if knowledge.exists() else ()
-    with _episodes(knowledge.path) as board:
-        if board is not None:
-            complete_unlearning(board, knowledge)
-        fluents = () if board is None else _fluents(board, lessons, chosen)
-        ids = tuple(each.id for each in fluents)
-        if not views.exists():
-            if lessons and not dry_run:
-                _with_episodes(knowledge.unlearning(lessons, {}), board, fluents, lessons)(None)
-            elif board is not None and fluents and not dry_run:
-                board.write(*(Delete(each.id) for each in fluents), by=UNLEARN)
-            return Unlearned(lessons, (), ids, _containing(chosen, knowledge, lessons))
-        memory = views.memory()
-        with memory.exclusive():
-            before = _teachings(memory, knowledge)
-            after = {view: _without(turns, lessons, chosen, view) for view, turns in before.items()}
-            after = {view: turns for view, turns in after.items() if turns != before[view]}
-            containing = _containing(chosen, knowledge, lessons)
-            found = Unlearned(lessons, tuple(_changes(before, after)), ids, containing)
-            if found and not dry_run:
-                _write(lessons, before, after, memory, knowledge, board, fluents)
+    empty, revised = _revised(chosen, knowledge, lessons)
+    lessons = (*lessons, *empty)
+    with open_episodes(knowledge.path) as board, ExitStack() as held:
+        memory = views.memory() if views.exists() else None
+        if memory is not None:
+            held.enter_context(memory.exclusive())
+        before = {} if memory is None else _teachings(memory, knowledge)
+        new = {lesson.id: lesson for lesson in revised}
+        after = {view: _without(turns, lessons, new, chosen, view) for view, turns in before.items()}
+        after = {view: turns for view, turns in after.items() if turns != before[view]}
+        shown = set() if board is None else _shown(board, before, after)
+        events = shown | (_told(lessons, knowledge) if lessons else set())
+        changes = () if board is None else tuple(_episodes(board, lessons, chosen, events))
+        fluents = tuple(change.id for change in changes if isinstance(change, Delete))
+        found = Unlearned(lessons, tuple(_changes(before, after)), fluents, tuple(new))
+        if (lessons or revised or after) and not dry_run:
+            part = None if board is None or not changes else board.part(*changes, by=UNLEARN)
+            _write(lessons, revised, before, after, memory, knowledge, part)
+        elif board is not None and not dry_run:
+            board.write(*changes, by=UNLEARN)
     return found
 
 
-@contextmanager
-def _episodes(folder: Path) -> Iterator[Blackboard | None]:
-    """Open the blackboard of a memory, if it has one."""
-    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+def _told(lessons: Sequence[str], knowledge: KnowledgeStore) -> set[str]:
+    """Return the events that taught the lessons which are taken back, and no lesson that stays."""
+    from deixis.memory.semantic.rdf.links import events_of_lessons
 
-    if not has_episodes(folder):
-        yield None
-        return
-    with Blackboard.open(folder) as board:
-        yield board
+    known = events_of_lessons(knowledge.memory().store)
+    kept = {event for lesson, events in known.items() if lesson not in lessons for event in events}
+    return {*lessons, *(event for lesson in lessons for event in known.get(lesson, ()))} - kept
 
 
-def _fluents(board: Blackboard, lessons: Sequence[str], chosen: _Chosen) -> tuple[EpisodicFluent, ...]:
-    """Return the fluents that a person stated and that are taken back, and those of the same events and lessons."""
+def _shown(board: Blackboard, before: Mapping[str, Teachings], after: Mapping[str, Teachings]) -> set[str]:
+    """Return the events on the blackboard in which persons showed what is taken back of views."""
+    gone = (turn.metadata.get(EVENT) for view, turns in after.items() for turn in before[view] if turn not in turns)
+    return {event for event in (board.event_here(str(each)) for each in gone if each is not None) if event is not None}
+
+
+def _episodes(board: Blackboard, lessons: Sequence[str], chosen: _Chosen, others: Set[str]) -> Iterator[Change]:
+    """Yield what changes on the blackboard.
+
+    The fluents go that a person stated and that are taken back, and those of the same events and lessons. Experiences
+    stay, and do not name the lessons any more.
+    """
     known = board.holding()
+    yield from _shortened(known, chosen, board.moment)
     stated = [each for each in known if chosen.holds_of_fluent(each, board.moment)]
-    events = {each.source.event for each in stated if each.source.event is not None} | set(lessons)
+    events = {each.source.event for each in stated if each.source.event is not None} | others
     own = {each.id for each in stated}
-    return tuple(each for each in known if each.id in own or each.source.event in events)
+    gone = [each.id for each in known if each.id in own or each.source.event in events]
+    yield from map(Delete, gone)
+    yield from (change for change in without_lessons(board, lessons) if change.id not in gone)
 
 
-def _with_episodes(
-    commit: Commit, board: Blackboard | None, fluents: Sequence[EpisodicFluent], lessons: Sequence[str]
-) -> Commit:
-    """Return a commit after which fluents are deleted, also if the process is killed in between.
+def _shortened(
+    known: Sequence[EpisodicFluent], chosen: _Chosen, moment: Callable[[float], datetime]
+) -> Iterator[Change]:
+    """Yield the changes that cut the sentence out of what persons said."""
+    from deixis.ontology.tbox import default_ontology
+    from deixis.workflows.knowledge.sentences import without_sentence
 
-    The blackboard first says what the commit decides; see :func:`complete_unlearning`.
-    """
-
-    def committing(journal: str | None) -> None:
-        if board is None or not fluents:
-            commit(journal)
-            return
-        pending = []
-        for first in range(0, len(fluents), IDS_IN_A_FLUENT):
-            ids = [each.id for each in fluents[first : first + IDS_IN_A_FLUENT]]
-            said = json.dumps({"lessons": list(lessons), "journal": journal, "fluents": ids})
-            id, source = board.new_id(UNLEARN), Source(Origin.INFERRED, UNLEARN)
-            pending.append(episodic(id, (id, PENDING, said), start=board.seconds(), source=source))
-        board.write(*map(Add, pending), by=UNLEARN)
-        try:
-            commit(journal)
-        except BaseException:
-            board.write(*(Delete(each.id) for each in pending), by=UNLEARN)
-            raise
-        board.write(*(Delete(each.id) for each in (*pending, *fluents)), by=UNLEARN)
-
-    return committing
-
-
-def complete_unlearning(board: Blackboard, knowledge: KnowledgeStore) -> int:
-    """Complete or drop what a process that was killed began to take back, so that all memories are in step.
-
-    The commit of the stores decides: if it was made, the fluents go too, and if not, they stay.
-
-    Parameters
-    ----------
-    board
-        The blackboard.
-    knowledge
-        The semantic store.
-
-    Returns
-    -------
-    int
-        Number of fluents that were deleted.
-    """
-    deleted = 0
-    for pending in board.now(Pattern(predicate=PENDING)):
-        said = json.loads(pending.statement.object or "{}")
-        ids = [id for id in said["fluents"] if board.fluent(id) is not None] if _was_made(said, knowledge) else []
-        board.write(Delete(pending.id), *map(Delete, ids), by=UNLEARN)
-        deleted += len(ids)
-    return deleted
-
-
-def _was_made(said: Mapping[str, Any], knowledge: KnowledgeStore) -> bool:
-    """Return whether the stores made the commit of an unlearning."""
-    from deixis.memory.journal import COMMITTED, MARKS
-
-    if not knowledge.exists():
-        return False
-    memory = knowledge.memory()
-    if said["lessons"]:
-        return not set(said["lessons"]) & set(memory.lessons())
-    marks = memory.store.quads_for_pattern(MARKS, COMMITTED, None, MARKS)
-    return any(getattr(quad.object, "value", None) == said["journal"] for quad in marks)
+    sentence = chosen.sentence
+    if sentence is None:
+        return
+    for each in known:
+        words = _words(each.statement) if each.statement.predicate == "said" else ""
+        if sentence in plain(words) and chosen.holds_of_fluent(each, moment, whole=False):
+            rest = without_sentence(words, sentence, default_ontology())
+            if rest is not None:
+                yield Update(each.id, statement=replace(each.statement, object=rest))
 
 
 class _Chosen:
@@ -296,14 +254,14 @@ class _Chosen:
         self.sentence = None if selection.sentence is None else plain(selection.sentence)
         self.boxes, self.file = _table(selection.table)
 
-    def holds_of_lesson(self, lesson: Provenance) -> bool:
-        """Return whether a lesson is taken back as a whole."""
+    def holds_of_lesson(self, lesson: Provenance, whole: bool = True) -> bool:
+        """Return whether a lesson is taken back, or, unless ``whole``, may lose a sentence."""
         wanted = self.all
         if self.label is not None or wanted.view is not None:
             return False
         return (
             (wanted.lesson is None or wanted.lesson == lesson.lesson)
-            and (self.sentence is None or self.sentence == plain(lesson.told_text or lesson.script_text))
+            and (not whole or self.sentence in (None, plain(lesson.told_text or lesson.script_text)))
             and (wanted.table is None or self._is_table(lesson.scene_file, lambda: _boxes_of(lesson.scene_text)))
             and (wanted.teacher is None or wanted.teacher == lesson.teacher)
             and self._is_then(lesson.started)
@@ -323,8 +281,11 @@ class _Chosen:
             and self._is_then(turn.time)
         )
 
-    def holds_of_fluent(self, fluent: EpisodicFluent, moment: Callable[[float], datetime]) -> bool:
-        """Return whether what a person said or showed is taken back; what was seen or inferred stays."""
+    def holds_of_fluent(self, fluent: EpisodicFluent, moment: Callable[[float], datetime], whole: bool = True) -> bool:
+        """Return whether what a person said or showed is taken back, or, unless ``whole``, may lose a sentence.
+
+        What was seen or inferred stays.
+        """
         wanted, statement = self.all, fluent.statement
         if fluent.source.origin not in (Origin.SAID, Origin.SHOWN) or wanted.table is not None:
             return False
@@ -332,7 +293,7 @@ class _Chosen:
             return False
         start = fluent.start.lower
         return (
-            (self.sentence is None or plain(_words(statement)) == self.sentence)
+            (not whole or self.sentence is None or plain(_words(statement)) == self.sentence)
             and (
                 self.label is None
                 or (statement.predicate in NAMED and category_name(statement.object or "?") == self.label)
@@ -351,32 +312,11 @@ class _Chosen:
         return self.file is not None and (file == self.file or file == str(Path(self.file).absolute()))
 
 
-def _words(said: Statement) -> str:
+def _words(statement: Statement) -> str:
     """Return the sentence that a fluent holds: what a person said, or what taught an adjective; else nothing."""
-    if said.predicate in (CALLED, NOT_CALLED):
-        return str(json.loads(said.object or "{}").get("text", ""))
-    return said.object or "" if said.predicate == "said" else ""
-
-
-def plain(text: str) -> str:
-    """Return a sentence in lower case, without line ends and without punctuation at its end.
-
-    Parameters
-    ----------
-    text
-        The sentence.
-
-    Returns
-    -------
-    str
-        A text by which two ways of writing one sentence are equal.
-
-    Examples
-    --------
-    >>> plain("The fork  is left of the plate.")
-    'the fork is left of the plate'
-    """
-    return " ".join(text.lower().split()).rstrip(" .!;")
+    if statement.predicate in (CALLED, NOT_CALLED):
+        return str(json.loads(statement.object or "{}").get("text", ""))
+    return statement.object or "" if statement.predicate == "said" else ""
 
 
 def _table(table: Scene | str | Path | Mapping[str, Any] | None) -> tuple[str | None, str | None]:
@@ -406,20 +346,31 @@ def _lessons(chosen: _Chosen, knowledge: KnowledgeStore) -> tuple[str, ...]:
     return tuple(lesson for lesson in memory.lessons() if lesson in wanted)
 
 
-def _containing(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str]) -> tuple[str, ...]:
-    """Return the lessons that have the sentence to take back among others."""
+def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str]) -> tuple[list[str], list[Lesson]]:
+    """Return the lessons of which nothing is left without the sentence, and the others that had it, without it."""
     from deixis.memory.semantic.rdf.graphs import GraphName
+    from deixis.memory.semantic.rdf.links import events_of_lessons
     from deixis.ontology.lessons.read import provenances
+    from deixis.workflows.knowledge.sentences import lesson_of_script, script_without
 
-    if chosen.sentence is None or not knowledge.exists():
-        return ()
-    known = provenances(knowledge.memory().triples(GraphName.EPISODES))
-    return tuple(
-        each.lesson
-        for each in known
-        if each.lesson not in lessons
-        and chosen.sentence in map(plain, _SENTENCE_ENDS.split(each.told_text or each.script_text))
-    )
+    gone: list[str] = []
+    revised: list[Lesson] = []
+    if chosen.all.sentence is None or not knowledge.exists():
+        return gone, revised
+    memory = knowledge.memory()
+    layouts, events = {each.lesson: each for each in knowledge.layouts()}, events_of_lessons(memory.store)
+    for record in provenances(memory.triples(GraphName.EPISODES)):
+        layout = layouts.get(record.lesson)
+        if record.lesson in lessons or layout is None or not chosen.holds_of_lesson(record, whole=False):
+            continue
+        script = script_without(record, layout, chosen.all.sentence, knowledge.ontology)
+        if script is None:
+            continue
+        told, meaning = events.get(record.lesson, ()), knowledge.meaning_before(record.lesson)
+        lesson = lesson_of_script(script, record, record.engine, told, meaning)
+        gone += [record.lesson] if lesson is None else []
+        revised += [] if lesson is None else [lesson]
+    return gone, revised
 
 
 def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teachings]:
@@ -439,10 +390,24 @@ def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teac
     return found
 
 
-def _without(turns: Teachings, lessons: Sequence[str], chosen: _Chosen, view: str) -> Teachings:
-    """Return the teachings of a view that stay."""
+def _without(
+    turns: Teachings, lessons: Sequence[str], revised: Mapping[str, Lesson], chosen: _Chosen, view: str
+) -> Teachings:
+    """Return the teachings of a view that stay; those of a revised lesson are as it teaches them now."""
     stay = (turn for turn in turns if _origin(turn) not in lessons)
-    return tuple(turn for turn in stay if not chosen.holds_of_teaching(turn, view))
+    left = (_now(turn, revised.get(_origin(turn) or "")) for turn in stay)
+    return tuple(turn for turn in left if turn is not None and not chosen.holds_of_teaching(turn, view))
+
+
+def _now(turn: Teaching, lesson: Lesson | None) -> Teaching | None:
+    """Return what the revised lesson of a teaching teaches now, None for nothing; other teachings stay."""
+    if lesson is None:
+        return turn
+    if SETTLES in turn.metadata:
+        return turn if turn.metadata[SETTLES][1] in {role.name for role in lesson.layout.roles} else None
+    things = {match.perceived: plain_name(match.object) for match in lesson.categories()}
+    category = things.get(str(turn.metadata.get("object")))
+    return None if category is None else replace(turn, category=category)
 
 
 def _origin(turn: Teaching) -> str | None:
@@ -461,33 +426,40 @@ def _changes(before: Mapping[str, Teachings], after: Mapping[str, Teachings]) ->
 
 def _write(
     lessons: Sequence[str],
+    revised: Sequence[Lesson],
     before: Mapping[str, Teachings],
     after: Mapping[str, Teachings],
-    memory: LevelMemory,
+    memory: LevelMemory | None,
     knowledge: KnowledgeStore,
-    board: Blackboard | None,
-    fluents: Sequence[EpisodicFluent],
+    episodes: Part | None,
 ) -> None:
-    """Write what is left of the teachings of views, and remove the lessons."""
+    """Write what is left of the teachings of views, remove the lessons, and change the episodes."""
     from deixis.learning.views import batch_without
     from deixis.memory.semantic.rdf.links import Link
 
     gone = [view for view, turns in after.items() if not turns]
     now = {view: prevailing(turns) for view, turns in after.items() if turns}
     changed = {view: turn for view, turn in now.items() if turn != prevailing(before[view])}
+    new = {lesson.id for lesson in revised}  # their links are written again
+    kept = {view: turns for view, turns in before.items() if any(turn.lesson in new for turn in turns)}
     links: dict[str, list[Link]] = {view: [] for view in after}
     owners: dict[str, str | None] = {}
-    for view, turn in now.items():
-        teaching_lessons = (
-            () if turn.is_by_hand else dict.fromkeys(each.lesson for each in after[view] if each.lesson is not None)
-        )
-        links[view] = [Link(lesson, view, turn.category) for lesson in teaching_lessons]
-        owners[view] = turn.lesson or next(reversed(tuple(teaching_lessons)), None)
-    batch = batch_without(memory, gone, changed)
-    turns = {view: written(after[view]) for view in now}
-    change = memory.writing(replace(batch, lessons=owners, teachings=turns))
-    if knowledge.exists():
-        commit = knowledge.unlearning(lessons, links)
-        memory.handle.write_with(change, _with_episodes(commit, board, fluents, lessons))
-    else:
-        _with_episodes(lambda _: memory.handle.write(change, sync=True), board, fluents, lessons)(None)
+    for view, turns in {**kept, **after}.items():
+        turn = prevailing(turns) if turns else None
+        if turn is None:
+            continue
+        by_lessons = () if turn.is_by_hand else dict.fromkeys(each.lesson for each in turns if each.lesson is not None)
+        links[view] = [Link(lesson, view, turn.category) for lesson in by_lessons]
+        if view in after:
+            owners[view] = turn.lesson or next(reversed(tuple(by_lessons)), None)
+    parts = [] if episodes is None else [episodes]
+    if memory is not None and after:
+        batch = batch_without(memory, gone, changed)
+        left = {view: written(after[view]) for view in now}
+        change = memory.writing(replace(batch, lessons=owners, teachings=left))
+        if not knowledge.exists() and not parts:
+            memory.handle.write(change, sync=True)
+            return
+        parts.append(memory.handle.part(change))
+    knowledge.memory(create=True)  # it decides a write of the others
+    write_together(knowledge.unlearning(lessons, links, revised), parts)

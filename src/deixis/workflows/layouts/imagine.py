@@ -96,6 +96,8 @@ class Imagination(Answer):
     <Imagination of <text>: 1 example table>
     >>> [table.scene.ids for table in found.tables]
     [('o1', 'o2', 'o3')]
+    >>> found.decided
+    True
     """
 
     script: Script
@@ -146,7 +148,7 @@ def imagine(
 
     Examples
     --------
-    >>> from deixis.grammar.parser import parse_script
+    >>> from deixis.grammar.layout.parser import parse_script
     >>> found = imagine(parse_script("fork left of plate; knife right of plate"))
     >>> [thing.label for thing in found.tables[0].scene.objects]
     ['fork', 'plate', 'knife']
@@ -178,7 +180,7 @@ def _pictures(
     kinds: Kinds,
 ) -> Iterator[Picture | Impossible | Undecided]:
     """Yield different pictures, at most ``count``, or the reason why there is no further one."""
-    sizes, lying = [thing.size for thing in objects], lying_cutlery(graph, objects, kinds)
+    sizes, lying = [thing.size for thing in objects], lying_across(graph, objects, kinds)
     seen: set[bytes] = set()
     for number in range(count):
         for attempt in range(MAX_ATTEMPTS):
@@ -215,8 +217,17 @@ def sized_objects(script: Script, graph: RelationGraph) -> tuple[Sized, ...]:
     return tuple(Sized(*entry) for entry in zip(graph.nodes, found, sizes, strict=True))
 
 
-def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
-    """Return which things rather lie across: cutlery that is said to lie above something, as for dessert.
+LONG_SIDE_TO_VIEWER = ("device", "appliance", "furniture")
+"""Kinds whose long side faces the viewer, as a keyboard, a microwave or a sofa stands."""
+
+LEAST_WIDE = 0.25
+"""Typical length in metres from which such a thing lies across; a telephone or a computer mouse points away."""
+
+
+def lying_across(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) -> list[bool]:
+    """Return which things rather lie across than point away from the viewer.
+
+    These are cutlery that is said to lie above something, as for dessert, and larger devices, appliances and furniture.
 
     Parameters
     ----------
@@ -232,12 +243,18 @@ def lying_cutlery(graph: RelationGraph, objects: Sequence[Sized], kinds: Kinds) 
     list of bool
         True for each object that lies across.
     """
-    cutlery = kinds.of_word("cutlery")
+    cutlery, wide = kinds.of_word("cutlery"), [kinds.of_word(word) for word in LONG_SIDE_TO_VIEWER]
     above = {fact.subject for fact in graph.facts() if fact.plain and fact.relations[0].word == "top"}
-    return [
-        thing.name in above and thing.kind is not None and cutlery is not None and kinds.is_a(thing.kind, cutlery)
-        for thing in objects
-    ]
+
+    def lies(thing: Sized) -> bool:
+        if thing.kind is None:
+            return False
+        if cutlery is not None and kinds.is_a(thing.kind, cutlery):
+            return thing.name in above
+        faces = any(kind is not None and kinds.is_a(thing.kind, kind) for kind in wide)
+        return faces and thing.size.length.typical >= LEAST_WIDE
+
+    return [lies(thing) for thing in objects]
 
 
 def _with_claims(script: Script) -> RelationGraph:

@@ -10,7 +10,7 @@ from typing import Any
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError, UnknownTermError
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.ontology.facts import Fact
 from deixis.ontology.relation import Relation, nearest
@@ -58,6 +58,11 @@ class Inference(Answer):
     >>> first = found.inferred()[0]
     >>> str(first.fact), str(first.rule), first.lines
     ('left(fork, knife)', 'transitivity', (1,))
+    >>> sum(1 for _ in found.each_inferred())
+    4
+    >>> derivation = found.derive(first.fact.relations[0], "fork", "knife")
+    >>> [str(premise.claim) for premise in derivation.premises]
+    ['left(fork, plate)', 'left(plate, knife)']
     """
 
     stated: tuple[Fact, ...]

@@ -30,11 +30,11 @@ from deixis.perception.simulator.laying import (
     stood,
     top_under,
 )
+from deixis.perception.simulator.meshes.tableware import drawn_plan, form_of
 from deixis.perception.simulator.scatter import scattered
-from deixis.perception.simulator.tableware import drawn_plan, form_of
 from deixis.reasoning.entailment.realisation.picture import Impossible, Picture, Undecided, realise
 from deixis.reasoning.entailment.realisation.verification import facts_that_hold
-from deixis.workflows.layouts.imagine import Sized, lying_cutlery, sized_objects
+from deixis.workflows.layouts.imagine import Sized, lying_across, sized_objects
 
 if TYPE_CHECKING:
     from deixis.ontology.tbox import Ontology
@@ -271,7 +271,7 @@ def _plan_boxes(
     """Boxes that satisfy the script, of the size of the things that will fill them."""
     ontology = script.ontology
     objects = sized_objects(script, graph)
-    lying = lying_cutlery(graph, objects, ontology.kinds)
+    lying = lying_across(graph, objects, ontology.kinds)
     tables = tuple(is_table(thing, ontology) for thing in objects)
     graphs = (*all_on_it(graph, tables), graph)
     deadline = Deadline.after(time_limit)
@@ -381,7 +381,10 @@ def _overlapping(boxes: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
-    """Return the table that the script speaks of, else one that reaches a little beyond everything."""
+    """Return the table that the script speaks of, else one that reaches a little beyond everything.
+
+    The former carries all that was planned to be on it; its edge moves a little where a turned thing reaches over it.
+    """
     colour = _top_colour(cloth)
     spoken_of = [i for i, found in enumerate(plan.tables) if found]
     if len(spoken_of) > 1:
@@ -389,7 +392,15 @@ def _top(plan: _Plan, laid: LaidTable, cloth: bool) -> TableTop:
         raise SimulationError(f"{names} are tables, and one table is simulated; leave one of them out")
     if not spoken_of:
         return top_under(laid.things, colour=colour)
-    (x0, y0), (x1, y1) = plan.boxes[spoken_of[0]].tolist()
+    low, high = plan.boxes[spoken_of[0]]
+    over = [
+        name
+        for name, box in zip(plan.graph.nodes, plan.boxes, strict=True)
+        if (box[0] >= low).all() and (box[1] <= high).all()
+    ]
+    boxes = [thing.box[:, :2] for thing in laid.things if thing.name in over]
+    x0, y0 = np.min([low, *(box[0] for box in boxes)], axis=0).tolist()
+    x1, y1 = np.max([high, *(box[1] for box in boxes)], axis=0).tolist()
     return TableTop((x0, y0), (x1, y1), colour=colour)
 
 

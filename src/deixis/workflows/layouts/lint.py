@@ -11,7 +11,7 @@ from pathlib import Path
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.names import key_of
+from deixis.grammar.layout.names import key_of
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Mention, RelationStatement, Script, mentions
 from deixis.ontology.claims import Claim

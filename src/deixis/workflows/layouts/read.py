@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
-from deixis.grammar.errors import ScriptFileError
-from deixis.grammar.parser import parse_script
+from deixis.grammar.errors import ScriptError, ScriptFileError
+from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.read import is_english, read_script_file
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import Ontology
@@ -83,6 +83,39 @@ def read_script(
         if isinstance(path, str) and _looks_like_text(path):
             raise ScriptFileError(f"{error}; if {path[:60]!r} is the script itself, pass it as text=") from error
         raise
+
+
+def read_layout_or_english(text: str, ontology: Ontology | None = None) -> Script:
+    """Read a text as a layout script or, if it is not one, as English.
+
+    Parameters
+    ----------
+    text
+        The text.
+    ontology
+        Words of the language; default: the shipped ones.
+
+    Returns
+    -------
+    Script
+        The script.
+
+    Raises
+    ------
+    ScriptError
+        If it is neither; the message is about the text as English.
+
+    Examples
+    --------
+    >>> for text in ("fork left of plate", "The fork is left of the plate."):
+    ...     print(*read_layout_or_english(text).facts)
+    left(fork, plate)
+    left(fork, plate)
+    """
+    try:
+        return read_script(text=text, ontology=ontology)
+    except ScriptError:
+        return read_script(text=text, ontology=ontology, english=True)
 
 
 def _looks_like_text(name: str) -> bool:

@@ -15,21 +15,21 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.reasoning.qualitative.calculi.bridges import Link, links_between
-from deixis.reasoning.qualitative.networks.boxes import unrelated
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
+from deixis.reasoning.qualitative.networks.closure.state import Progress
 from deixis.reasoning.qualitative.networks.combination import joint_conflict, solve_jointly
 from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.derivation import explain, require_pair
 from deixis.reasoning.qualitative.networks.network import Constraint, Network, compacted
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
-from deixis.reasoning.qualitative.networks.state import Progress
+from deixis.reasoning.qualitative.networks.realisation.boxes import unrelated
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 from deixis.reasoning.qualitative.relate import relate
 
 if TYPE_CHECKING:
     from deixis.grammar.formats.networks import NetworkText
     from deixis.reasoning.qualitative.calculi.calculus import Calculus
+    from deixis.reasoning.qualitative.networks.closure.rounds import Step
     from deixis.reasoning.qualitative.networks.combination import Contribution
-    from deixis.reasoning.qualitative.networks.rounds import Step
 
 
 LAST_SHARE = 0.1

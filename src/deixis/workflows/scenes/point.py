@@ -94,6 +94,8 @@ class Shown(Answer):
     >>> shown = deixis.point(example("showing.skeleton.jsonl"), example("showing.scene.json"))
     >>> shown
     <Shown 4 gestures, 0 names taught>
+    >>> shown.taught
+    ()
     """
 
     pointings: tuple[Pointing, ...]

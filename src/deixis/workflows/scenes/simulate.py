@@ -13,8 +13,8 @@ from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.scene import Scene
-from deixis.perception.simulator.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
-from deixis.perception.simulator.depth import FIRST_THING, DepthSensor, see
+from deixis.perception.simulator.cameras.camera import HEIGHT, KINECT, Camera, chair_camera, check_place
+from deixis.perception.simulator.cameras.depth import FIRST_THING, DepthSensor, see
 from deixis.perception.simulator.laying import truth_scene
 from deixis.workflows.layouts.lay_table import LaidScript, lay_script, require_seed
 

@@ -14,6 +14,7 @@ from deixis.workflows.scenes.views_of_lessons import keep_view
 
 if TYPE_CHECKING:
     from deixis.learning.views import Taught
+    from deixis.memory.journal import Part
 
 
 def teach(
@@ -24,6 +25,8 @@ def teach(
     views: ViewStore,
     teacher: str = "user",
     settles: tuple[str, str] | None = None,
+    event: str | None = None,
+    episodes: Part | None = None,
 ) -> Taught:
     """Keep the look of a thing in a scene as a view of a category, which is created if it is new.
 
@@ -46,6 +49,11 @@ def teach(
         Name of the person who teaches.
     settles
         Id of a lesson and a role in it, of which this is the thing.
+    event
+        Event in which the teacher showed it (:func:`deixis.memory.episodes.episode.event_of`); None where the episodes
+        do not have it.
+    episodes
+        What the blackboard says of it, which is written in the same step; None for nothing.
 
     Returns
     -------
@@ -61,4 +69,5 @@ def teach(
     """
     scene = as_scene(scene)
     name = views.category_meant(new_category_name(category))
-    return keep_view(view_of_thing(scene, object, name, teacher, settles), knowledge, views)
+    view = view_of_thing(scene, object, name, teacher, settles, event)
+    return keep_view(view, knowledge, views, episodes)

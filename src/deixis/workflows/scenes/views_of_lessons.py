@@ -1,7 +1,7 @@
-"""Writes that both stores take part in: views with their lessons. Each is all or nothing over both.
+"""Writes that several stores take part in: lessons, their views and their episodes. Each is all or nothing over all.
 
-What a write needs is worked out first. Then one commit of the semantic store decides it, and the journal of the
-perceptual store carries it out or drops it, also after a kill: see :mod:`deixis.memory.journal`.
+What a write needs is worked out first. Then one commit of the semantic store decides it, and the journals of the other
+stores carry it out or drop it, also after a kill: see :mod:`deixis.memory.journal`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.teachings import each_changed
+from deixis.memory.journal import Part, write_together
 from deixis.memory.perceptual.records import Batch
 from deixis.view_store import ViewStore
 
@@ -24,14 +25,19 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import Lesson
 
 
+FORGET = "forget"
+"""Name under which the log of the blackboard records that a lesson was forgotten."""
+
+
 def keep_lessons(
     lessons: Sequence[Lesson],
     seen: Mapping[str, Sequence[View]],
     knowledge: KnowledgeStore,
     views: ViewStore,
     named: Mapping[str, Sequence[View]] = MappingProxyType({}),
+    episodes: Part | None = None,
 ) -> tuple[Taught, ...]:
-    """Write lessons, and the views that each teaches, in one step over both stores.
+    """Write lessons, the views that each teaches, and what the episodes say of them, in one step over all stores.
 
     Parameters
     ----------
@@ -45,6 +51,8 @@ def keep_lessons(
         The perceptual store.
     named
         Views that each lesson names, by its id, with those that a teacher named otherwise.
+    episodes
+        Changes of the blackboard; None for none.
 
     Returns
     -------
@@ -54,17 +62,17 @@ def keep_lessons(
     together = [view for lesson in lessons for view in seen.get(lesson.id, ())]
     turns = [(view, lesson.id) for lesson in lessons for view in named.get(lesson.id, seen.get(lesson.id, ()))]
     if not turns:
-        knowledge.keeping(lessons, {})(None)
+        write_together(knowledge.keeping(lessons, {}), _parts(None, episodes))
         return ()
     owners = {view.id: lesson.id for lesson in lessons for view in seen.get(lesson.id, ())}
     memory = views.memory(create=True)
     with memory.exclusive():
         change, taught = views.keeping(together, owners, turns)
-        memory.handle.write_with(change, knowledge.keeping(lessons, seen))
+        write_together(knowledge.keeping(lessons, seen), _parts(memory.handle.part(change), episodes))
     return taught
 
 
-def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught:
+def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore, episodes: Part | None = None) -> Taught:
     """Write a view that a teacher named; it then belongs to no lesson.
 
     Parameters
@@ -75,6 +83,8 @@ def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught
         The semantic store.
     views
         The perceptual store.
+    episodes
+        Changes of the blackboard; None for none.
 
     Returns
     -------
@@ -85,7 +95,7 @@ def keep_view(view: View, knowledge: KnowledgeStore, views: ViewStore) -> Taught
     with memory.exclusive():
         change, (taught,) = views.keeping([view], named=[(view, None)])
         of_lessons = [view.id] if memory.lesson_of(view.id) is not None else []
-        _write(change, dict.fromkeys(of_lessons), knowledge, views)
+        _write(change, dict.fromkeys(of_lessons), knowledge, views, episodes)
     return taught
 
 
@@ -106,27 +116,31 @@ def forget_lesson(lesson: str, knowledge: KnowledgeStore, views: ViewStore) -> N
     UnknownLessonError
         If there is no such lesson.
     """
+    from deixis.memory.episodes.blackboard import open_episodes
+    from deixis.memory.episodes.experiences import without_lessons
     from deixis.memory.semantic.rdf.links import lessons_with, links_of
 
     commit, store = knowledge.forgetting(lesson), knowledge.memory().store
     linked = links_of(store, lesson)
-    if not views.exists():
-        commit(None)
-        return
-    memory = views.memory()
-    with memory.exclusive():
-        turns = each_changed(
-            memory.teachings(), lambda turn: replace(turn, lesson=None) if turn.lesson == lesson else turn
-        )
-        if not linked and not turns:
-            commit(None)
+    with open_episodes(knowledge.path) as board:
+        marks = () if board is None else without_lessons(board, (lesson,))
+        episodes = None if board is None or not marks else board.part(*marks, by=FORGET)
+        if not views.exists():
+            write_together(commit, _parts(None, episodes))
             return
-        owners: dict[str, str | None] = {}
-        for link in linked:
-            if memory.lesson_of(link.view) == lesson:
-                others = [other for other in lessons_with(store, link.view) if other != lesson]
-                owners[link.view] = others[-1] if others else None
-        memory.handle.write_with(memory.writing(Batch(lessons=owners, teachings=turns)), commit)
+        memory = views.memory()
+        with memory.exclusive():
+            turns = each_changed(
+                memory.teachings(), lambda turn: replace(turn, lesson=None) if turn.lesson == lesson else turn
+            )
+            owners: dict[str, str | None] = {}
+            for link in linked:
+                if memory.lesson_of(link.view) == lesson:
+                    others = [other for other in lessons_with(store, link.view) if other != lesson]
+                    owners[link.view] = others[-1] if others else None
+            change = memory.writing(Batch(lessons=owners, teachings=turns)) if linked or turns else None
+            part = None if change is None else memory.handle.part(change)
+            write_together(commit, _parts(part, episodes))
 
 
 def rename_category(old: str, new: str, knowledge: KnowledgeStore, views: ViewStore) -> None:
@@ -212,16 +226,27 @@ def _renamed_teachings(memory: LevelMemory, old: str, new: str) -> list[tuple[by
     return memory.writing(Batch(teachings=turns)).pairs
 
 
+def _parts(*parts: Part | None) -> list[Part]:
+    return [part for part in parts if part is not None]
+
+
 def _write(
-    change: WriteBatch, categories: Mapping[str, str | None], knowledge: KnowledgeStore, views: ViewStore
+    change: WriteBatch,
+    categories: Mapping[str, str | None],
+    knowledge: KnowledgeStore,
+    views: ViewStore,
+    episodes: Part | None = None,
 ) -> None:
-    """Write a change of views; ``categories`` are those of the views of lessons afterwards, None for no lesson."""
+    """Write a change of views; ``categories`` are those of the views of lessons afterwards, None for no lesson.
+
+    What the episodes say of it needs a semantic store, which decides the write.
+    """
     from deixis.memory.semantic.rdf.links import relinking
 
     handle = views.memory().handle
-    if not categories or not knowledge.exists():
+    if episodes is None and not (categories and knowledge.exists()):
         handle.write(change, sync=True)
         return
-    memory = knowledge.memory()
+    memory = knowledge.memory(create=True)
     links, rules = relinking(memory.store, categories), memory.kept_up()
-    handle.write_with(change, lambda journal: memory.commit(links, rules, journal))
+    write_together(lambda joint: memory.commit(links, rules, joint), _parts(handle.part(change), episodes))

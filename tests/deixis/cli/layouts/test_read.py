@@ -21,7 +21,7 @@ def test_each_sentence_has_its_facts_and_a_paraphrase(text: Path) -> None:
     code, out, _ = deixis("read", text)
     assert code == 0
     assert "    = The fork is left of the plate.\n    left(fork, plate)\n" in out
-    assert "[If you serve soup]" in out
+    assert "[if you serve soup]" in out
 
 
 def test_json_has_the_words_that_state_each_fact(text: Path) -> None:
@@ -31,7 +31,7 @@ def test_json_has_the_words_that_state_each_fact(text: Path) -> None:
     assert code == 0
     assert text.read_text(encoding="utf-8")[start:end].startswith("The fork is left of the plate")
     assert (first["asserted"], first["condition"]) == (True, None)
-    assert (second["asserted"], second["condition"]) == (False, "If you serve soup")
+    assert (second["asserted"], second["condition"]) == (False, "if you serve soup")
 
 
 def test_the_layout_is_read_as_a_script(text: Path, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from commands import deixis
 from deixis.examples_data import example
 from deixis.grammar.formats.networks import parse_networks
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.search import Verdict
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict
 from deixis.report.reasoning.solve import solved_lines
 from deixis.workflows.reasoning.solve import SolvedNetwork
 

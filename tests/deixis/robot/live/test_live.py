@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.grammar.parser import parse_script
+from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.utterances import Utterance
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton

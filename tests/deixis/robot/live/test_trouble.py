@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -143,7 +144,7 @@ def told(board: Blackboard, learner: Learner, *statements: tuple[str, str, str],
     for number, statement in enumerate(statements):
         board.write(Add(episodic(f"f{number}", statement, start=float(number), source=SEEN)), by="test")
     for change in list(board.changes()):
-        for _ in range(failures + 1):  # as often as it raises
+        for _ in range(failures + 3):  # as often as it raises
             try:
                 learner.changed(change, own)
                 break
@@ -174,6 +175,33 @@ def test_a_full_disk_makes_the_learner_say_things_once(tmp_path: Path, failures:
     with Blackboard.transient() as board:
         said = told(board, Learner(str(tmp_path / "m")), ("ada", SAID, "what is wrong?"), failures=failures)
     assert said == [NOT_SEEN]
+
+
+def test_a_name_that_was_learned_is_acknowledged_once(tmp_path: Path) -> None:
+    """Fill the disk after the name was learned, when the robot looks at the table again."""
+    learner, looks, named = Learner(str(tmp_path / "m")), iter([True, True, False]), list[str]()
+
+    def look() -> None:
+        if next(looks, False):
+            raise MemoryWriteError("no space left on device")
+
+    def name_layout(question: object, name: str, by: str, event: str | None) -> tuple[int, ...]:
+        named.append(name)
+        return 1, 2, 3
+
+    scene = SimpleNamespace(objects=(1,))
+    learner._robot = SimpleNamespace(look=look, name_layout=name_layout, scene=scene, expected=())  # type: ignore[assignment]
+    learner._named = object()  # type: ignore[assignment]
+    with Blackboard.transient() as board:
+        said = told(board, learner, ("ada", SAID, "It is called breakfast."), failures=2)
+    assert (named, said) == (["breakfast"], ["Thank you: I know 'breakfast' from 3 tables."])
+
+
+def test_a_name_before_any_table_gets_an_answer(tmp_path: Path) -> None:
+    with Blackboard.transient() as board:
+        take_in(StoryOf(tmp_path, Utterance("t1 is a fork", 0.0), Utterance("this is a cup", 3.0)), board)
+        notes = noted(board, NOTICED)
+    assert notes == [f"'{name}' was not learned: no table was seen yet." for name in ("fork", "cup")]
 
 
 class Writer(Module):

@@ -59,3 +59,18 @@ def test_a_scene_in_pixels_has_places_in_pixels() -> None:
         thing["min"], thing["max"] = [1000 * v for v in thing["min"]], [1000 * v for v in thing["max"]]
     found = places_of(deixis.check(deixis.read_script(text=SCRIPT), {**scene, "unit": "px"}))
     assert 350 < found["spoon"].mean(axis=0)[0] < 550
+
+
+def test_a_missing_object_belongs_where_it_covers_no_other() -> None:
+    script = deixis.read_script(text=f"{SCRIPT}; cup above knife")
+    low, high = places_of(deixis.check(script, table(fork=(0.33, 0.0), knife=(-0.33, 0.0))))["cup"]
+    plate_low, plate_high = np.array(BOXES["plate"])
+    assert low[1] >= plate_high[1] or low[0] >= plate_high[0] or (high <= plate_low).any()
+    assert abs((low + high)[0] / 2 - 0.34) < 0.06  # above the place where the knife belongs
+
+
+def test_an_object_that_belongs_on_another_is_drawn_on_it() -> None:
+    script = deixis.read_script(text=f"{SCRIPT}; napkin on plate; napkin left of knife")
+    low, high = places_of(deixis.check(script, table()))["napkin"]
+    plate_low, plate_high = np.array(BOXES["plate"])
+    assert (plate_low - 1e-6 <= low).all() and (high <= plate_high + 1e-6).all()

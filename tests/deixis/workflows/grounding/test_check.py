@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
+from deixis.grammar.english.reader import read_english
 from deixis.perception.formats.scene_json import read_scene
-from deixis.perception.scene import PerceivedObject, Scene
+from deixis.perception.scene import Heading, PerceivedObject, Scene
 from deixis.reasoning.comparison.checking import RoleVerdict
 from deixis.report.json_answers import check_to_dict
 from deixis.report.layouts.script import check_lines
@@ -290,7 +291,7 @@ def test_why_a_place_is_undetermined_is_said() -> None:
     doubtful = replace(first, confidence=0.83)
     shown = check_lines(check(replace(scene, objects=(doubtful, replace(second, label=None), *scene.objects[2:]))))
     assert any(line.endswith(f"labelled '{first.label}' with confidence 0.83, below 0.9") for line in shown)
-    assert any(line.endswith("by its place alone") for line in shown)
+    assert any(line.endswith("lies in its place, but nothing shows what it is") for line in shown)
 
 
 CLAIMED = """layout desk "My desk" on desk
@@ -335,3 +336,68 @@ def test_a_learned_layout_keeps_its_claims(tmp_path: Path) -> None:
         assert session.show("desk").splitlines()[-1] == "dinner_plate has contents soup"
         session.forget("desk-1")
         assert session.query("SELECT ?c { ?c a dx:Claim }").rows == ()
+
+
+def laid(knife: tuple[float, float]) -> Scene:
+    """Return a plate with a knife to the right of it, whose head points in a direction."""
+    plate = box("p", (0.0, 0.0, 0.0), (0.26, 0.26, 0.02), "plate")
+    lying = box("k", (0.3, 0.02, 0.0), (0.02, 0.22, 0.01), "knife")
+    return Scene((plate, replace(lying, heading=Heading("head", knife, 0.99))))
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("knife pointing to plate", "turn it 90° counter-clockwise"),
+        ("knife with its handle away", "turn it around"),
+        ("knife pointing right", "turn it 90° clockwise"),
+        ("knife not pointing away", "turn it away from there"),
+    ],
+)
+def test_a_knife_turned_the_wrong_way_comes_with_a_remedy(text: str, remedy: str) -> None:
+    checked = check(laid((0.0, 1.0)), f"knife right of plate; {text}")
+    assert roles(checked, RoleVerdict.TURNED) == {"knife"} and not roles(checked, RoleVerdict.MISPLACED)
+    (entry,) = check_to_dict(checked)["turned"]
+    assert [said["remedy"] for said in entry["statements"]] == [remedy]
+    assert f"turned      knife (k): {remedy}" in "\n".join(check_lines(checked))
+    assert not checked.table.well and not checked.conforms
+
+
+def test_an_unknown_side_of_a_blade_is_no_fault() -> None:
+    checked = check(laid((0.0, 1.0)), "knife right of plate; knife facing plate")
+    assert checked.table.well and checked.conforms
+
+
+def glasses(*places: tuple[float, float]) -> Scene:
+    """Return a plate and glasses at places in plan."""
+    plate = box("p", (-0.13, -0.13, 0.0), (0.26, 0.26, 0.02), "plate")
+    low = [(x - 0.03, y - 0.03, 0.0) for x, y in places]
+    return Scene((plate, *(box(f"g{n}", at, (0.06, 0.06, 0.12), "glass") for n, at in enumerate(low, start=1))))
+
+
+def group(scene: Scene) -> Check:
+    return Session().check(read_english("The glasses stand behind the plate."), scene)
+
+
+def test_each_member_of_a_group_is_checked() -> None:
+    checked = group(glasses((0.0, 0.25), (0.08, 0.25), (0.08, -0.25)))
+    assert {entry.perceived for entry in checked.table.of(RoleVerdict.CORRECT)} == {"p", "g1", "g2"}
+    (wrong,) = checked.table.of(RoleVerdict.MISPLACED)
+    assert (wrong.role, wrong.perceived) == ("glasses", "g3") and not checked.table.extra
+    assert not checked.conforms and "behind(glasses, plate)" in checked.report
+
+
+def test_a_group_is_well_laid_or_missing_as_a_whole() -> None:
+    checked = group(glasses((0.0, 0.25), (0.08, 0.25)))
+    assert checked.table.well and checked.conforms
+    assert roles(group(glasses()), RoleVerdict.MISSING) == {"glasses"}
+
+
+def test_a_learned_group_teaches_and_checks_all_members(tmp_path: Path) -> None:
+    session, seen = Session(tmp_path), glasses((0.0, 0.25), (0.08, 0.25))
+    learned = session.learn(read_english("The glasses stand behind the plate."), seen)
+    assert [match.perceived for match in learned.lesson.categories() if match.object == "glasses"] == ["g1", "g2"]
+    assert learned.categories == ("glass", "plate")
+    checked = session.check(learned.lesson.layout.name, glasses((0.0, 0.25), (0.08, -0.25)))
+    assert {entry.perceived for entry in checked.table.of(RoleVerdict.MISPLACED)} == {"g2"}
+    session.close()

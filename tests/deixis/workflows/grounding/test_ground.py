@@ -186,7 +186,7 @@ def test_a_scene_in_centimetres_without_its_unit_is_noted() -> None:
     script = package.read_script(text="plate left of cup; fork left of plate")
     boxes = {"o1": [30, 0, 57, 27], "o2": [0, 0, 3, 20], "o3": [70, 0, 80, 10]}
     objects = [{"id": name, "min": box[:2], "max": box[2:]} for name, box in boxes.items()]
-    assert any('check the "unit"' in note for note in package.ground(script, {"objects": objects}).notes)
+    assert any('add "unit": "cm" to the scene' in note for note in package.ground(script, {"objects": objects}).notes)
     assert not any("unit" in note for note in package.ground(script, {"objects": objects, "unit": "cm"}).notes)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,6 +16,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add
 from deixis.memory.episodes.episode import episodic
 from deixis.memory.episodes.experiences import finish_recording, start_recording
+from deixis.memory.journal import write_together
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.workflows.knowledge.episodes import (
@@ -90,10 +91,16 @@ class Pupil:
     def __init__(self) -> None:
         self.taught: list[tuple[Script, Scene]] = []
 
-    def learn(self, script: Script, scene: Scene) -> Any:
+    def learn(self, script: Script, scene: Scene, *, events: Sequence[str] = (), episodes: Any = None) -> Any:
         """Keep a script and a scene."""
         self.taught.append((script, scene))
-        return SimpleNamespace(lesson=SimpleNamespace(id=f"lesson-{len(self.taught)}"))
+        lesson = SimpleNamespace(id=f"lesson-{len(self.taught)}")
+        write_together(lambda _: None, [episodes([lesson])])
+        return SimpleNamespace(lesson=lesson)
+
+    def lessons_of_events(self) -> dict[str, str]:
+        """Return nothing."""
+        return {}
 
     def remembers(self) -> bool:
         """Return True if something was taught."""

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_scripts import scripts
 
-from deixis.grammar.parser import parse_script, read_layout
+from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.grammar.script import Script
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
@@ -374,3 +374,10 @@ def test_names_in_any_script_are_drawn_within_the_frame() -> None:
     assert {"日本語", "wine glass 0", "_"} <= {text.get_text() for text in axes.texts}
     middles = [axes.transData.transform(text.get_position()) for text in axes.texts]
     assert all(axes.bbox.contains(x, y) for x, y in middles)
+
+
+def test_a_keyboard_lies_across_and_a_fork_does_not() -> None:
+    (table,) = imagine(parse_script("keyboard below monitor; fork left of keyboard")).tables
+    sides = {thing.label: np.subtract(thing.maximum, thing.minimum) for thing in table.scene.objects}
+    assert sides["keyboard"][0] > sides["keyboard"][1] and sides["monitor"][0] > sides["monitor"][1]
+    assert sides["fork"][0] < sides["fork"][1]

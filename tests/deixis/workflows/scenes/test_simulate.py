@@ -15,14 +15,14 @@ from typer.testing import CliRunner, Result
 
 from deixis.cli.scenes.simulate import simulate as simulate_command
 from deixis.errors import DeixisError
-from deixis.grammar.parser import parse_script, read_layout
+from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.simulator.laying import truth_scene
-from deixis.perception.simulator.solids import fitted
-from deixis.perception.simulator.tableware import make
+from deixis.perception.simulator.meshes.solids import fitted
+from deixis.perception.simulator.meshes.tableware import make
 from deixis.session import Session
 from deixis.workflows.layouts.lay_table import LaidScript, NoTableError, TimeIsUpError, lay_random, lay_script
 from deixis.workflows.scenes.simulate import CameraSetup, simulate

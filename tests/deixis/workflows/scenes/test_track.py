@@ -9,8 +9,8 @@ from commands import deixis as deixis_command
 from schemas import errors_in
 
 from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.simulator.films.motion import Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
-from deixis.perception.simulator.motion import Rest, TakeAway, film
 from deixis.perception.tracking.frame import Frame
 from deixis.perception.tracking.stream import recording
 from deixis.report.scenes.track import tracking_lines
@@ -45,6 +45,14 @@ def test_command_prints_lines_of_the_schema(folder: Path) -> None:
     lines = [json.loads(line) for line in out.splitlines()]
     assert [len(line["things"]) for line in lines] == [2] * 6
     assert [errors_in("situation", line) for line in lines] == [[]] * 6
+
+
+@pytest.mark.parametrize("option", [(), ("--json",), ("--lines",)])
+def test_stream_of_unusable_frames_exits_with_2(tmp_path: Path, option: tuple[str, ...]) -> None:
+    for name in ("0.pcd", "1.pcd"):
+        (tmp_path / name).write_text("no cloud")
+    code, _, err = deixis_command("track", tmp_path, *option)
+    assert code == 2 and "got none of 2" in err and "0.pcd" in err and len(err.strip().splitlines()) == 1
 
 
 def test_thing_that_was_taken_away_is_gone() -> None:

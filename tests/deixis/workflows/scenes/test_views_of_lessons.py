@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from both_stores import Example, example_in, findings, state
+from all_stores import Example, example_in, findings, state
 from killing import KilledAtSteps, killed_at_steps
 from read_only import make_read_only
 
@@ -136,11 +136,11 @@ def test_verify_names_where_the_stores_differ(example: Example, memory: Path) ->
     told = " ".join(findings(memory))
     assert "it belongs to the lesson 'tea-1', which is missing" in told
     with Session(memory) as session:
-        session.learn(example.script, example.scene(3))
-        session.views().rename("fork", "prongs")
+        session.learn(example.script, example.scene(4))
+        session.views().rename("fork", "tines")
         session.views().forget("plate")
     told = " ".join(findings(memory))
-    assert "of 'fork', which is now of 'prongs'" in told and "of 'plate', which is missing" in told
+    assert "of 'fork', which is now of 'tines'" in told and "of 'plate', which is missing" in told
     shutil.rmtree(memory / "perceptual")
     assert sum("which is missing" in line for line in findings(memory)) == 3
 

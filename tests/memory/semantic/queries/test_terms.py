@@ -36,6 +36,10 @@ def test_the_ontology_gives_labels_without_naming_its_graph(taught: deixis.Sessi
 @pytest.mark.parametrize(
     ("query", "message"),
     [
+        (
+            "SELECT ?x { ?x a owl:class }",
+            "query:1:18: the vocabulary has no term 'owl:class'; did you mean 'owl:Class'?",
+        ),
         ("SELECT ?x { ?x a dx:fork }", "query:1:18: the vocabulary has no term 'dx:fork'; did you mean 'dx:Fork'?"),
         ("SELECT ?x { ?x dx:inLayuot ?y }", "did you mean 'dx:inLayout'?"),
         ("ASK { ?x a <https://w3id.org/deixis/onto#Layuot> }", "did you mean 'dx:Layout'?"),

@@ -171,7 +171,7 @@ def test_a_text_with_places_grounds_things_without_labels() -> None:
 
 
 def test_scripts_without_claims_have_the_same_problem() -> None:
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.workflows.layouts.read import as_scene
 
     things = [{"id": name, "min": box[0], "max": box[1]} for name, box in zip("pq", TABLE[:2].tolist(), strict=True)]

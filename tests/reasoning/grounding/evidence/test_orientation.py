@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import deixis
-from deixis.perception.scene import OrientedBox
+from deixis.perception.scene import Heading, OrientedBox
 from deixis.reasoning.grounding.answer import Outcome
 from deixis.reasoning.grounding.reference.answer import Frame
 
@@ -62,3 +62,39 @@ def test_a_long_thing_points_along_its_axis() -> None:
     )
     assert isinstance(knife.objects[0].oriented, OrientedBox)
     assert grounded("knife pointing to cup", knife).matches["cup"].perceived == "right"
+
+
+def cutlery(*heads: tuple[float, float] | None) -> deixis.Scene:
+    """Return knives in a row, with the directions of their heads."""
+    count = len(heads)
+    names = [f"k{number}" for number in range(1, count + 1)]
+    bare = deixis.Scene.from_boxes(
+        centre=[[0.1 * i, 0.0, 0.0] for i in range(count)],
+        size=[[0.02, 0.2, 0.01]] * count,
+        ids=names,
+        labels=["knife"] * count,
+    )
+    known = [None if way is None else Heading("head", way, 0.99) for way in heads]
+    return replace(bare, objects=tuple(replace(t, heading=h) for t, h in zip(bare.objects, known, strict=True)))
+
+
+@pytest.mark.parametrize(
+    ("text", "knife"),
+    [("knife pointing away", "k1"), ("knife with its handle away", "k2"), ("knife not pointing away", "k2")],
+)
+def test_claim_of_direction_picks_the_thing_that_points_there(text: str, knife: str) -> None:
+    found = grounded(text, cutlery((0.0, 1.0), (0.0, -1.0)))
+    assert found.matches["knife"].perceived == knife and (found.matches["knife"].probability or 0) > 0.85
+
+
+def test_claim_of_direction_is_neutral_without_headings() -> None:
+    (match,) = grounded("knife pointing away", cutlery(None, None)).matches.values()
+    assert match.probability == pytest.approx(0.5, abs=0.02)
+
+
+def test_head_decides_which_thing_a_knife_points_at() -> None:
+    knife = cutlery((-1.0, 0.0), None, None)
+    left = replace(knife.objects[2], minimum=(-0.35, -0.05, 0.0), maximum=(-0.25, 0.05, 0.1), label="cup")
+    right = replace(knife.objects[1], minimum=(0.25, -0.05, 0.0), maximum=(0.35, 0.05, 0.1), label="cup")
+    seen = replace(knife, objects=(knife.objects[0], left, right))
+    assert grounded("knife pointing to cup", seen).matches["cup"].perceived == "k3"

@@ -134,7 +134,7 @@ def test_where_no_fact_can_be_used_it_is_refused() -> None:
 
 
 def test_a_scene_of_a_shortlist_names_all_that_is_left_out() -> None:
-    from deixis.grammar.parser import parse_script
+    from deixis.grammar.layout.parser import parse_script
     from deixis.workflows.grounding.ground import GroundingRequest, answer
 
     boxes = grid(400)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.grammar.parser import read_layout
+from deixis.grammar.layout.parser import read_layout
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables
 from deixis.reasoning.grounding.matching.problem import Problem

@@ -8,10 +8,10 @@ from deixis.deadline import Deadline
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.bridges import links_between
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
 from deixis.reasoning.qualitative.networks.combination import close_jointly, joint_conflict, solve_jointly
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 RA, RCC8, CD, DISTANCE = (calculus(name) for name in ("ra", "rcc8", "cd", "distance"))
 

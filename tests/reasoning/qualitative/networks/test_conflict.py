@@ -12,7 +12,7 @@ from deixis.deadline import Deadline
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.networks.conflict import NetworkConflict, minimal_conflict, without_leaves
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.search import Verdict, solve
+from deixis.reasoning.qualitative.networks.search.consistency import Verdict, solve
 
 ALLEN, POINT = calculus("allen"), calculus("point")
 

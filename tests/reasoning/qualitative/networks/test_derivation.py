@@ -11,11 +11,11 @@ from deixis.ontology.graph import Source
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
-from deixis.reasoning.qualitative.networks.closure import close
+from deixis.reasoning.qualitative.networks.closure.algebraic import close
+from deixis.reasoning.qualitative.networks.closure.rounds import PairRelation, Rounds, Step, step_lines
 from deixis.reasoning.qualitative.networks.conflict import minimal_conflict
 from deixis.reasoning.qualitative.networks.derivation import contradiction, derive, explain
 from deixis.reasoning.qualitative.networks.network import Constraint, Network
-from deixis.reasoning.qualitative.networks.rounds import PairRelation, Rounds, Step, step_lines
 
 POINT, ALLEN, RA = calculus("point"), calculus("allen"), calculus("ra")
 

@@ -1,0 +1,1 @@
+"""The words of a sentence as chunks: noun phrases, verb groups, prepositions and joints."""

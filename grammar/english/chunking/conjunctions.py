@@ -1,0 +1,183 @@
+"""Find commas, conjunctions and relative pronouns, which join clauses and noun phrases."""
+
+from __future__ import annotations
+
+from deixis.grammar.english.chunking.chunk import FINITE, Chunk, Relator
+from deixis.grammar.english.chunking.verb_groups import VerbChunker
+from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.adjectives import is_adjective
+from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, PRONOUNS
+from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
+from deixis.grammar.english.vocabulary.tables import word_set
+
+SUBORDINATORS = word_set(
+    "wherever if when while because since unless although though once so where whereas until whether whenever"
+)
+
+
+class JointChunker(VerbChunker):
+    """Finder of joints."""
+
+    def _joint(self, at: int) -> Chunk | None:
+        norm, after = self.norms[at], self.norms[at + 1]
+        previous = self._previous()
+        before = self.chunks[-2].type if len(self.chunks) > 1 else ""
+        told = previous in FINITE or previous == "DO" or (previous in ("PART", "ADJP") and before == "BE")
+        told = told or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
+        if norm == "that" and told and (after in PRONOUNS or self.nouns.starts(at + 1)):
+            return Chunk("COMPLEMENT", at, at + 1)
+        if norm == "that" and previous in ("NP", "COMMA", "ADV", "AND") and not self._demonstrative(at):
+            return Chunk("REL", at, at + 1)
+        follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
+        if norm in ("which", "who", "whom", "where") and follows_noun and at > 0:
+            return Chunk("REL", at, at + 1)
+        if (norm == "unlike" and not previous) or (
+            not previous and (norm, after) in (("instead", "of"), ("rather", "than"))
+        ):
+            return Chunk("SUB", at, at + (1 if norm == "unlike" else 2), "instead")
+        if norm == "that" and previous == "PREP" and (self.nouns.is_determiner(at + 1) or after in ("", ",", ".", ";")):
+            return Chunk("NP", at, at + 1, NounPhrase((self.words[at].start, self.words[at].end), pronoun="this"))
+        if (
+            norm == "from" and previous == "NP" and after in ("getting", "being", "coming", "going")
+            and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
+        ):  # fmt: skip
+            return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        if norm == "whose":
+            return Chunk("WHOSE", at, at + 1)
+        if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
+            return Chunk(
+                "WHERE" if norm == "where" and (after in IS_FORMS or after in MODALS) else "SUB", at, at + 1, norm
+            )
+        if norm == "there" and (
+            after in IS_FORMS
+            or (after == "used" and self.norms[at + 2] == "to")
+            or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
+            or (previous in FINITE and at == 1)
+        ):
+            return Chunk("THERE", at, at + 1)
+        if norm == "out" and after == "of" and previous in ("", "COMMA", "ADVERB", "CUT"):
+            return Chunk("PREP", at, at + 2, Relator(Preposition("out of", "among")))
+        if (
+            norm in ("to", "against", "toward", "towards")
+            and previous == "BE"
+            and len(self.chunks) > 1
+            and self._is_back(self.chunks[-2])
+        ):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "back_to")))
+        directed = bool({self.norms[at + 1], self.norms[at + 2], self.norms[at + 3]} & _LATERAL)
+        if norm in ("from", "to") and previous == "MEASURE" and self.nouns.starts(at + 1) and not directed:
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "measured_from")))
+        if norm == "to" and previous == "THAN":
+            return Chunk("ADVERB", at, at + 1, norm)
+        if (
+            norm in ("neither", "either", "both")
+            and not (norm == "both" and previous == "PUT")
+            and (after in prepositions() or self._match(at + 1))
+        ):
+            return Chunk("NOT" if norm == "neither" else "ADVERB", at, at + 1, norm)
+        if norm == "of":
+            if previous == "MEASURE":
+                return Chunk("PREP", at, at + 1, Relator(Preposition("of", "measured_from")))
+            if previous in ("", "COMMA", "CUT") or (previous == "ADVERB" and len(self.chunks) == 1):
+                return Chunk("PREP", at, at + 1, Relator(Preposition("of", "among")))
+            return Chunk("OF", at, at + 1)
+        if norm == "in" and self.nouns.is_colour_alone(at + 1):
+            return Chunk("ADVERB", at, at + 1, "in")
+        if (
+            norm == "as"
+            and previous == "NP"
+            and (
+                self.chunks[-1].value.determiner == "same"
+                or any(a.word == "same" for a in self.chunks[-1].value.adjectives)
+            )
+        ):
+            return Chunk("PREP", at, at + 1, Relator(Preposition("as", "as")))
+        if norm == "than":
+            return Chunk("THAN", at, at + 1)
+        form = self._verbs.get(after)
+        told = form is not None and form.form in ("past", "participle") and previous in ("COMMA", "")
+        if norm == "as" and told and self.norms[at + 2] not in IS_FORMS:
+            return Chunk("ADVERB", at, at + 2, "as told")  # 'as left on Friday'
+        if norm == "as" and previous == "COMMA" and self._clause_follows(at + 1) and after not in PRONOUNS:
+            return Chunk("SUB", at, at + 1, "because")  # 'behind the jar, as guests should not see it'
+        if norm == "as" and after in ("you", "if", "seen", "viewed", "one", "i", "we"):
+            return Chunk("SUB", at, at + 1, "as")
+        excepting = previous == "NP" and self.chunks[-1].value.pronoun in _ALL
+        about = (
+            norm == "about"
+            and previous in ("BE", "NP")
+            and self.nouns.starts(at + 1)
+            and self.nouns.number(at + 1) is None
+        )
+        if norm == "about" and previous == "PART" and self.nouns.starts(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition("about", "around")))  # 'scattered about it'
+        if (norm == "but" and excepting) or about:
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))
+        if norm in _CONJUNCTIONS:
+            return Chunk(_CONJUNCTIONS[norm], at, at + 1, norm)
+        if tuple(self.norms[at : at + 3]) in _SUBORDINATING:
+            return Chunk("SUB", at, at + 3, "when")
+        if (norm, after) == ("so", "that"):
+            return Chunk("SUB", at, at + 2, "so")
+        if (norm, after) == ("except", "that"):
+            return Chunk("CUT", at, at + 2)
+        if tuple(self.norms[at : at + 2]) in _SUBORDINATING:
+            return Chunk("SUB", at, at + 2, "if")
+        if at == 0 and norm in ("suppose", "assume", "imagine") and any(word in IS_FORMS for word in self.norms):
+            return Chunk("SUB", at, at + 1 + (after == "that"), "if")
+        if at == 0 and norm == "let" and "be" in self.norms:
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "cause" and (after in PRONOUNS or after in ("there", "theres")):
+            return Chunk("SUB", at, at + 1, "because")
+        if norm == "so" and previous in FINITE and (is_adjective(after) or self._match(at + 1) is not None):
+            return None  # 'stood so close to it'
+        if norm == "otherwise" and previous == "SUB":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'because otherwise it falls'
+        if norm in _WHOEVER:
+            return Chunk("SUB", at, at + 1, "if")
+        if norm in SUBORDINATORS:
+            return Chunk("SUB", at, at + 1, norm)
+        if norm in ("before", "after") and (
+            after in ("you", "we", "i") or after.endswith("ing") or self._clause_follows(at + 1)
+        ):
+            return Chunk("SUB", at, at + 1, norm)
+        return None
+
+    def _clause_follows(self, at: int) -> bool:
+        """Return True if a noun phrase with a verb after it begins here: *before the guests enter*."""
+        found = self.nouns.phrase(at, "SUB") if self.nouns.starts(at) else None
+        if found is None or found[1] is None:
+            return False
+        norm = self.norms[found[0]]
+        form = self._verbs.get(norm)
+        return (
+            norm in IS_FORMS
+            or norm in MODALS
+            or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
+        )
+
+    def _is_back(self, chunk: Chunk) -> bool:
+        """Return True for *your back*."""
+        return chunk.type == "NP" and chunk.value.head == "back" and chunk.value.owner is not None
+
+    def _demonstrative(self, at: int) -> bool:
+        """Return True if *that* stands for a thing or before a noun, and does not begin a relative clause."""
+        if self._previous() in ("NP", "ADV"):
+            return False
+        after = self.norms[at + 1]
+        return self._previous() == "AND" and after in IS_FORMS
+
+
+_CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
+
+_SUBORDINATING = {
+    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
+    ("provided", "that"), ("given", "that"),
+}  # fmt: skip
+
+_WHOEVER = word_set("otherwise whoever whatever whichever whomever")
+"""Words for any person or thing of which the clause holds: it is a condition."""
+
+_ALL = frozenset({"all", "everything", "nothing", "none", "anything"})
+
+_LATERAL = frozenset({"left", "right"})

@@ -1,0 +1,422 @@
+"""Find fixed phrases that state no place: greetings, opinions, wishes, purposes, denials before the subject."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.chunking.conjunctions import JointChunker
+from deixis.grammar.english.chunking.relators import CLAUSE_ENDS
+from deixis.grammar.english.chunking.verb_groups import LAYERS
+from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.adjectives import is_adjective
+from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
+    CHAT_WORDS,
+    GREETINGS,
+    HEDGES,
+    IS_FORMS,
+    MODALS,
+    NEGATIONS,
+)
+from deixis.grammar.english.vocabulary.idioms import IDIOMS
+from deixis.grammar.english.vocabulary.nouns import PARTS
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, Preposition, places_alone, prepositions
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import FIND_VERBS, PUT_VERBS
+
+
+@cache
+def _idioms() -> dict[str, list[tuple[str, ...]]]:
+    found: dict[str, list[tuple[str, ...]]] = {}
+    for phrase in sorted(IDIOMS, key=len, reverse=True):
+        found.setdefault(phrase[0], []).append(phrase)
+    return found
+
+
+class FixedPhraseChunker(JointChunker):
+    """Finder of fixed phrases."""
+
+    def _causative(self, at: int) -> int | None:
+        """Return the index of the verb of *let the ribbon hang …* and *ask an adult to stand …*; None for others."""
+        needs_to = _CAUSATIVES.get(self.norms[at])
+        if needs_to is None or self._previous() not in JOINT_TYPES | {"", "ADVERB"} or not self.nouns.starts(at + 1):
+            return None
+        for i in range(at + 2, min(at + 7, len(self.words))):
+            form = self._verbs.get(self.norms[i])
+            if form is not None and form.form == "base" and form.kind in ("posture", "lean", "face", "point", "other"):
+                has_to = self.norms[i - 1] == "to"
+                place = self.norms[i + 1] in prepositions() or self.norms[i + 1] in places_alone()
+                if has_to == needs_to and place:
+                    return i
+            if self.norms[i] in prepositions() and self.norms[i] != "to":
+                return None
+        return None
+
+    def _denial(self, at: int) -> int | None:
+        """Return the end of *under no circumstances* before *must the cup …*: the verb after the subject is denied."""
+        if self._previous() not in ("", "COMMA", "CUT", "AND", "ADVERB", "COLON"):
+            return None
+        for phrase in (*_DENIALS, *self._denied_circumstances(at)):
+            end = at + len(phrase)
+            if tuple(self.norms[at:end]) == phrase:
+                if self.norms[end] in IS_FORMS and self.norms[end] != "'s" and self.nouns.starts(end + 1):
+                    past = self.norms[end] in ("was", "were")
+                    self._denied_be = VerbGroup("be", "be", "finite", positive=False, past=past)
+                    return end + 1
+                if self.norms[end] in MODALS or self.norms[end] in ("do", "does", "is", "are"):
+                    self._denied = MODALS.get(self.norms[end], "must")
+                    return end + 1
+                if self._verbs.get(self.norms[end]) is not None:
+                    self._denied = "must"
+                    return end
+        return None
+
+    def _denied_circumstances(self, at: int) -> tuple[tuple[str, ...], ...]:
+        """Return *under no pretext*: a preposition and a bare noun that *no* denies."""
+        if self.norms[at + 1] != "no" or self.norms[at] not in ("under", "on", "at", "in", "by", "for", "to", "with"):
+            return ()
+        return tuple(tuple(self.norms[at : at + 2 + words]) for words in (1, 2))
+
+    def _idiom(self, at: int) -> Chunk | None:
+        norm = self.norms[at]
+        previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
+        for phrase in _idioms().get(norm, ()):
+            end = at + len(phrase)
+            if tuple(self.norms[at:end]) == phrase and not (
+                (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
+                or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
+                or (phrase == ("above", "all") and self.norms[end] != ",")
+            ):
+                return Chunk("ADVERB", at, end, " ".join(phrase))
+        if norm == "from" or (
+            norm in DIRECTION_WORDS and self.norms[at + 1] == "to" and self.norms[at + 2] in DIRECTION_WORDS
+        ):
+            order = self._order(at)
+            if order is not None:
+                return order
+        told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
+        if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
+            return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
+        called = at + 1 + (norm in ("hang", "hold") and self.norms[at + 1] == "on")
+        if norm in _ATTENTION and self.norms[called] == "," and self._previous() in ("", "ADVERB", "COMMA", "CUT"):
+            return Chunk("ADVERB", at, called, norm)  # 'no, wait, the cups are …'
+        if (
+            norm in ("at", "by", "until", "before", "after", "from", "since")
+            and self.norms[at + 2].replace(".", "") in ("am", "pm")
+            and self.nouns.number(at + 1) is not None
+        ):
+            return Chunk("ADVERB", at, at + 3, "time")  # 'at 8 a.m.'
+        goal = self._goal(at)
+        if goal is not None:
+            return Chunk("FIND", at, goal, VerbGroup(norm, "other", "base"))
+        if norm == "welcome" and at == 0 and self.norms[1] in ("in", "to", "at"):
+            end = next(i for i in range(1, len(self.norms)) if self.norms[i] in ("", ",", "!", ".", ":", ";"))
+            return Chunk("ADVERB", at, end, norm)
+        if self.nouns.number(at) is not None and self.norms[at + 1] in LAYERS and self._previous() in ("PART", "ADV"):
+            return Chunk("ADVERB", at, at + 2, "layers")  # 'stacked two high'
+        ends = self.norms[at + 1] in prepositions() or self.norms[at + 1] in ("", ",", ".", "and")
+        if norm in ("later", "earlier") and ends and self._previous() in FINITE | {"PART", "TPART", "NP"}:
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "in" and self.norms[at + 1] == "first" and self.norms[at + 2] in ("", ",", ".", ";"):
+            return Chunk("ADVERB", at, at + 2, "in first")
+        if (
+            norm in ("in", "over", "up", "down")
+            and self._previous() in FINITE
+            and self.norms[at + 1] in _UNDER_OR_BEHIND
+        ):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'it slides in behind the shelf'
+        if norm == "set" and self.norms[at + 1] == "up" and self._previous() in FINITE:
+            return Chunk("ADVERB", at, at + 2, "set up")
+        if norm == "in" and self.norms[at + 1 : at + 3] == ["order", "of"]:
+            return Chunk("ADVERB", at, min(at + 4, len(self.words)), "in order")
+        if (
+            self.norms[at + 1] == "side"
+            and self.norms[at + 2] in ("up", "down", "out", "in", "outwards", "inwards")
+            and self._previous() in ("COMMA", "NP")
+            and self.norms[at + 3] in CLAUSE_ENDS | {"and", "on", "in"}
+        ):
+            return Chunk("ADVERB", at, at + 3, "side up")  # 'lay the sheet on the mat, shiny side down'
+        if (
+            self.norms[at + 1] in ("up", "down", "on", "outwards", "inwards", "uppermost")
+            and self._previous() == "COMMA" and self.norms[at + 2] in CLAUSE_ENDS
+            and norm not in PARTS and norm not in ADVERBS and self.nouns.is_noun(at)
+        ):  # fmt: skip
+            return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
+        if norm in ("itself", "themselves") and self._previous() == "NP":
+            return Chunk("ADVERB", at, at + 1, norm)  # 'not in the box itself'
+        if norm in ("consists", "consist", "comprises") and (self.norms[at + 1] == "of" or norm == "comprises"):
+            return Chunk("CUT", at, at + (1 if norm == "comprises" else 2))
+        if norm in ("marked", "labelled", "labeled") and self._previous() == "NP" and self.nouns.is_noun(at + 1):
+            return Chunk("ADVERB", at, at + 2, norm)  # 'the beaker marked "waste" at the end'
+        if (
+            norm == "over"
+            and not self.nouns.starts(at + 1)
+            and any(
+                form.lemma in _TURNING for word in self.norms[max(0, at - 5) : at] if (form := self._verbs.get(word))
+            )
+        ):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'turn the desk over'
+        if norm == "from" and self.norms[at + 1] == "where" and self.norms[at + 2] in ("i", "you", "we"):
+            end = at + 3
+            while self.norms[end] in IS_FORMS or self.norms[end] in (
+                "sit",
+                "sat",
+                "stand",
+                "stood",
+                "sitting",
+                "standing",
+            ):
+                end += 1
+            return Chunk("ADVERB", at, end, "from where")
+        if norm == "out" and self.norms[at + 1] == "of":
+            end = at + 2 + (self.norms[at + 2] in ("my", "your", "his", "her", "our", "their", "the"))
+            if self.norms[end] in ("reach", "sight", "way", "place", "order"):
+                return Chunk("ADVERB", at, end + 1, "out of reach")
+        if norm == "say" and self._previous() == "COMMA" and self.norms[at + 1] in prepositions():
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "one" and self.norms[at + 1] in MODALS:
+            person = NounPhrase((self.words[at].start, self.words[at].end), pronoun="someone")
+            return Chunk("NP", at, at + 1, person)
+        if (
+            norm == "there" and self.norms[at + 1] in ("is", "'s") and self.norms[at + 2] == "no"
+            and self.norms[at + 3] in ("way", "chance")
+        ):  # fmt: skip
+            end = at + 4 + (self.norms[at + 4] == "that")
+            return Chunk("COMPLEMENT", at, end, VerbGroup("think", "other", "base", positive=False))
+        if norm == "had" and at == 0 and "been" in self.norms:
+            return Chunk("SUB", at, at + 1, "if")
+        if norm in ("i", "we", "it") and previous_joint:
+            opinion = self._opinion(at) if norm != "it" else self._impersonal(at)
+            if opinion is not None:
+                return Chunk("COMPLEMENT", at, opinion[0], opinion[1])
+        orders = norm == "be" and self._previous() in JOINT_TYPES | {""} and self.norms[at + 2] in CLAUSE_ENDS
+        if orders and self.norms[at + 1] not in self._verbs and not is_adjective(self.norms[at + 1]):
+            return Chunk("DO", at, at + 1, VerbGroup("be", "other", "base"))  # 'be polite'
+        apart = norm == "one" and self.norms[at + 1] in ("at", "on", "to") and self.norms[at + 2] in ("each", "either")
+        if apart and (self._previous() in ("PART", "VERB", "TPART") or self.norms[at - 1] in self._verbs):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'placed one at each side of it'
+        if norm in ("both", "all", "each") and self._previous() == "BE" and not self.nouns.starts(at + 1):
+            return Chunk("ADVERB", at, at + 1, norm)
+        if (
+            norm == "to"
+            and self.norms[at + 1] in PUT_VERBS
+            and self._previous()
+            and self.nouns.starts(at + 2)
+            and (self.nouns.is_determiner(at + 2) or self.norms[at + 2] in ("it", "them"))
+        ):
+            denied = any(word in NEGATIONS or word in _FORBIDDING for word in self.norms[:at])
+            modal = None if denied or self._is_told_to(at) else "might"
+            return Chunk(
+                "PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", modal, positive=not denied)
+            )
+        if norm == "to" and self._previous() == "NP" and self.norms[at + 1] in FIND_VERBS:
+            return Chunk("ADVERB", at, at + 2 + (self.norms[at + 2] in ("up", "out")), "to pick")
+        if norm in ("you", "we", "i", "that"):
+            wished = self._wish(at)
+            if wished is not None and self._previous() in ("COMMA", "AND", "BUT") and self._chooses(wished):
+                return Chunk("FIND", at, wished, VerbGroup("choose", "other", "base"))
+            if wished is not None:
+                alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
+                placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
+                return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
+        if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
+            return Chunk("ADVERB", at, at + 1, norm)
+        if norm == "like" and self._previous() in ("BE", "TVERB", "NP") and self.nouns.number(at + 1) is not None:
+            return Chunk("ADVERB", at, at + 1, norm)  # 'there's like three hoodies'
+        if (
+            norm in GREETINGS
+            and self._previous() in ("", "ADVERB")
+            and (self.norms[at + 1] in (",", "!") or norm in ("hi", "oh", "hello", "hey", "ok", "okay"))
+        ):
+            end = at + 1
+            if self.norms[end] in GREETINGS:
+                end += 1
+            return Chunk("ADVERB", at, end, norm)
+        return None
+
+    def _goal(self, at: int) -> int | None:
+        """Return where the goal of a command begins: *go over to the chair by the window*; None for another command.
+
+        The goal of *go to the table and take the cup* is the cup.
+        """
+        end = at + 1 + (self.norms[at + 1] in ("over", "up", "straight", "back"))
+        if not (
+            self.norms[at] in _APPROACHING
+            and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT")
+            and (self.norms[end] in ("to", "toward", "towards") or (self.norms[at], self.norms[end]) == ("head", "for"))
+            and self.nouns.is_determiner(end + 1)
+            and self.norms[end + 2] not in ("left", "right")
+            and "you" not in self.norms[:at]
+        ):
+            return None
+        later = zip(self.norms[end + 1 :], self.norms[end + 2 :], strict=False)
+        if any(joint in ("and", ",", "then") and norm in FIND_VERBS | PUT_VERBS | _LOOKING for joint, norm in later):
+            return None
+        return end + 1
+
+    def _is_told_to(self, at: int) -> bool:
+        """Return True if the words before an infinitive make it a command: *remember to put*, not *afraid to put*."""
+        i = at - 1
+        while i > 0 and (self.norms[i] in ADVERBS or self.norms[i] in HEDGES):
+            i -= 1
+        if self.norms[i] in _GOVERNORS:
+            return True
+        first = next((k for k in range(len(self.chunks) - 1, -1, -1) if self.chunks[k].type in JOINT_TYPES), -1)
+        if self._previous() == "NP" and any(c.type in ("PUT", "DO", "FIND") for c in self.chunks[first + 1 :]):
+            return True  # 'take the cup to put it on the tray'
+        joined = self.norms[i] in ("and", "then", ",", "or")
+        return joined and not _GOVERNORS.isdisjoint(self.norms[:i])
+
+    def _opinion(self, at: int) -> tuple[int, VerbGroup] | None:
+        """Return the end and the verb of *I think that*, *we don't believe that*, which make a clause probable."""
+        i, positive = at + 1, True
+        while self.norms[i] in ("do", "not", "never", "really", "would", "can"):
+            positive = positive and self.norms[i] not in NEGATIONS
+            i += 1
+        if self.norms[i] not in ("think", "believe", "guess", "suppose", "assume", "imagine"):
+            return None
+        i += 1 + (self.norms[i + 1] == "that")
+        group = VerbGroup("think", "other", "base", positive=positive, adverbs=("probably",))
+        return (i, group) if self.nouns.starts(i) else None
+
+    def _impersonal(self, at: int) -> tuple[int, VerbGroup] | None:
+        """Return the end and the verb of *it seems that*, *it could be that*, *it isn't true that*."""
+        i, positive, modal, adverbs = at + 1, True, None, []
+        while self.norms[i] not in ("that", "like", "as"):
+            norm = self.norms[i]
+            if norm in NEGATIONS or norm in ("false", "wrong", "impossible", "unlikely", "untrue"):
+                positive = not positive
+            elif norm in MODALS:
+                modal = MODALS[norm]
+            elif norm in (
+                "possible",
+                "thought",
+                "said",
+                "believed",
+                "rumoured",
+                "rumored",
+                "claimed",
+                "hoped",
+                "feared",
+            ):
+                modal = "might"
+            elif norm in ("likely", "probable", "seems", "appears", "looks"):
+                adverbs.append("probably")
+            elif norm not in IS_FORMS and norm not in ADVERBS and norm not in HEDGES and norm not in _JUDGEMENTS:
+                return None
+            i += 1
+            if i - at > 6:
+                return None
+        if (self.norms[i] != "that" and self.norms[i - 1] not in ("seems", "appears", "looks")) or i == at + 1:
+            return None
+        i += 1 + (self.norms[i + 1] == "if")
+        if not self.nouns.starts(i) or self.norms[i] in ("a", "an"):
+            return None
+        return i, VerbGroup("be", "be", "finite", modal, positive, adverbs=tuple(adverbs))
+
+    def _wish(self, at: int) -> int | None:
+        """Return the end of *you want (to pick)*, *you are looking for*: such words say nothing of places."""
+        i = at + (self.norms[at] == "that")
+        if self.norms[i] not in ("you", "we", "i"):
+            return None
+        i += 1
+        while self.norms[i] in ADVERBS or self.norms[i] in ("'ll", "will", "would", "'d", "should", "must"):
+            i += 1
+        if (
+            self.norms[i] in ("are", "'re", "am", "'m")
+            and self.norms[i + 1] in ("looking", "searching")
+            and self.norms[i + 2] == "for"
+        ):
+            return i + 3
+        if self.norms[i] in ("are", "'re") and self.norms[i + 1] == "to":
+            i += 1
+        if self.norms[i] in ("tell", "ask") and "to" in self.norms[i + 2 : i + 4]:
+            i = self.norms.index("to", i)
+        wants = self.norms[i] in ("want", "need", "have", "like") and not (
+            (self.norms[i] == "have" and self.norms[i + 1] != "to") or self.norms[i + 1] in NEGATIONS
+        )
+        if wants:
+            i += 1
+            if self.norms[i] != "to":
+                return i
+        if self.norms[i] == "to":
+            i += 1
+            while self.norms[i] in ("go", "be", "look") or self.norms[i] in ADVERBS:
+                i += 1
+        if self.norms[i] in _CHOOSE or (self.norms[i - 1] in ("to", "should", "must") and self.norms[i] in FIND_VERBS):
+            i += 1
+            return i + (self.norms[i] in ("for", "on", "out", "up"))
+        return i if self.norms[i - 1] in ("to", "go") and i > at + 2 else None
+
+    def _chooses(self, at: int) -> bool:
+        """Return True if one of several things is meant: *there are six benches, and you want the leftmost one*."""
+        return self.norms[at] == "the" and any(chunk.type == "THERE" for chunk in self.chunks)
+
+    def _order(self, at: int) -> Chunk | None:
+        """Return the order *from left to right*, *from the front to the back*."""
+        if (
+            self.norms[at : at + 2] == ["from", "the"]
+            and self.norms[at + 2] in _OTHER_END
+            and (self.norms[at + 3] in (":", ",") and self._previous() in ("", "COMMA", "ADVERB", "CUT"))
+        ):
+            side = self.norms[at + 2]
+            return Chunk("ADV", at, at + 3, Relator(Preposition(f"{side} to {_OTHER_END[side]}", "row")))
+        listed = self.norms[at + 2] in (":", ")") and self._previous() in ("", "COMMA", "ADVERB", "CUT", "NP")
+        if self.norms[at] == "from" and self.norms[at + 1] in ("left", "right") and listed:
+            order = f"{self.norms[at + 1]} to {_OTHER_END[self.norms[at + 1]]}"
+            return Chunk("ADV", at, at + 2, Relator(Preposition(order, "row")))
+        i, sides = at + (self.norms[at] == "from"), []
+        for stop in ("to", ""):
+            i += self.norms[i] == "the"
+            if self.norms[i] not in DIRECTION_WORDS:
+                return None
+            sides.append(self.norms[i])
+            i += 1
+            if stop and self.norms[i] != stop:
+                return None
+            i += bool(stop)
+        order = f"{sides[0]} to {sides[1]}"
+        return Chunk("ADV", at, i, Relator(Preposition(order, "row")))
+
+
+_DENIALS = tuple(
+    tuple(phrase.split())
+    for phrase in (
+        "under no circumstances", "at no time", "on no account", "in no case", "by no means", "in no way", "never",
+        "at no point",
+    )
+)  # fmt: skip
+"""Denials that can stand before their clause and turn its words round."""
+
+_JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
+
+_FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
+
+_GOVERNORS = word_set(
+    "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
+    " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
+    " is are step"
+)
+"""Words before *to* that make the infinitive a command; other words, as *afraid* or *refuse*, do not."""
+
+_UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "between", "beside", "below", "next"})
+
+_ATTENTION = word_set("wait listen look see mind sorry hang hold")
+"""Words that ask for attention before a comma."""
+
+_CHOOSE = word_set("choose select pick click locate")
+
+_CAUSATIVES = {"let": False, "have": False, "make": False, "ask": True, "allow": True, "get": True, "tell": True}
+"""Commands that make something else do a thing, and whether *to* stands before its verb."""
+
+_BEFORE_NOUNS = {("in", "two"), ("in", "half"), ("in", "first"), ("in", "last")}
+"""Idioms, except before a noun: *in two bowls*."""
+
+_APPROACHING = word_set("go walk turn head move drive navigate proceed run come roll fly step")
+
+_LOOKING = word_set("look search check see watch")
+
+_TURNING = word_set("turn flip roll tip fold hand bend knock")
+
+_OTHER_END = {"left": "right", "right": "left", "top": "bottom", "bottom": "top", "front": "back", "back": "front"}

@@ -1,0 +1,757 @@
+"""Find where noun phrases begin, and which words are nouns; an unknown word is a noun by its position."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from deixis.grammar.english.tokens import Word
+from deixis.grammar.english.tree import Degree, Span
+from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of, is_adjective, is_material_noun
+from deixis.grammar.english.vocabulary.function_words import (
+    ADVERBS,
+    ARTICLES,
+    CHAT_WORDS,
+    DETERMINERS,
+    HEDGES,
+    IS_FORMS,
+    MODALS,
+    NEGATIONS,
+    NUMBERS,
+    ORDINALS,
+    POSSESSIVES,
+    PRONOUNS,
+)
+from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
+from deixis.grammar.english.vocabulary.nouns import PEOPLE
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, places_alone, prepositions
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import (
+    FIND_VERBS,
+    NAMED_LIKE_THINGS,
+    PUT_VERBS,
+    REPORTS,
+    SAYING,
+    verb_forms,
+)
+
+
+@cache
+def _closed() -> frozenset[str]:
+    """Return the words that are never nouns."""
+    single = {phrase for phrase in (*prepositions(), *places_alone()) if " " not in phrase}
+    return frozenset(
+        (_NEVER_NOUNS | CHAT_WORDS | single | IS_FORMS | NEGATIONS | ADVERBS | HEDGES | MODALS.keys() | DETERMINERS
+         | PRONOUNS.keys() | POSSESSIVES.keys())
+        - NOUN_OR_PREPOSITION - {"can", "will", "may", "need", "back", "flat", "well", "down", "over", "in"}
+        - {"till"} | {"in", "over", "down"}
+    )  # fmt: skip
+
+
+def is_known(word: str) -> bool:
+    """Return True for a word of the tables: a function word, a number, an adjective or a form of a verb.
+
+    Parameters
+    ----------
+    word
+        Word in lower case.
+
+    Returns
+    -------
+    bool
+        False for a word that only its position can explain, which is a noun as a rule.
+    """
+    return (
+        word in _closed()
+        or word in NUMBERS
+        or word in ORDINALS
+        or word in PLACE_NOUNS
+        or word in verb_forms()
+        or is_adjective(word)
+    )
+
+
+@cache
+def relating_words() -> frozenset[str]:
+    """Return the single words that relate two things, and pronouns; before a noun a few of them are adjectives."""
+    single = {phrase for phrase in (*prepositions(), *places_alone()) if " " not in phrase}
+    return frozenset(single | PRONOUNS.keys() | DETERMINERS | MODALS.keys() | IS_FORMS)
+
+
+class NounFinder:
+    """Finder of nouns among the words of one sentence."""
+
+    def __init__(self, words: list[Word], norms: list[str], nouns: KnownNouns) -> None:
+        self.words, self.norms, self._nouns = words, norms, nouns
+        self._closed, self._verbs, self._adjectives = _closed(), verb_forms(), adjectives()
+        self.relating_words = relating_words()
+        self.is_object = False  # True while a phrase after *put* or *hold* is read
+
+    def number(self, at: int) -> float | None:
+        """Return the value of a number that is written in words or digits.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        float or None
+            Value, or None for a word that is not a number.
+        """
+        norm = self.norms[at]
+        if norm in NUMBERS:
+            return float(NUMBERS[norm])
+        if norm[:1].isdigit():
+            try:
+                return float(norm)
+            except ValueError:
+                return None
+        return None
+
+    def ordinal(self, at: int) -> int | None:
+        """Return the rank of an ordinal; -1 for *last*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        int or None
+            Rank, counted from 1; None for a word that is not an ordinal.
+        """
+        return ORDINALS.get(self.norms[at])
+
+    def is_determiner(self, at: int) -> bool:
+        """Return True for a word that can begin a noun phrase before its noun.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True for a determiner or a possessive, such as *the*, *each* and *your*.
+        """
+        return self.norms[at] in DETERMINERS or self.norms[at] in POSSESSIVES
+
+    def is_colour_alone(self, at: int) -> bool:
+        """Return True for a colour without a noun: *the man in blue*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True if neither a noun nor another adjective follows the colour.
+        """
+        return (
+            self._adjectives.get(self.norms[at]) == "colour"
+            and not self._nounish(at + 1)
+            and not is_adjective(self.norms[at + 1])
+        )
+
+    def is_degree_word(self, at: int) -> bool:
+        """Return True for *closest*, *furthest*, *closer* and the like.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True for a comparative or superlative of *near* or *far* and their synonyms.
+        """
+        lemma, degree = degree_of(self.norms[at])
+        return degree is not Degree.PLAIN and lemma in ("near", "far")
+
+    def is_genitive(self, at: int) -> bool:
+        """Return True if the ``'s`` at this place makes an owner, and does not stand for *is*.
+
+        Parameters
+        ----------
+        at
+            Index of the ``'s`` in the sentence.
+
+        Returns
+        -------
+        bool
+            True in *the cup's handle*, False in *the cup's on the tray*; False for any other word.
+        """
+        if self.norms[at] != "'s":
+            return False
+        name = at > 0 and self.words[at - 1].text == "I"  # the pronoun has 'I'm'
+        if (
+            at == 0
+            or (not name and self.norms[at - 1] in PRONOUNS and self.norms[at - 1] not in ("one", "other", "another"))
+            or (self.norms[at - 1] in ("there", "here", "where", "what", "who", "how"))
+        ):
+            return False
+        after = self.norms[at + 1]
+        if after in self._closed or after in ("", ",", "."):
+            return False
+        if after in ("right", "left") and self.norms[at + 2] in _AFTER_SIDE:
+            return self.norms[at - 1] in PEOPLE and self.norms[at - 3 : at - 1] in (["to", "the"], ["on", "the"])
+        if after in ("right", "left") and self.norms[at + 2] in PLACE_NOUNS:
+            return True
+        form = self._verbs.get(after)
+        if form is not None and form.form in ("ing", "past", "participle") and not self.is_noun(at + 1):
+            return False
+        if form is not None and form.form == "ing" and form.kind in ("posture", "lean", "face", "point"):
+            return self._nounish(at + 2) and not self._predicate_follows(at + 1)
+        if after in PLACE_NOUNS or self.number(at + 1) is not None or after == "o'clock":
+            return True
+        if is_adjective(after):
+            return self._nounish(at + 2) or is_adjective(self.norms[at + 2])
+        return True
+
+    def starts(self, at: int) -> bool:
+        """Return True if a noun phrase can begin here.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence; it may lie after the last one.
+
+        Returns
+        -------
+        bool
+            True for a possible beginning; the phrase need not be complete.
+        """
+        norm = self.norms[at]
+        if not norm or at >= len(self.words):
+            return False
+        if norm in PRONOUNS or norm in DETERMINERS or norm in POSSESSIVES:
+            if norm == "that" and self.norms[at + 1] in (*IS_FORMS, ",", ".", "and"):
+                return True
+            return (
+                norm not in ("that", "which", "who")
+                or self._nounish(at + 1)
+                or (norm == "that" and at + 1 == len(self.words))
+            )
+        if norm in NUMBERS or norm in ORDINALS or norm[0].isdigit():
+            return True
+        if norm in self._closed:
+            if norm in ("about", "around"):
+                return self.number(at + 1) is not None
+            if (
+                norm in ("very", "slightly", "more", "most", "far")
+                or norm in HEDGES
+                or norm in ("exactly", "only", "just")
+            ):
+                return self.starts(at + 1)
+            return norm in ("opposite", "near", "far") and self.adjective_before_noun(at)
+        if norm in ("left", "right") and self.norms[at + 1] in (
+            "of",
+            "to",
+            "in",
+            "next",
+            "behind",
+            "above",
+            "below",
+            "under",
+            "on",
+        ):
+            return norm == "left" and self.norms[at + 1] == "on"
+        return norm in PLACE_NOUNS or is_adjective(norm) or self.is_noun(at)
+
+    def adjective_before_noun(self, at: int) -> bool:
+        """Return True if the word is an adjective with a noun after it: *near edge*, *left lamp*.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True also before *one* and *ones*, and with further adjectives in between.
+        """
+        if not is_adjective(self.norms[at]) and self.norms[at] not in DIRECTION_WORDS:
+            return False
+        i = at + 1
+        while is_adjective(self.norms[i]) and self._nounish(i + 1):
+            i += 1
+        return self._nounish(i) or self.norms[i] in ("one", "ones")
+
+    def _nounish(self, at: int) -> bool:
+        norm = self.norms[at]
+        if not norm or norm in self._closed or at >= len(self.words):
+            return norm in ("one", "ones")
+        if not norm[0].isalpha():
+            return False
+        if norm in PLACE_NOUNS:
+            return True
+        if norm in self._verbs:
+            return self.is_noun(at)
+        return not norm.endswith("ly") or self._nouns.knows(norm)
+
+    def is_noun(self, at: int) -> bool:
+        """Return True if the word, which may also be a verb, is a noun here, judged by the words beside it.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False also for a function word.
+        """
+        norm = self.norms[at]
+        if not norm or norm in self._closed or not (norm[0].isalpha()):
+            return False
+        if at == 0 and self.norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS and norm not in HEDGES:
+            return True  # a name: Holly is …
+        if norm.endswith("ly") and "-" not in norm and norm not in _LY_NOUNS and not self._nouns.knows(norm):
+            return False
+        if norm in ("next", "near", "close", "opposite"):
+            return False
+        back = at - 1
+        while back > 0 and (
+            self.norms[back] in HEDGES or self.norms[back] in ("just", "also", "only", "now", "still", "always")
+        ):
+            back -= 1
+        before = self.norms[back] if at else ""
+        after = self.norms[at + 1]
+        form = self._verbs.get(norm)
+        if before == "please" and (form is None or form.form == "base") and norm.isalpha():
+            return False
+        after_determiner = (
+            before in DETERMINERS
+            or (at and self.number(at - 1) is not None)
+            or before in POSSESSIVES
+            or (before in ORDINALS and (form is None or form.form == "base"))
+            or (before == "'s" and self.norms[back - 1] not in PRONOUNS)
+            or (is_adjective(before) and (form is None or form.form != "s" or before not in _PREDICATIVE))
+        )
+        if norm == "can" or norm in ("will", "may", "need", "might"):
+            if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
+                follows = self._verbs.get(after)
+                if follows is not None and follows.form == "base" and self._nouns.singular(before)[1]:
+                    return False  # 'the candles can stay'
+            return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
+        if form is None:
+            if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
+                return (
+                    self._compound_ing(at, before, after)
+                    or (self._nounish(at + 1) and after not in PLACE_NOUNS)
+                    or (before in ("with", "of") and not self.starts(at + 1))
+                )
+            if norm.endswith("ed") and len(norm) > 4 and not is_adjective(norm) and norm not in ED_NOUNS:
+                return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
+            return True
+        if form.form == "ing":
+            if at + 1 < len(self.words) and self.words[at + 1].text[:1].isupper() and self.norms[at + 2] == "'s":
+                return False  # 'putting Anna's radio on it'
+            if form.kind in ("transitive", "face", "point") and not after_determiner:
+                return False
+            if before == "'s" and form.kind in ("posture", "lean") and not self._nounish(at + 1):
+                return False
+            if before in ("with", "of") and not self.starts(at + 1):
+                return True
+            if before in IS_FORMS and not after_determiner:
+                return False
+            if (
+                form.kind == "posture"
+                and form.lemma not in ("stand", "sit", "lie", "hang")
+                and not self.starts(at + 2)
+                and (self._nounish(at + 1) and after not in PLACE_NOUNS and self._nouns.singular(after)[0] == after)
+            ):
+                return True
+            return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
+        if form.form in ("past", "participle") and not (
+            norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
+        ):
+            return False
+        if (
+            at > 1
+            and self.number(at - 1) is not None
+            and self.norms[at - 2] in ("other", "these", "those", "last")
+            and form.form == "base"
+            and form.kind in ("posture", "lean")
+            and self._predicate_follows(at)
+        ):  # 'the other two stand on the tray'
+            return False
+        counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
+        if counted and form.form == "base" and after in prepositions():
+            return False  # 'three fibulae follow in a row'
+        together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
+        if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
+            return False  # 'Ann and Tom kneel beside it'
+        if (
+            at > 3 and self.norms[at - 3] == "and" and self.is_determiner(at - 2) and form.form == "base"
+            and form.kind in ("posture", "lean") and self._predicate_follows(at)
+            and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
+        ):  # fmt: skip
+            return False  # 'the cup and the jug stand on the tray'
+        if self._reports(at) or (
+            form.form == "base" and norm in _STAYING and self.number(at - 1) is not None and at > 1
+        ):
+            return False
+        if norm == "leave" and (self.number(at + 1) is not None or after in ("at", "about", "enough", "some")):
+            return False
+        if at and self.number(at - 1) is not None and not (self.norms[at - 1] == "one" and form.form == "s"):
+            return True
+        if norm == "set" and before in IS_FORMS:
+            return False
+        if form.lemma in ("go", "belong", "remain") and form.form == "base" and not after_determiner:
+            return False
+        if form.lemma in ("lie", "sit", "hang") and form.form in ("base", "s") and not after_determiner:
+            return False
+        if form.form == "s" and form.lemma in _NEVER_PLURALS and before not in DETERMINERS:
+            return False
+        if form.form == "s" and before == "," and self.is_determiner(at + 1):
+            return False
+        if (
+            form.form == "s"
+            and before in (",", "and")
+            and form.lemma in _PLURALS_LIKE_VERBS
+            and self._nouns.knows(norm)
+        ):
+            return True
+        if (
+            form.form == "s"
+            and form.kind in ("posture", "lean")
+            and self._predicate_follows(at)
+            and is_adjective(before)
+        ):
+            if self._nouns.knows(before):  # 'the glass stands above …'
+                return False
+            two_before = self.norms[back - 1] if back else ""
+            return two_before in DETERMINERS or two_before in POSSESSIVES or is_adjective(two_before)
+        if (after in IS_FORMS and after != "'s") or (after in MODALS and after != "can"):
+            return True
+        if after_determiner:
+            return True
+        after_noun = bool(before) and before not in self._closed and before[0].isalpha() and not is_adjective(before)
+        if after_noun:
+            plural = self._nouns.singular(before)[1]
+            places = after in prepositions() or after in places_alone()
+            if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
+                return (
+                    self.norms[at + 2] != "of" and self.norms[at + 2] not in prepositions()
+                )  # 'the missal rests open on its stand'
+            if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
+                beyond = self.norms[at + 2]
+                return beyond in prepositions() or beyond in places_alone()  # 'the glue sticks go into the box'
+            if form.form == "s" and after.endswith(("ing", "ed")) and self.norms[at + 2] in prepositions():
+                return True  # 'foam blocks soaking in the sink'
+            if form.form == "s":
+                return after in self._verbs and self._verbs[after].form == "s" and after != "'s"
+            owns = after in POSSESSIVES and after != "whose"
+            return not plural and not (after in DETERMINERS or after in NUMBERS or owns)
+        if at == 0 or before in ("never", "always", "not", ",", "and", "then", ".", ";", ":", "please"):
+            if form.form == "s" and before in ("never", "always") and self.is_determiner(at + 1):
+                return False
+            if form.form == "s":
+                return not self._predicate_follows(at) or at == 0
+            if norm in NAMED_LIKE_THINGS:
+                return not self.commands(at) or after == "of"
+            imperative = norm in PUT_VERBS or norm in FIND_VERBS
+            return (
+                not self.starts(at + 1)
+                or after == "of"
+                or (not imperative and not self.is_determiner(at + 1) and (after not in PRONOUNS))
+            )
+        return before in self._closed and before not in PRONOUNS and before not in ("to", "not", "which", "that", "who")
+
+    def commands(self, at: int) -> bool:
+        """Return True if the words after a verb that is a noun too make it a command: *screw the*, *heap sand on*.
+
+        Parameters
+        ----------
+        at
+            Index of the verb, where a command can begin.
+
+        Returns
+        -------
+        bool
+            False for *screw holes are on the left* and *top shelf: plates*.
+        """
+        after = at + 1
+        if (
+            self.is_determiner(after)
+            or self.number(after) is not None
+            or self.norms[after] in ("it", "them", "both", "all")
+        ):
+            return self.norms[after] not in ("that", "which")
+        if not self.starts(after):
+            return self.norms[after] in ("out", "up", "down", "away", "off") or self.norms[at : at + 2] == [
+                "turn",
+                "on",
+            ]
+        if is_adjective(self.norms[at]):
+            return False  # 'top box', 'lower shelf'
+        if at and self.norms[at - 1] in ("and", ",") and PUT_VERBS.isdisjoint(self.norms[:at]):
+            return False
+        rest = self.norms[after : after + 12]
+        ends = next((i for i, norm in enumerate(rest) if norm in _CLAUSE_ENDS), len(rest))
+        rest, mark = rest[:ends], rest[ends : ends + 1]
+        states = any(norm in IS_FORMS or norm in MODALS or self._stands(after + i) for i, norm in enumerate(rest))
+        return mark != [":"] and not states and any(norm in prepositions() for norm in rest[1:])
+
+    def _stands(self, at: int) -> bool:
+        """Return True for the verb of a statement: *cards stand behind …*."""
+        form = self._verbs.get(self.norms[at])
+        spatial = form is not None and form.form in ("s", "base") and form.kind in ("posture", "lean", "face")
+        return spatial and self._predicate_follows(at)
+
+    def _reports(self, at: int) -> bool:
+        """Return True for *states* and *claims* before what they report: *the owner states that the cup is …*."""
+        following = self.norms[at + 2]
+        return (self.norms[at] in SAYING and self.norms[at + 1] in ("it", "they", "he", "she", "there")) or (
+            self.norms[at] in REPORTS
+            and self.norms[at + 1] == "that"
+            and (self.is_determiner(at + 2) or following in PRONOUNS | prepositions().keys() | {"there"})
+        )
+
+    def _predicate_follows(self, at: int) -> bool:
+        """Return True if a place follows, as after a verb: *lies on*, *stands upright*."""
+        after = self.norms[at + 1]
+        return (
+            after in prepositions()
+            or after in places_alone()
+            or (after, self.norms[at + 2]) in (("side", "by"), ("face", "down"), ("upside", "down"))
+            or after in ADVERBS
+            or after in ("in", "next", "left", "right")
+        )
+
+    def _compound_ing(self, at: int, before: str, after: str) -> bool:
+        """Return True for the first part of a compound: *rolling pin*, *washing machine*."""
+        if not self._nounish(at + 1) or is_adjective(after) or after in DIRECTION_WORDS:
+            return False
+        return (
+            at == 0 or before in self._closed or not before[0].isalpha() or is_adjective(before) or before in ORDINALS
+            or before in NUMBERS
+        )  # fmt: skip
+
+    def _takes_preposition(self, after: str) -> bool:
+        return after in prepositions()
+
+    def _continues(self, at: int) -> bool:
+        return self._nounish(at) or is_adjective(self.norms[at]) or self.norms[at] in ("more", "other")
+
+    def is_letter(self, at: int) -> bool:
+        """Return True for a name of one capital letter.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            True in *put box A on B* for both letters; False for the pronoun *I* and the article *A*.
+        """
+        return self._letter(at) is not None
+
+    def _letter(self, at: int) -> str | None:
+        """Return a name of one capital letter: *D is left of A*; *I* and *A* only where they are names."""
+        if at >= len(self.words):
+            return None
+        text = self.words[at].text
+        if len(text) != 1 or not text.isupper():
+            return None
+        before = self.norms[at - 1] if at else ""
+        after = self.norms[at + 1]
+        if text == "A":
+            form = self._verbs.get(after)
+            named = (
+                not after[:1].isalpha() or after in self._closed or after in prepositions() or after in ("and", "or")
+            )
+            if not named and not (form is not None and form.form == "s"):
+                return None
+            if is_adjective(after) and after not in ("left", "right"):
+                return None
+        if text == "I":
+            third = after in ("is", "and", "to", "are", "'s") or (
+                after in self._verbs and self._verbs[after].form in ("s", "ing")
+            )
+            if not third and not (
+                before in ("labeled", "labelled", "named", "called")
+                or before in prepositions()
+                or before == "of"
+                or before == "and"
+                or before in GENERIC_NOUNS
+            ):
+                return None
+        return text
+
+    def is_known_noun(self, noun: str) -> bool:
+        """Return True for a noun of the ontology.
+
+        Parameters
+        ----------
+        noun
+            Noun or compound, in the singular or the plural.
+
+        Returns
+        -------
+        bool
+            True if the ontology or its lexicon has the noun.
+        """
+        return self._nouns.knows(noun)
+
+    def ends_as_verb(self, at: int) -> bool:
+        """Return True for an unknown verb right after a noun phrase.
+
+        Parameters
+        ----------
+        at
+            Index of the word after the noun phrase.
+
+        Returns
+        -------
+        bool
+            True if the last word of the phrase, or the last two, make the word after it a verb.
+        """
+        nouns = [self.norms[at - 1]]
+        return self._is_unknown_verb(at, nouns) or (at > 1 and self._is_unknown_verb(at, [self.norms[at - 2], *nouns]))
+
+    def _is_unknown_verb(self, at: int, nouns: list[str]) -> bool:
+        """Return True for an unknown word that looks like a verb after a known noun: *the lamp blorps at the desk*."""
+        norm, after = self.norms[at], self.norms[at + 1]
+        if not nouns or not norm.endswith("s") or norm.endswith("ss") or is_known(norm) or self._nouns.knows(norm):
+            return False
+        if (
+            not (after in prepositions() or after in ARTICLES or after in ("you", "me", "us", "them"))
+            or self._nouns.singular(nouns[-1])[1]
+        ):
+            return False
+        start = at - len(nouns)
+        determined = any(
+            self.norms[k] in ("a", "an", "the", "this", "each", "every") for k in range(max(0, start - 3), start)
+        )
+        if any(self.number(k) is not None for k in range(max(0, start - 3), start)):
+            return False
+        ends = (k for k in range(at, len(self.norms)) if self.norms[k] in (",", ".", ";", "and", "but", ""))
+        verbs_later = any(norm in IS_FORMS for norm in self.norms[at : next(ends)])
+        takes_object = after in ARTICLES and not norm.endswith("ings")
+        return determined and (takes_object or self._nouns.knows(" ".join(nouns))) and not verbs_later
+
+    def _noun_here(self, at: int, nouns: list[str]) -> bool:
+        norm = self.norms[at]
+        if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
+            return False
+        form = self._verbs.get(norm)
+        if nouns and self.is_object and form is not None and form.form == "s" and self._nouns.singular(norm)[1]:
+            return True  # 'keep the cam screws in the bag'
+        if nouns and form is not None and form.form == "s" and self._counted(at - len(nouns)):
+            return not self._nouns.singular(nouns[-1])[1]  # 'on two foam blocks'
+        named = self.words[at].text[:1].isupper() and self.norms[at + 1] == "'s"
+        alone = at == 1 and not self._nouns.knows(self.norms[0])
+        if nouns and named and (alone or self.words[at - 1].text[:1].islower()):
+            return False  # 'I hope Anna's radio is …'
+        if nouns and (norm in ORDINALS or (norm == "cause" and self.norms[at + 1] in PRONOUNS)):
+            return False
+        if norm[0].isdigit():
+            return (
+                bool(nouns) and norm.isdigit() and self.norms[at + 1] not in ("cm", "mm", "m", "inches", "inch", "feet")
+            )
+        if not norm[0].isalpha():
+            return False
+        if nouns and norm in ("left", "right"):
+            return False
+        if (
+            nouns
+            and is_adjective(norm)
+            and norm
+            in (
+                "open",
+                "empty",
+                "closed",
+                "high",
+                "low",
+                "parallel",
+                "tall",
+                "closest",
+                "farthest",
+                "furthest",
+                "nearest",
+                "closer",
+                "further",
+                "farther",
+                "upright",
+                "next",
+                "opposite",
+                "far",
+                "near",
+                "close",
+                "level",
+                "nested",
+                "folded",
+                "rolled",
+                "stacked",
+                "adjacent",
+                "flat",
+            )
+        ):
+            return False
+        if (
+            nouns
+            and is_adjective(norm)
+            and norm not in self._verbs
+            and not is_material_noun(norm)
+            and norm not in _ADJECTIVE_NOUNS
+        ):
+            return self._nounish(at + 1) and norm in _ADJECTIVE_NOUNS
+        return self.is_noun(at)
+
+    def _counted(self, at: int) -> bool:
+        """Return True if a number above one stands before the nouns that begin here, or before their adjectives."""
+        while at > 0 and is_adjective(self.norms[at - 1]):
+            at -= 1
+        return at > 0 and (self.number(at - 1) or 0) > 1
+
+    def _span(self, at: int, end: int) -> Span:
+        return self.words[at].start, self.words[end - 1].end
+
+
+GENERIC_NOUNS = frozenset({"object", "objects", "agent", "agents", "thing", "item", "dot"})
+
+_NEVER_NOUNS = word_set(
+    "and or but nor than not of to from with without at by for as if when while because that which who whom whose"
+    " where there then so too wherever otherwise also is are was were be been being am do does did has have had"
+    " having n't please let lets upside into onto upon toward towards against among amongst between beside"
+    " beneath underneath behind until during such whether whenever via per through 's 're 'm 'll 've 'd it's"
+    " although though since unless"
+)
+
+NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")
+
+_CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
+
+_STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
+
+_AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
+"""Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""
+
+_LATIN_PLURALS = ("ae", "i", "a")
+
+_NEVER_PLURALS = word_set("lie sit hang go lean belong remain stay come contain touch keep")
+
+_PLURALS_LIKE_VERBS = word_set(
+    "sandwich stack pile ring clip clamp slip string top wipe label plug house screw bolt nail pin tape tip point"
+)
+"""Verbs whose third person is more often the plural of a thing: *cups here, sandwiches there*."""
+
+_LY_NOUNS = word_set("family assembly jelly butterfly belly lily supply doily reply")
+
+_PREDICATIVE = frozenset({"left", "right", "close", "level", "parallel", "open"})
+
+ED_NOUNS = word_set("bed shed sled weed seed reed bread thread spread bunkbed daybed flatbed waterbed")
+
+_ADJECTIVE_NOUNS = word_set("light glass square orange cream double metal wood plastic gold silver round inside main")

@@ -1,0 +1,530 @@
+"""Find verb groups: a verb with its auxiliaries, its denial and its adverbs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, VerbGroup
+from deixis.grammar.english.chunking.relators import NOUNS_TOO, RelatorChunker
+from deixis.grammar.english.vocabulary.adjectives import is_adjective
+from deixis.grammar.english.vocabulary.function_words import ADVERBS, HEDGES, IS_FORMS, MODALS, NEGATIONS, PRONOUNS
+from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.relation_words import places_alone, prepositions
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import (
+    FACE_VERBS,
+    FIND_VERBS,
+    NAMED_LIKE_THINGS,
+    PUT_VERBS,
+    REPORTS,
+    SAYING,
+    TRANSITIVE_RELATIONS,
+)
+
+PAST_ONLY = word_set(
+    "stood lay sat went came began ran wore saw was were did had took gave knew fell rose"
+    " wrote ate drank spoke broke drew threw flew grew sang swore"
+)
+
+PUT_ONLY = word_set(
+    "put place keep leave set lay use see find position have cover stack fold roll store fill top flank screw bolt"
+)
+
+
+def _with(group: VerbGroup, lemma: str, kind: str, form: str, past: bool | None = None) -> VerbGroup:
+    return VerbGroup(
+        lemma, kind, form, group.modal, group.positive, group.past if past is None else past, group.adverbs
+    )
+
+
+class VerbChunker(RelatorChunker):
+    """Finder of verb groups."""
+
+    def _verb_group(self, at: int) -> Chunk | None:
+        if self._denied is not None and self._previous() in ("NP", "ADVERB"):
+            return self._denied_verb(at)
+        if self.norms[at] == "not" and self._previous() in ("AND", "BUT"):
+            form = self._verbs.get(self.norms[at + 1])
+            spatial = form is not None and form.form == "base" and form.kind in ("posture", "lean", "face", "point")
+            last = next((c.value for c in reversed(self.chunks) if c.type in FINITE), None)
+            if form is not None and spatial and last is not None and last.modal:
+                group = VerbGroup(form.lemma, form.kind, "base", last.modal, positive=False)
+                return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
+        i, adverbs, modal, positive, past = at, [], None, True, False
+        while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
+            if self.norms[i] == "never":
+                positive = False
+            else:
+                adverbs.append(self.norms[i])
+            i += 1
+            if i - at > 3:
+                return None
+        if self.norms[i] == "used" and self.norms[i + 1] == "to" and self._infinitive(i + 2):
+            past, i = True, i + 2
+        if (
+            i > at
+            and not past
+            and not self._auxiliary(i)
+            and self.norms[i] not in ("seems", "appears")
+            and (self.norms[i] not in self._verbs or (self.nouns.is_noun(i) and not self._orders(i)))
+        ):
+            return None
+        if self.norms[at] in ("both", "all", "each", "either") and self._previous() != "NP":
+            return None
+        first = i
+        verb = None
+        while True:
+            norm = self.norms[i]
+            if norm == "may" and self.norms[i + 1 : i + 4] == ["or", "may", "not"]:
+                modal, i = "may", i + 3
+            elif norm in MODALS and (i == first or modal is None) and self._modal(i):
+                modal = MODALS[norm]
+                if norm == "need" or norm == "needs" or norm == "ought":
+                    i += self.norms[i + 1] == "to"
+            elif norm in ("do", "does", "did") and self._auxiliary(i):
+                past = past or norm == "did"
+            elif (norm == "no" and self.norms[i + 1] in ("longer", "more") and i > first) or (
+                tuple(self.norms[i : i + 3]) in (("by", "no", "means"), ("in", "no", "way")) and i > first
+            ):
+                positive, i = False, i + (1 if norm == "no" else 2)
+            elif norm == "under" and tuple(self.norms[i + 1 : i + 3]) == ("no", "circumstances"):
+                positive, i = False, i + 2
+            elif norm in NEGATIONS and i > first:
+                positive = not positive if norm != "nor" else positive
+            elif i > first and (
+                ((norm in ADVERBS or norm in HEDGES) and self._goes_on(i + 1))
+                or (verb == "be" and norm in HEDGES and norm not in _HEDGES_OF_PLACES)
+            ):
+                adverbs.append(norm)
+            elif norm in ("has", "have", "had", "having", "'ve") and self._perfect(i):
+                past = past or norm == "had" or modal in _UNREAL
+            elif norm in ("seems", "seem", "appears", "appear", "seemed", "appeared") and self.norms[i + 1 : i + 3] == [
+                "to",
+                "be",
+            ]:
+                adverbs.append("apparently")
+                i += 1
+            elif norm == "to" and i > first and self.norms[i + 1] in ("be", "stand", "go", "have"):
+                modal = "should" if verb == "be" and modal is None else modal
+            elif norm == "to" and i > first and verb == "be" and self._is_base(i + 1):
+                modal, verb = "should", None  # 'it is to stand on the box'
+            elif norm == "used" and self.norms[i + 1] == "to":
+                past = True
+                i += 1
+            elif norm in ("has", "have", "had") and self.norms[i + 1] == "to" and self._is_base(i + 2):
+                modal, i = "have to", i + 1
+            elif norm in _TENDING and self.norms[i + 1] == "to" and self._is_base(i + 2):
+                modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
+            elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
+                verb, past = "be", past or norm in ("was", "were")
+            else:
+                break
+            i += 1
+        if verb == "be" and self.norms[i] == "got" and self.nouns.starts(i + 1):
+            return Chunk(
+                "TVERB", at, i + 1, VerbGroup("have", "transitive", "s", modal, positive, past, tuple(adverbs))
+            )
+        if verb == "be":
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, positive, past, tuple(adverbs)))
+        return self._lexical(at, first, i, VerbGroup("", "", "", modal, positive, past, tuple(adverbs)))
+
+    def _is_base(self, at: int) -> bool:
+        form = self._verbs.get(self.norms[at])
+        return self.norms[at] == "be" or (form is not None and form.form == "base")
+
+    def _denied_verb(self, at: int) -> Chunk | None:
+        """Return the verb of a clause whose denial and modal verb stand before its subject."""
+        i = at + (self.norms[at] == "be")
+        form = self._verbs.get(self.norms[i])
+        command = self._previous() == "ADVERB"
+        if command and form is not None and self.norms[at] in _GOING and self._goes(at + 1):
+            self._denied = None
+            return Chunk("GO", at, at + 1, VerbGroup(form.lemma, form.kind, form.form, None, False))
+        if self.norms[at] == "be" and (form is None or self.norms[i] in prepositions()):
+            modal, self._denied = self._denied, None
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, False))
+        if form is None or (i == at and form.form not in ("base", "ing") and self._previous() != "NP"):
+            return None
+        if not command and form.form == "base" and self.nouns.is_noun(i) and not self._predicate_after(i):
+            return None
+        modal, self._denied = self._denied, None
+        if self.norms[at] == "be":
+            return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, False))
+        group = VerbGroup(form.lemma, form.kind, form.form, None if command else modal, False)
+        return Chunk("PUT", at, i + 1, group) if command else self._finite(at, i + 1, group)
+
+    def _predicate_after(self, at: int) -> bool:
+        return self.norms[at + 1] in prepositions() or self.norms[at + 1] in places_alone()
+
+    def _lexical(self, at: int, first: int, i: int, group: VerbGroup) -> Chunk | None:
+        norm = self.norms[i]
+        form = self._verbs.get(norm)
+        helped = i > first
+        told = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
+        if norm in REPORTS | SAYING and told and self._previous() == "NP":
+            return Chunk(
+                "COMPLEMENT",
+                at,
+                i + 1 + (self.norms[i + 1] == "that"),
+                replace(_with(group, norm, "other", "s"), modal="might"),
+            )
+        if helped and (form is None or form.form not in ("base",)) and group.modal is None and not group.past:
+            form = form if form is not None and form.form in ("base", "past", "participle") else None
+            if form is None and self.norms[first] in ("has", "have", "had", "'ve", "having") and norm.endswith("ed"):
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past"))
+            if form is None:
+                if self.norms[first] == "do" and not self._previous() and self.nouns.is_determiner(i + 1):
+                    return Chunk("DO", at, i + 1, _with(group, norm, "unknown", "base"))  # 'do not tighten the screws'
+                return (
+                    Chunk("VERB", at, i, _with(group, "do", "other", "s"))
+                    if self.norms[first] in ("do", "does")
+                    else None
+                )
+        if (
+            form is None
+            and not helped
+            and norm.endswith("s")
+            and self.nouns.is_determiner(i + 1)
+            and self._only_places()
+        ):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "posture", "s"))  # 'behind it rises a goblet'
+        if form is None:
+            if helped and group.modal is not None:  # 'the cup can', 'you should blarp'
+                return Chunk("BE", at, i, _with(group, "be", "be", "finite"))
+            if (
+                self._previous() == "REL"
+                and norm.endswith("s")
+                and len(norm) > 3
+                and (self.nouns.is_determiner(i + 1) or self.norms[i + 1] in prepositions())
+            ):
+                return Chunk(
+                    "TVERB" if self.nouns.starts(i + 1) else "VERB", at, i + 1, _with(group, norm, "unknown", "s")
+                )
+            alone = self._previous() == "NP" and (
+                self.norms[self.chunks[-1].start : at] in _THIRD_PERSONS
+                or self.chunks[-1].value.pronoun in ("nothing", "everyone")
+            )
+            if alone and i == at and norm.endswith("s") and len(norm) > 3 and norm.isalpha() and norm not in PRONOUNS:
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
+            if self._previous() == "NP" and i == at and self.nouns.ends_as_verb(at):
+                return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "s"))
+            return self._unknown_participle(at, i, group)
+        found = _with(group, form.lemma, form.kind, form.form)
+        end = i + 1
+        if form.kind == "posture" and self.norms[end] in PARTICLES and self.nouns.is_determiner(end + 1):
+            end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
+        phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
+        if phrasal is not None:
+            found, end = _with(group, *phrasal, form.form), end + 1
+            return Chunk("TVERB" if self.nouns.starts(end) else "VERB", at, end, found)
+        if not helped and self._inverts(form.form, i):
+            return Chunk("ADVERB", at, end, norm)
+        if helped:
+            if self.norms[first] == "do" and self._previous() in JOINT_TYPES | {"", "ADVERB"}:
+                kind = "FIND" if norm in FIND_VERBS else "PUT" if norm in PUT_VERBS or form.kind == "posture" else "DO"
+                return Chunk(kind, at, end, found)
+            return self._finite(at, end, found)
+        if norm == "left" and helped and self.nouns.is_determiner(end):
+            return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past"))
+        if norm == "left" and self._is_left_behind(i):
+            return Chunk("PART", at, end, found)
+        if norm == "left" and not self._leaves(i):
+            return None
+        if norm == "left":
+            return Chunk("TVERB", at, end, _with(group, "leave", "posture", "past", past=True))
+        if (
+            norm in ("lay", "put", "set")
+            and self._previous() in ("", "AND", "COMMA", "THEN", "CUT")
+            and (
+                self.nouns.is_determiner(end)
+                or self.nouns.number(end) is not None
+                or self.norms[end] in ("it", "them", "out", "down", "up")
+                or (not self._previous() and self.nouns.is_noun(end))
+            )
+        ):
+            end += self.norms[end] in ("out", "down", "up")
+            return Chunk("PUT", at, end, _with(group, norm, "posture", "base"))
+        if (
+            norm in _BEGINNING
+            and self.norms[end] in ("with", "by")
+            and self._previous() in JOINT_TYPES | {"", "ADVERB"}
+        ):
+            return Chunk("DO", at, end + 1, found)
+        if norm in PAST_ONLY:
+            return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
+        if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
+            return Chunk("FIND", at, end, found)
+        if form.form == "past" and form.kind in ("posture", "lean") and self._previous() == "NP" and not helped:
+            subject = self.chunks[-1].value
+            if subject.pronoun in ("me", "we", "he", "she") and not subject.head and self.nouns.starts(end):
+                return self._finite(at, end, found)  # 'I hung the mirror on the pole'
+        subject = self.chunks[-1].value if self._previous() == "NP" else None
+        person = subject is not None and last_word(subject.head) in PEOPLE and self.nouns.is_determiner(end)
+        handled = person or self.norms[end] in ("it", "them", "him", "us")
+        owned = handled and form.form == "past" and subject is not None
+        if owned or (
+            form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
+        ):
+            return self._finite(at, end, found)  # 'the cups you asked about'
+        if form.form in ("past", "participle", "ing"):
+            if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
+                return None
+            named = self.nouns.is_noun(end) and self.norms[end + 1] in IS_FORMS
+            if (
+                self._previous() in ("", "COMMA")
+                and form.form == "past"
+                and named
+                and not self.nouns.is_determiner(end)
+            ):
+                return None  # 'finished pieces are on it'
+            goes = self._verbs.get(self.norms[end + 1])
+            begins = not self._previous() and form.form == "past" and self.nouns.is_noun(end)
+            if begins and (is_adjective(norm) or (goes is not None and goes.form in ("s", "base") and not helped)):
+                return None  # 'used tea bags'
+            if norm in ("lay", "put", "set") and self._previous() in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT"):
+                return Chunk("PUT", at, end, found)
+            if self.nouns.is_noun(i) and self._previous() != "NP":
+                return None
+            end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
+            return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
+        if norm in ("set", "put") and self._previous() == "BE":
+            return Chunk("PART", at, end, found)
+        if form.form == "base":
+            subject = self._previous()
+            subject_is_you = subject == "NP" and self.norms[self.chunks[-1].start] == "you"
+            if (
+                norm in FIND_VERBS
+                and norm in ("choose", "select", "pick", "find", "click", "locate", "hit")
+                and subject == "NP"
+                and (self.nouns.is_determiner(end) and not self.chunks[-1].value.plural)
+            ):
+                return Chunk("FIND", at, end, found)
+            imperative = subject in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT", "COLON", "SUB", "BUT") or (
+                subject_is_you
+            )
+            imperative = imperative or (norm in PUT_VERBS and self.nouns.is_determiner(end) and self._only_places())
+            imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
+            if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
+                return Chunk("ADVERB", at, end + 1, norm)
+            starts = norm in ("start", "begin") and self.norms[end] in ("at", "in", "on") and not self._previous()
+            if starts:
+                return Chunk("GO", at, end, found)  # 'start at the back'
+            if imperative and not subject_is_you and norm in _GOING and self._goes(end):
+                end += self.norms[end] in ("back", "away", "aside", "here")
+                return Chunk("GO", at, end, found)
+            if imperative and not subject_is_you and norm in NAMED_LIKE_THINGS and not self.nouns.commands(i):
+                return None
+            if imperative and (norm in PUT_VERBS or norm in FIND_VERBS) and self._imperative_object(end):
+                kind = "FIND" if norm in FIND_VERBS else "PUT"
+                if norm in ("pick", "point", "look", "single", "search") and self.norms[end] in (
+                    "out",
+                    "for",
+                    "to",
+                    "up",
+                ):
+                    end += 1
+                if norm == "turn" and self.norms[end] in ("on", "off"):
+                    return Chunk("DO", at, end + 1, found)
+                if (
+                    kind == "PUT"
+                    and self.norms[end] in ("out", "up", "down", "back", "away")
+                    and self.nouns.starts(end + 1)
+                ):
+                    end += 1
+                return Chunk(kind, at, end, found)
+            if imperative and norm in ("look", "search") and self.norms[end] == "for":
+                return Chunk("FIND", at, end + 1, found)
+            if imperative and norm in FACE_VERBS and not subject_is_you:
+                if norm in ("look", "turn") and self.norms[end] in ("at", "to", "toward", "towards"):
+                    end += 1
+                return Chunk("TPART", at, end, found)
+            if imperative and not subject_is_you and self.nouns.is_determiner(end):
+                return Chunk("DO", at, end, found)
+            if subject == "REL":
+                return self._finite(at, end, found)
+            if subject not in ("NP", "AND") or self.nouns.is_noun(i):
+                return None
+            return self._finite(at, end, found)
+        if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
+            return None
+        return self._finite(at, end, found)
+
+    def _inverts(self, form: str, at: int) -> bool:
+        """Return True for the participle of *at its left end is bolted the vice*, before its subject."""
+        if form not in ("past", "participle", "ing") or self._previous() != "BE" or len(self.chunks) < 2:
+            return False
+        if not (self.nouns.is_determiner(at + 1) or self.nouns.number(at + 1) is not None):
+            return False
+        first = len(self.chunks) - 1
+        while first > 0 and self.chunks[first - 1].type not in JOINT_TYPES:
+            first -= 1
+        before = [chunk.type for chunk in self.chunks[first:-1]]
+        return (
+            bool(before)
+            and before[0] in ("PREP", "ADV")
+            and before.count("NP") <= before.count("PREP") + (before.count("OF"))
+        )
+
+    def _finite(self, at: int, end: int, group: VerbGroup) -> Chunk:
+        if (
+            group.lemma in FACE_VERBS | {"come", "walk", "go", "step", "get"}
+            and self.norms[end] == "in"
+            and (not self.nouns.starts(end + 1) or self.norms[end + 1] == "there")
+        ):
+            return Chunk("VERB", at, end + 1, _with(group, "enter", "other", group.form))
+        if group.lemma == "look" and self.norms[end] in ("at", "toward", "towards"):
+            return Chunk("TVERB", at, end + 1, group)
+        stands = (
+            group.kind in ("posture", "lean")
+            and group.lemma not in PUT_ONLY
+            and group.form in ("s", "past", "base")
+            and group.lemma not in TRANSITIVE_RELATIONS
+        )
+        subject = self.norms[self.chunks[-1].start] if self.chunks else ""
+        if stands and subject not in ("i", "you", "we", "they"):
+            return Chunk("VERB", at, end, group)
+        return Chunk("TVERB" if self._takes_object(group.kind, end) else "VERB", at, end, group)
+
+    def _takes_object(self, kind: str, at: int) -> bool:
+        if not self.nouns.starts(at) or self._alone.longest(self.norms, at) is not None or self._match(at) is not None:
+            return False
+        if self.norms[at] in ("later", "earlier") and self.norms[at + 1] in prepositions():
+            return False
+        if self.norms[at] == "one" and self.norms[at + 2] in ("each", "either"):
+            return False
+        if self._relator(at) is not None or self._measure(at) is not None:
+            return False
+        if self.norms[at] in ("left", "right", "up", "down", "back", "forward", "forwards") and not self.nouns.starts(
+            at + 1
+        ):
+            return False
+        if self.nouns.number(at) is not None and self.norms[at + 1] in LAYERS:
+            return False
+        found = self.nouns.phrase(at, "TVERB")
+        return found is not None and found[1] is not None
+
+    def _unknown_participle(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
+        """Return the participle of a verb that no table holds: *the window shrouded in fog*."""
+        norm = self.norms[i]
+        previous = self._previous()
+        if previous == "ADVERB" and len(self.chunks) > 1 and self.chunks[-2].type in ("COMMA", "BE"):
+            previous = self.chunks[-2].type  # 'a loaf, perfectly preserved'
+        if (
+            len(norm) < 5
+            or not norm.endswith(("ed", "ing"))
+            or previous not in ("NP", "BE", "COMMA", "AND", "REL", "NOT")
+            or norm in PRONOUNS
+        ):
+            return None
+        if previous == "NP" and len(self.chunks) > 1 and self.chunks[-2].type == "REL" and norm.endswith("ed"):
+            return Chunk("VERB", at, i + 1, _with(group, norm, "unknown", "past"))
+        if previous == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS and norm.endswith("ed"):
+            kind = "TVERB" if self.nouns.starts(i + 1) else "VERB"
+            return Chunk(kind, at, i + 1, _with(group, norm, "unknown", "past", past=True))
+        if self.nouns.is_noun(i) or (previous != "BE" and self.nouns.is_noun(i)):
+            return None
+        return Chunk("PART", at, i + 1, _with(group, norm, "unknown", "ing" if norm.endswith("ing") else "past"))
+
+    def _orders(self, at: int) -> bool:
+        """Return True for the verb of a command after an adverb: *now lower the lid*."""
+        return (
+            self._previous() in JOINT_TYPES | {""}
+            and self.norms[at] in NAMED_LIKE_THINGS
+            and self.nouns.is_determiner(at + 1)
+        )
+
+    def _goes(self, at: int) -> bool:
+        """Return True if a place and not an object follows a command such as *stand* or *sit*."""
+        if self._previous() in ("AND", "COMMA") and not any(c.type in ("PUT", "DO", "GO") for c in self.chunks):
+            return False
+        after = self.norms[at]
+        return after in ("back", "away", "aside", "here") or (
+            after not in ("for", "at", "to") and not self.nouns.is_determiner(at) and self._relator(at) is not None
+        )
+
+    def _imperative_object(self, at: int) -> bool:
+        return self.nouns.starts(at) or self.norms[at] in ("out", "for", "on", "to", "up", "both", "all")
+
+    def _auxiliary(self, at: int) -> bool:
+        norm = self.norms[at]
+        if norm in ("do", "does", "did"):
+            return self.norms[at + 1] in NEGATIONS or self._verbs.get(self.norms[at + 1]) is not None or at == 0
+        return norm in IS_FORMS or (norm in MODALS and self._modal(at)) or norm in ("has", "have", "had")
+
+    def _modal(self, at: int) -> bool:
+        """Return True for a modal verb; *can*, *will* and *need* are other words too."""
+        after = self.norms[at + 1]
+        if self.norms[at] == "need" or self.norms[at] == "needs":
+            return after in ("to", "not")
+        if self.norms[at] not in ("can", "may", "will", "might"):
+            return True
+        form = self._verbs.get(after)
+        if (
+            self._previous() in ("NP", "REL")
+            and self.chunks
+            and self.norms[self.chunks[-1].start] in ("you", "we", "i", "it")
+        ):
+            return True
+        return (
+            after in ("be", "not", "have", "well", "also", "only", "you", "usually", "never", "ever", "the", "i", "it")
+            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and after in NOUNS_TOO))
+            or after in HEDGES
+        ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
+
+    def _perfect(self, at: int) -> bool:
+        i = at + 1
+        while self.norms[i] in ADVERBS or self.norms[i] in NEGATIONS:
+            i += 1
+        if self.norms[i] == "been":
+            return True
+        form = self._verbs.get(self.norms[i])
+        if form is None:
+            return self.norms[i].endswith("ed") and not self.nouns.is_noun(i)
+        if self.norms[i] in ("put", "set", "cut", "hit", "let") and self.norms[at] != "having":
+            i += self.norms[i + 1] in PARTICLES
+            return self.nouns.starts(i + 1) or self.norms[i + 1] in prepositions()
+        if self.norms[i] == "left":
+            return self.nouns.is_determiner(i + 1)
+        return form.form in ("past", "participle") and self.norms[i] != "set"
+
+    def _goes_on(self, at: int) -> bool:
+        norm = self.norms[at]
+        return (
+            norm in IS_FORMS or norm in self._verbs or norm in NEGATIONS or (norm in ADVERBS and self._goes_on(at + 1))
+        )
+
+
+_TOLD = word_set("it they he she there")
+
+LAYERS = frozenset({"high", "deep", "abreast"})
+
+_THIRD_PERSONS = (["it"], ["he"], ["she"])
+
+_SUBJECTS = word_set("i you we he she they")
+"""Pronouns before which no participle stands: the verb after them is finite."""
+
+_HEDGES_OF_PLACES = word_set("about around roughly approximately approx almost nearly")
+"""Hedges that belong to the place or the measure after them, and not to the verb."""
+
+_UNREAL = frozenset({"must", "may", "ought", "should", "could", "would", "might"})
+"""Modal verbs that, before *have*, say what was not."""
+
+_TENDING = {
+    "supposed": "should", "meant": "should", "intended": "should", "allowed": "can", "permitted": "can",
+    "about": "would", "going": "will", "likely": "might", "required": "must",
+    **dict.fromkeys(
+        ("said", "believed", "thought", "rumoured", "rumored", "reported", "alleged", "reputed", "presumed", "assumed",
+         "claimed", "understood", "expected", "unlikely", "hoped", "feared", "suspected"), "might",
+    ),
+}  # fmt: skip
+"""Modal verb that a word between *is* and *to* amounts to: *is allowed to stand*."""
+
+_GOING = word_set("stand sit step walk go kneel stay wait look")
+"""Verbs of commands that take no object."""
+
+_BEGINNING = word_set("start begin finish continue proceed end")
+
+_PHRASAL = {("make", "out"): ("see", "posture"), ("take", "up"): ("occupy", "transitive")}
+"""Verbs with a particle: the verb and the kind that they amount to."""
+
+PARTICLES = word_set("off up down out away over")

@@ -1,0 +1,1 @@
+"""Chunks as clauses: joints, plain word order, syntax trees and places."""

@@ -1,0 +1,688 @@
+"""Put the parsed clauses of a sentence together: subjects, viewpoints, conditions, alternatives, fragments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from deixis.grammar.english.chunking.chunk import Chunk, VerbGroup
+from deixis.grammar.english.clauses.build import flat, viewpoint_of
+from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, notes
+from deixis.grammar.english.clauses.joints import Segment
+from deixis.grammar.english.clauses.places import HOURS
+from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.tokens import RawSentence
+from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
+from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
+from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS
+
+_PEOPLE = frozenset({"you", "me", "we", "someone"})
+_FRAMES = frozenset({"facing", "from"})
+_PLACING = frozenset(
+    {
+        "put", "place", "keep", "leave", "set", "lay", "store", "spread", "position", "move", "return", "transfer",
+        "shift", "pour", "scatter", "sprinkle", "arrange", "drape", "stand", "hang", "hide", "tuck", "stash", "stick",
+        "slip", "stow", "shove", "prop", "rest", "stack", "line", "drop", "slide", "push", "pile", "bury", "park",
+        "tie", "clip", "pin", "hook", "squeeze", "balance", "lean", "insert",
+    }
+)  # fmt: skip
+_BEARING = frozenset({"hold", "contain", "carry", "bear"})
+"""Verbs after whose object a place is that of the object."""
+_GETTING = frozenset({"have", "get", "receive"})
+"""Verbs by which each person has a thing at his place: *each guest gets a plate with …*."""
+_HANDLING = frozenset(
+    {
+        "use", "need", "want", "serve", "finish", "open", "close", "take", "put", "move", "eat", "drink", "wash",
+        "read", "write", "give", "get", "buy", "call", "make", "show", "set", "lay", "touch", "hold", "lift", "clean",
+    }
+)  # fmt: skip
+"""Verbs of *when you … it*, which do not say where the viewer is."""
+_TURNING = frozenset({"turn", "flip"})
+_PLACES = frozenset({"left", "right", "middle", "top", "bottom", "part", "corner", "edge", "end", "side"})
+_UNDONE = frozenset({"almost", "nearly"})
+_FALLING = frozenset({"fall", "drop", "tip", "slide", "slip", "roll"})
+_FACTIVE = frozenset(
+    {
+        "see",
+        "notice",
+        "find",
+        "know",
+        "remember",
+        "ensure",
+        "mean",
+        "discover",
+        "observe",
+        "realise",
+        "realize",
+        "require",
+    }
+)
+"""Verbs after which a clause with *that* is a fact."""
+_POINTS = frozenset(
+    {"rule", "point", "fact", "result", "thing", "trick", "secret", "requirement", "difference", "advantage", "problem"}
+)
+"""Nouns of which *is that …* tells a fact: *the rule is that …*, not *the rumour is that …*."""
+_ALLOWING = frozenset({"may", "can", "must", "should", "shall"})
+"""Modal verbs that forbid with a subject such as *no one*: *no one may put a cup on it*."""
+_LETTING = frozenset({"let", "make", "help", "watch"})
+"""Verbs whose object does something itself: *don't let the cat sleep in it*."""
+_MEETING = _GETTING | {"see", "find", "notice"}
+"""Verbs by which a person says that a thing is there: *you see a cup on the left*."""
+_OWNING = _MEETING | {"keep", "place", "put", "leave", "set", "lay", "stand", "hang", "store"}
+
+
+@dataclass(slots=True)
+class Found:
+    """Result of a sentence: its clauses, or the noun phrase that it consists of, and the viewpoint."""
+
+    clauses: tuple[Clause, ...]
+    fragment: NounPhrase | None
+    viewpoint: Viewpoint | None
+    guesses: frozenset[Guess] = frozenset()  # of the fragment
+
+
+@dataclass(slots=True)
+class Assembly:
+    """The clauses of one sentence while it is read."""
+
+    text: str
+    raw: RawSentence
+    asks: bool
+    clauses: list[Clause] = field(default_factory=list)
+    fragments: list[NounPhrase] = field(default_factory=list)
+    sought: NounPhrase | None = None  # 'choose the chair …'
+    viewpoint: Viewpoint | None = None
+    condition: str | None = None
+    front: tuple[Predicate, ...] = ()  # places before a command: 'on the desk, choose the monitor'
+    forbids: bool = False  # True after a command that is denied
+    shared: tuple[Predicate, ...] = ()  # place before a list: 'in the box, put A on the left, B on the right'
+    hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
+    supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
+    opens_list: bool = False  # True if a colon follows the clause
+    is_coordinated: bool = False  # True for a condition after *and*
+    is_lost: bool = False  # True if the clause before has an object and was not understood
+    borne: NounPhrase | None = None  # thing that the subject of the clause before holds
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause that is being taken in was parsed
+    guesses_of_fragments: dict[Span, frozenset[Guess]] = field(default_factory=dict)
+    clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
+
+    def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
+        """Return the verb of a main clause such as *it could be that*, and the clause without it.
+
+        Parameters
+        ----------
+        segment
+            Clause that may have such a main clause before it.
+
+        Returns
+        -------
+        tuple
+            Verb of the main clause, or None if it has none, and the rest of the clause.
+        """
+        for i, chunk in enumerate(segment.chunks):
+            if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
+                return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
+            if chunk.type == "COMPLEMENT":
+                return _frame_of_report(segment.chunks[:i]), replace(segment, chunks=segment.chunks[i + 1 :])
+        return None, segment
+
+    def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:
+        """Take in a parsed clause that stands after the joint ``link``.
+
+        Parameters
+        ----------
+        built
+            Parsed clause.
+        link
+            Joint before the clause, such as ``and`` or ``if``; empty for the first clause.
+        start, end
+            First and last character of the clause in the text, counted from 0, the end exclusive.
+        hedge
+            Verb of the main clause that the clause depends on (*it could be that*), or None.
+        """
+        span = (start, end)
+        if hedge is not None and hedge.modal == "might" and built.shape not in ("statement", "existential", "inverted"):
+            misunderstood(span, "this is only what a person says", "say where it is")
+            return
+        frame = self._frame(built, link, span)
+        if frame is not None:
+            self.viewpoint = _joined(self.viewpoint, frame)
+            return
+        if built.shape == "existential":
+            built, looking = _looking(built, start)
+            self.viewpoint = self.viewpoint if looking is None else _joined(self.viewpoint, looking)
+        said, fronted = _split_frames(built.said)
+        if fronted is not None:
+            self.viewpoint = _joined(self.viewpoint, fronted)
+            link = ""
+        elif built.said and link in ("when", "if", "while", "as"):
+            frame = viewpoint_of(tuple(p for part in built.said for p in part.predicates))
+            if frame is not None:
+                self.viewpoint, said, link = _joined(self.viewpoint, frame), (), ""
+        if link in ("before", "after") and built.shape == "statement":
+            return
+        last = self.clauses[-1] if self.clauses else None
+        if link == "until" and last is not None and last.mood is Mood.COMMAND and last.positive:
+            misunderstood(span, "this says how long something is done, not where it is")
+            return  # 'press the foam into the bowl until it sits firmly'
+        if link == "instead":
+            misunderstood(span, "this says where something is not", "deny it: 'The cup is not on the tray.'")
+            return
+        if link == "if" and self._is_clock(built):
+            return
+        if link == "until" and self.clauses and not self.clauses[-1].past:
+            return  # it holds now
+        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
+            built.verbs
+            or (built.shape == "fragment" and not built.said and link != "as")
+            or (built.shape == "said" and link in ("unless", "whether"))
+        ):
+            self._conditional(span, link)
+            subject = built.subject
+            if subject is not None and subject.phrase.head and subject.phrase.determiner not in ("no", "any"):
+                text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+                self.supposed.append(Clause(replace(subject.phrase, predicates=()), (), span, condition=text))
+            return
+        if link == ":" and self.condition is not None and (self.clauses or self.fragments):
+            self.condition = None  # 'when the guests arrive, the table looks like this: …'
+        mood = self._mood(built)
+        subject = built.subject
+        if built.shape in ("command", "other"):
+            group = built.verbs[0].group
+            if link == "or" and self.forbids and group.positive:  # 'do not cover it or put it in a cupboard'
+                group = replace(group, positive=False)
+                built = replace(built, verbs=(replace(built.verbs[0], group=group), *built.verbs[1:]))
+            self.forbids = not group.positive
+        letting = built.shape == "other" and built.verbs[0].group.lemma in _LETTING
+        if built.shape == "other" and subject is not None and (not subject.phrase.predicates or letting):
+            verb = built.verbs[0]
+            misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
+            if subject.phrase.head and not letting:
+                mood = Mood.COMMAND if self.opens_list else mood  # 'mind the saw: it …'
+                self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
+            return
+        if built.shape in ("fragment", "search", "other"):
+            self._fragment(built, subject, said, link, span, mood)
+            return
+        if built.shape == "said" and subject is None and self.is_lost and link == "," and not built.verbs:
+            misunderstood(span, "the clause that this belongs to is not understood")
+            return
+        if built.shape == "said" and subject is None:
+            self._said(built, said, link, span, mood)
+            return
+        if subject is None:
+            return
+        if subject.phrase.negated and not subject.phrase.members:
+            misunderstood(span, "a denial of all does not say which", "say it of each of them")
+            return
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        people = last_word(subject.phrase.head) in PEOPLE and all(v.group.lemma in _GETTING for v in verbs)
+        person = subject.phrase.pronoun in _PEOPLE or people
+        known = len(self.clauses)
+        held = verbs[-1].thing if verbs[-1].group.lemma in _BEARING else None
+        self.borne = held.phrase if held is not None and held.phrase.head else None
+        for i, verb in enumerate(verbs):
+            front = said if i == 0 else ()
+            none = subject.phrase.pronoun == "nothing" or subject.phrase.determiner == "no"
+            if none and verb.thing is None and verb.group.kind in ("other", "unknown"):
+                misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
+                continue
+            if verb.group.lemma in _FALLING and not _UNDONE.isdisjoint(verb.group.adverbs):
+                misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
+                continue
+            departs = (
+                verb.group.lemma == "leave"
+                and verb.thing is not None
+                and not front
+                and not verb.said
+                and bool(subject.phrase.head)
+            )
+            if departs and last_word(subject.phrase.head) not in PEOPLE:
+                misunderstood(span, "'leave' does not say where something is here")
+                left = verb.thing.phrase if verb.thing is not None else None
+                if left is not None and left.head and left.predicates:
+                    self._append(Clause(replace(left, predicates=()), left.predicates, left.span), link)
+                continue
+            if verb.thing is not None and verb.group.lemma in _PLACING and not _UNDONE.isdisjoint(verb.group.adverbs):
+                misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
+                continue
+            if verb.thing is not None and (
+                verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
+            ):
+                kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}
+                placed = person and verb.group.lemma in _PLACING - kept and verb.group.past
+                if placed and " had " not in f" {self.text[slice(*verb.span)]} " and not self._was_undone(span):
+                    verb = replace(verb, group=replace(verb.group, past=False))  # 'I stood the candle on the plate'
+                if verb.group.lemma in _PLACING and _is_plan(verb.group, subject.phrase):
+                    verb = replace(verb, group=replace(verb.group, modal="might"))
+                moved, thing = self._of_the_thing(verb, subject)
+                if subject.phrase.pronoun == "nothing" and moved.group.modal in _ALLOWING:
+                    moved = replace(moved, group=replace(moved.group, modal="must", positive=False))
+                elif subject.phrase.pronoun == "nothing":
+                    misunderstood(span, "a denial of all does not say where it is", "say where it is, or is not")
+                    continue
+                if not moved.said and not front and verb.group.lemma not in _MEETING:
+                    misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
+                    continue
+                shape = "existential" if person and verb.group.lemma in _MEETING else built.shape
+                self._clause(shape, thing, moved, front, span, mood, hedge, link)
+                continue
+            self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
+        told = built.shape == "statement" and bool(subject.phrase.head) and any(v.thing is not None for v in verbs)
+        self.is_lost = told and len(self.clauses) == known
+
+    def finish(self) -> Found:
+        """Return the clauses; a single noun phrase without a clause is the fragment of the sentence.
+
+        Returns
+        -------
+        Found
+            Clauses, fragment and viewpoint. What is left without a meaning is noted as misunderstood.
+        """
+        fragment = None
+        rest = self.fragments
+        if self.sought is not None:
+            fragment = self.sought
+        elif rest:
+            fragment, *rest = rest
+        for other in rest:
+            if other.predicates:
+                guesses = self.guesses_of_fragments.get(other.span, frozenset())
+                bare = replace(other, predicates=())
+                self.clauses.append(Clause(bare, other.predicates, other.span, guesses=guesses))
+            else:
+                misunderstood(other.span, "nothing is said of this", "say where it is")
+        if self.front:
+            span = (self.front[0].span[0], self.front[-1].span[1])
+            front, self.front = self.front, ()
+            self._append(
+                Clause(None, front, span, Mood.QUESTION if self.asks else Mood.STATEMENT, step=self.raw.step), ""
+            )
+        if self.condition is not None and not self.clauses and fragment is None:
+            start = self.raw.start
+            misunderstood((start, self.raw.end), "a condition without what it is a condition of")
+        if not self.clauses and fragment is None and self.viewpoint is None and not notes.get():
+            misunderstood((self.raw.start, self.raw.end), "this says nothing of where a thing is")
+        guesses = frozenset() if fragment is None else self.guesses_of_fragments.get(fragment.span, frozenset())
+        return Found((*self.supposed, *self.clauses), fragment, self.viewpoint, guesses)
+
+    # viewpoints and conditions
+
+    def _frame(self, built: Built, link: str, span: Span) -> Viewpoint | None:
+        """Return the viewpoint that a clause states and does nothing else: *if you are facing the bed*."""
+        person = built.subject is not None and built.subject.phrase.pronoun in _PEOPLE
+        said = [p for verb in built.verbs for part in verb.said for p in part.predicates]
+        said += [p for part in built.said for p in part.predicates]
+        if built.shape == "statement" and person:
+            if link in ("if", "when", "while", "as", "once", "where") or any(p.relation in _FRAMES for p in said):
+                entering = any(verb.group.lemma in ENTER_VERBS for verb in built.verbs)
+                found = viewpoint_of(tuple(said))
+                thing = next((verb.thing.phrase for verb in built.verbs if verb.thing is not None), None)
+                seen = all(v.group.lemma not in _HANDLING and v.group.kind != "unknown" for v in built.verbs)
+                if thing is not None and seen:
+                    turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
+                    found = found or Viewpoint(span)
+                    found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
+                if found is None and entering and not said and not self.clauses:
+                    found = Viewpoint(span)  # 'as you come in'
+                if found is not None:
+                    return replace(found, span=span, entering=entering)
+            return None
+        subject = None if built.subject is None else built.subject.phrase
+        if (
+            subject is not None
+            and subject.head == "back"
+            and subject.owner is not None
+            and subject.owner.pronoun in (*_PEOPLE, "one")
+        ):
+            behind = next((p.arguments[0] for p in said if p.arguments), subject.of)
+            return None if behind is None else Viewpoint(span, back=behind)
+        if built.shape == "said" and said and not built.verbs:
+            framing = [p for p in said if p.relation in _FRAMES]
+            if (
+                link in ("if", "when", "while", "as")
+                or (framing and not self.clauses and not self.fragments)
+                or (framing and said[0] is framing[0] and said[0].relation == "from")
+            ):
+                found = viewpoint_of(tuple(said))
+                return None if found is None else replace(found, span=span)
+        return None
+
+    def _is_clock(self, built: Built) -> bool:
+        """Take in *if Z is the center of a clock face*; the hours that follow are directions from Z."""
+        kinds = [p.arguments[0] for verb in built.verbs for p in flat(verb) if p.relation == "kind"]
+        if built.subject is None or not any(k.of is not None and k.of.head.startswith("clock") for k in kinds):
+            return False
+        self.clock = built.subject.phrase
+        return True
+
+    def _at_the_hour(self, predicate: Predicate) -> Predicate:
+        """Return *between 4 and 5* and *at 3* as a direction from the centre of the clock."""
+        hours = [argument.count for argument in predicate.arguments if not argument.head]
+        if self.clock is None or not hours or hours[0] is None or predicate.relation not in ("between", "at", "near"):
+            return predicate
+        relation = HOURS.get(hours[0] if len(hours) == 1 or hours[0] % 3 else hours[-1] or 0, "top")
+        return replace(predicate, relation=relation, arguments=(self.clock,))
+
+    def _conditional(self, span: Span, link: str) -> None:
+        text = " ".join(f"{link} {self.text[span[0] : span[1]]}".split())
+        found = notes.get()
+        found[:] = [
+            note for note in found if not span[0] <= note.span[0] < span[1]
+        ]  # a condition need not be understood
+        if self.clauses and self.clauses[-1].condition is None and not self.is_coordinated:
+            self.clauses[-1] = replace(self.clauses[-1], condition=text)
+        else:
+            self.condition = text
+
+    def _mood(self, built: Built) -> Mood:
+        if self.asks or built.shape == "question":
+            return Mood.QUESTION
+        if built.shape in ("command", "search"):
+            return Mood.COMMAND
+        return Mood.STATEMENT
+
+    # fragments
+
+    def _fragment(
+        self, built: Built, noun: Noun | None, said: tuple[Said, ...], link: str, span: Span, mood: Mood
+    ) -> None:
+        assert noun is not None
+        phrase = noun.phrase
+        if phrase.negated and not phrase.members and not phrase.head:
+            misunderstood(span, "this says which things are not meant", "say it of the things that are meant")
+            return  # 'the glasses on the shelf, not those by the till'
+        more = (*noun.extra, *(p for part in said for p in part.predicates))
+        if self.asks:
+            mood = Mood.QUESTION
+        if link == ":" and self._list(phrase, more, span):
+            return
+        listed = built.shape == "fragment" and (self.clauses or link == ":") and not phrase.predicates and not more
+        if listed and mood is not Mood.QUESTION and self._each_with_its_place(phrase, link, mood):
+            return
+        if built.shape == "fragment" and (self.clauses or self.fragments or mood is Mood.QUESTION):
+            predicates = (*more, *phrase.predicates)
+            if predicates:
+                bare = replace(phrase, predicates=())
+                if self.clauses and self.clauses[-1].mood is Mood.COMMAND:
+                    mood = Mood.COMMAND
+                    if all(not p.arguments and p.relation in _PLACES for p in predicates[:1]):
+                        predicates = (*self.shared, *predicates)
+                self._append(Clause(bare, predicates, span, mood, step=self.raw.step), link)
+                return
+            if self.clauses or phrase.pronoun in _PEOPLE:
+                if phrase.head or phrase.adjectives or phrase.members:
+                    misunderstood(phrase.span, "nothing is said of this", "say where it is")
+                return
+        more, self.front = (*self.front, *more), ()
+        if more:
+            phrase = replace(phrase, predicates=(*phrase.predicates, *more))
+        if phrase.pronoun in _PEOPLE and not phrase.predicates:
+            return
+        if built.shape == "search" and self.sought is None:
+            self.sought = phrase
+            return
+        self.fragments.append(phrase)
+        self.guesses_of_fragments[phrase.span] = self.guesses
+
+    def _each_with_its_place(self, phrase: NounPhrase, link: str, mood: Mood) -> bool:
+        """Take in a list without verbs: *…, the knife on its right and the spoon beside the knife*.
+
+        A member without a place shares that of the next member that has one.
+        """
+        if phrase.joined_by == "or" or not phrase.members or not phrase.members[-1].predicates:
+            return False
+        waiting: list[NounPhrase] = []
+        for member in phrase.members:
+            beside = any(a.pronoun == "it" and not a.head for p in member.predicates for a in p.arguments)
+            if beside and waiting:  # 'a toaster, a kettle next to it'
+                thing = replace(waiting[-1], determiner="the", count=None)
+                made = tuple(
+                    replace(p, arguments=tuple(thing if a.pronoun == "it" else a for a in p.arguments))
+                    for p in member.predicates
+                )
+                for one in waiting:
+                    self._append(Clause(one, (), one.span, mood, existential=True, step=self.raw.step), link)
+                member, waiting = replace(member, predicates=made), []
+            waiting.append(replace(member, predicates=()))
+            if not member.predicates:
+                continue
+            span = (waiting[0].span[0], member.span[1])
+            subject = waiting[0] if len(waiting) == 1 else NounPhrase(span, plural=True, members=tuple(waiting))
+            first = member.predicates[0]
+            shared = self.shared if not first.arguments and first.relation in _PLACES else ()
+            self._append(Clause(subject, (*shared, *member.predicates), span, mood, step=self.raw.step), link)
+            waiting = []
+        return True
+
+    def _list(self, phrase: NounPhrase, more: tuple[Predicate, ...], span: Span) -> bool:
+        """Take in a list after a colon: *from left to right: a cup, a jug*, *in front of it, a row: a cup, a jug*."""
+        if self.front:
+            said, self.front = (*self.front, *more), ()
+            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            return True
+        if self.fragments and [p.relation for p in self.fragments[-1].predicates] == ["row"]:
+            said = (*self.fragments.pop().predicates, *more)  # 'shelf, left to right: …'
+            self._append(Clause(phrase, said, span, step=self.raw.step), ":")
+            return True
+        if self.fragments and self.fragments[-1].head in ("row", "line", "circle", "list", "stack"):
+            row = self.fragments.pop()
+            relation = {"circle": "circle", "stack": "stacked"}.get(row.head, "row")
+            predicates = [*row.predicates, *more]
+            if not any(p.relation == relation for p in predicates):
+                predicates.append(Predicate(relation, (), row.span))
+            self._append(Clause(phrase, tuple(predicates), span, step=self.raw.step), ":")
+            return True
+        last = self.clauses[-1] if self.clauses else None
+        if (
+            last is not None
+            and last.subject is not None
+            and any(p.relation in ("row", "circle") for p in last.predicates)
+        ):
+            self.clauses[-1] = replace(
+                last, subject=phrase, predicates=(*last.predicates, *more), span=(last.span[0], span[1])
+            )
+            return True
+        if last is not None and (last.subject is None or (last.existential and last.subject.plural and not more)):
+            if last.subject is None:
+                self.clauses[-1] = replace(
+                    last, subject=phrase, predicates=(*last.predicates, *more), span=(last.span[0], span[1])
+                )
+            else:
+                kind = Predicate("kind", (phrase,), phrase.span)
+                self.clauses[-1] = replace(last, predicates=(*last.predicates, kind), span=(last.span[0], span[1]))
+            return True
+        return False
+
+    def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
+        """Take in predicates without a subject: they are said of the subject of the clause before."""
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        last = self.clauses[-1] if self.clauses else None
+        waits = last is None and self.sought is None and not self.fragments and not built.verbs
+        waits = waits or (self.opens_list and not built.verbs)
+        if waits and not any(part.choice for part in said):
+            self.front += tuple(p for part in said for p in part.predicates)
+            return
+        if last is None and self.sought is not None:
+            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in flat(v))
+            self.sought = replace(self.sought, predicates=(*self.sought.predicates, *predicates))
+            return
+        if last is None and self.fragments:
+            predicates = tuple(p for part in said for p in part.predicates) + tuple(p for v in verbs for p in flat(v))
+            joined = self.fragments[-1]
+            self.fragments[-1] = replace(joined, predicates=(*joined.predicates, *predicates))
+            return
+        subject = None if last is None else last.subject
+        if self.borne is not None and link == "," and not built.verbs:
+            subject = self.borne  # 'the shelf holds a lamp, in the middle'
+        for verb in verbs:
+            noun = None if subject is None else Noun(subject)
+            self._clause("said", noun, verb, said, span, mood, None, link)
+            said = ()
+
+    # clauses
+
+    def _was_undone(self, span: Span) -> bool:
+        """Return True if a sentence in the past says when something was so, or what was done next."""
+        words = self.text[self.raw.start : self.raw.end].casefold()
+        return any(
+            f" {word} " in f" {words} ".replace(",", " ") for word in ("yesterday", "ago", "last", "but", "until")
+        )
+
+    def _of_the_thing(self, verb: Verb, subject: Noun) -> tuple[Verb, Noun]:
+        """Return *I have a lamp on the desk*, *you keep it under the mug* as said of the lamp."""
+        thing = verb.thing
+        assert thing is not None
+        phrase = thing.phrase
+        here = (*thing.extra, *(() if phrase.members else phrase.predicates))
+        if here and not phrase.members:
+            phrase = replace(phrase, predicates=())
+        return replace(verb, thing=None, said=(Said(here), *verb.said) if here else verb.said), Noun(phrase)
+
+    def _clause(
+        self, shape: str, subject: Noun | None, verb: Verb, front: tuple[Said, ...], span: Span, mood: Mood,
+        hedge: VerbGroup | None, link: str,
+    ) -> None:  # fmt: skip
+        group = verb.group
+        phrase = None if subject is None else subject.phrase
+        predicates = [p for part in front for p in part.predicates]
+        if subject is not None:
+            predicates += subject.extra
+        if (
+            shape in ("question", "existential", "verbless", "inverted")
+            and phrase is not None
+            and not predicates
+            and not verb.said
+        ):
+            predicates, phrase = [*phrase.predicates], replace(phrase, predicates=())
+        if shape == "existential" and not group.positive and phrase is not None and not phrase.negated:
+            phrase = replace(phrase, determiner="no") if phrase.head else phrase
+            if phrase.pronoun in ("anything", "anyone", "one", "everything"):
+                phrase = replace(phrase, pronoun="nothing")
+            group = replace(group, positive=True)
+        if phrase is not None and phrase.determiner == "neither" and phrase.members:
+            phrase, group = replace(phrase, determiner=None), replace(group, positive=not group.positive)
+            verb = replace(verb, group=group)
+        choices: list[tuple[Predicate, ...]] = []
+        positive = group.positive
+        main = flat(replace(verb, thing=None))
+        for part in verb.said:
+            if part.choice:
+                chosen = (
+                    part.predicates if positive else tuple(replace(p, positive=not p.positive) for p in part.predicates)
+                )
+                choices.append(chosen)
+        if self.front and phrase is not None:
+            self.shared = tuple(p for p in self.front if p.relation in ("inside", "on") and mood is Mood.COMMAND)
+            predicates, self.front = [*self.front, *predicates], ()
+        if mood is Mood.COMMAND:  # 'with a helper, turn the desk over'
+            predicates = [p for p in predicates if p.relation != "with" or any(a.predicates for a in p.arguments)]
+        made, absolute = _absolutes(predicates + main)
+        if verb.thing is not None:
+            made = flat(replace(verb, said=(), nominal=None)) + made
+        hedges = tuple(a for a in group.adverbs if a in HEDGES)
+        hedges += tuple(a for p in made for a in p.adverbs if a in HEDGES - APPROXIMATE and a not in hedges)
+        before = [word for at, word in self.hedges if at < span[1]]
+        self.hedges = [(at, word) for at, word in self.hedges if at >= span[1]]
+        hedges += tuple(word for word in before if word not in hedges)
+        modal = group.modal
+        past = group.past
+        if hedge is not None:
+            modal = hedge.modal if hedge.modal == "might" else modal or hedge.modal
+            past = past or hedge.past
+            hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
+            if not hedge.positive:
+                made = [replace(p, positive=not p.positive) for p in made]
+        clause = Clause(
+            phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
+            condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
+        )  # fmt: skip
+        self._append(clause, link)
+        for noun, said in absolute:
+            self._append(replace(clause, subject=noun, predicates=said, choices=(), existential=False), ",")
+
+    def _append(self, clause: Clause, link: str) -> None:
+        kept = []
+        for predicate in map(self._at_the_hour, clause.predicates):
+            if predicate.relation in ("through", "to", "measured_from") or (
+                predicate.relation == "from" and predicate.measure is None
+            ):
+                misunderstood(predicate.span, "this does not say where something is")
+            elif predicate.relation not in ("diagonal", "apart"):
+                kept.append(predicate)
+        if link == "or" and kept and self.clauses and clause.modal is None:  # 'leave it there or put it here'
+            clause = replace(clause, modal="may")
+            if self.clauses[-1].modal in (None, "can"):
+                self.clauses[-1] = replace(self.clauses[-1], modal="may")
+        handled = clause.mood is Mood.COMMAND and clause.subject is not None and bool(clause.subject.head)
+        placed = clause.subject is not None and bool(clause.subject.predicates)
+        if kept or clause.choices or clause.existential or clause.mood is Mood.QUESTION or handled or placed:
+            self.clauses.append(replace(clause, predicates=tuple(kept), guesses=self.guesses | clause.guesses))
+
+
+def _is_plan(group: VerbGroup, agent: NounPhrase) -> bool:
+    """Return True for *I'll put the cup on the tray*, which is not done yet, and *some people put it on the tray*."""
+    others = agent.determiner in ("some", "other", "many", "most", "few") and bool(agent.head)
+    return (group.modal == "will" and agent.pronoun != "you" and group.positive) or others
+
+
+def _frame_of_report(before: tuple[Chunk, ...]) -> VerbGroup | None:
+    """Return the verb of the main clause before *that*; only a few verbs and nouns make the clause after it a fact."""
+    verbs = [c.value for c in before if isinstance(c.value, VerbGroup)]
+    if not verbs:
+        return None
+    subjects = [c.value for c in before if c.type == "NP"]
+    judged = any(c.type in ("PART", "ADJP") for c in before)
+    if verbs[-1].lemma in IS_FORMS | {"be"} and not judged:
+        known = not subjects or last_word(subjects[-1].head) in _POINTS or bool(subjects[-1].pronoun)
+    else:
+        known = verbs[-1].lemma in _FACTIVE and not judged
+    return verbs[-1] if known else replace(verbs[-1], modal="might")
+
+
+def _turns_over(verb: Verb) -> bool:
+    """Return True for *I turned one jar upside down*."""
+    said = [p for part in verb.said for p in part.predicates]
+    said += verb.thing.phrase.predicates if verb.thing is not None else ()
+    return verb.group.lemma in _TURNING and any(p.relation == "upside_down" for p in said)
+
+
+def _absolutes(predicates: list[Predicate]) -> tuple[list[Predicate], list[tuple[NounPhrase, tuple[Predicate, ...]]]]:
+    """Separate *with G on the right* from what is said of the subject: it says where G is."""
+    kept, absolute = [], []
+    for predicate in predicates:
+        phrase = predicate.arguments[0] if predicate.relation == "with" and predicate.arguments else None
+        if phrase is not None and phrase.predicates and predicate.positive and predicate.subject_part is None:
+            absolute.append((replace(phrase, predicates=()), phrase.predicates))
+        else:
+            kept.append(predicate)
+    return kept, absolute
+
+
+def _looking(built: Built, start: int) -> tuple[Built, Viewpoint | None]:
+    """Separate the viewpoint before *there is*: *looking towards the door, there are two closets*."""
+    verb = built.verbs[0]
+    first = verb.said[0].predicates if verb.said else ()
+    if not first or first[0].span[0] > start or first[0].relation not in _FRAMES:
+        return built, None
+    return replace(built, verbs=(replace(verb, said=verb.said[1:]), *built.verbs[1:])), viewpoint_of(first)
+
+
+def _split_frames(said: tuple[Said, ...]) -> tuple[tuple[Said, ...], Viewpoint | None]:
+    """Separate the viewpoint from what stands before a clause: *facing the window*, *from the door*."""
+    top = [p for part in said for p in part.predicates]
+    nested = [q for p in top for argument in p.arguments for q in argument.predicates if q.relation == "facing"]
+    if not nested and not any(p.relation in _FRAMES for p in top):
+        return said, None
+    everything = tuple(p for part in said for p in part.predicates)
+    return (), viewpoint_of(everything)
+
+
+def _joined(first: Viewpoint | None, second: Viewpoint) -> Viewpoint:
+    if first is None:
+        return second
+    return Viewpoint(
+        (min(first.span[0], second.span[0]), max(first.span[1], second.span[1])), at=second.at or first.at,
+        facing=second.facing or first.facing, back=second.back or first.back, own=second.own or first.own,
+        entering=first.entering or second.entering,
+    )  # fmt: skip

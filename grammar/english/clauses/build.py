@@ -1,0 +1,869 @@
+"""Build the tree of a clause while the parser runs: one method per rule of ``english.lark``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from lark import Transformer, v_args
+
+from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, union
+from deixis.grammar.english.clauses.places import directions_of, is_place, place
+from deixis.grammar.english.clauses.predicates import (
+    DIRECTION_RELATIONS,
+    MOVING,
+    WRAPPING,
+    accompanied_by,
+    arguments_of,
+    by_means,
+    checked,
+    destination,
+    merged,
+    moved,
+    transitive,
+)
+from deixis.grammar.english.tree import (
+    Adjective,
+    Degree,
+    Measure,
+    NounPhrase,
+    Predicate,
+    Span,
+    Viewpoint,
+)
+from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
+from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, last_word
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NOT_PLACES, PLACE_NOUNS
+from deixis.grammar.english.vocabulary.tables import word_set
+
+
+@v_args(inline=True)
+class Builder(Transformer[Any, Built]):
+    """Transformer with one method per rule of the grammar."""
+
+    # clauses
+
+    def fragment(self, top: Noun) -> Built:
+        """Return a sentence that is only a noun phrase."""
+        return Built("fragment", top, ())
+
+    def statement(self, top: Noun, verbs: tuple[Verb, ...]) -> Built:
+        """Return a subject with its verbs."""
+        return Built("statement", top, verbs)
+
+    def inverted(self, said: tuple[Said, ...], verb: Chunk, more: tuple[Predicate, ...] | None, top: Noun) -> Built:
+        """Return *to the left of the plate lies the fork*."""
+        if more:
+            said = (*said, Said(more))
+        return Built("inverted", top, (Verb(verb.value, said, verb.span),))
+
+    def verbless(self, said: tuple[Said, ...], top: Noun) -> Built:
+        """Return *next to it a small cactus*."""
+        return Built("verbless", top, (), said)
+
+    def existential(
+        self, before: tuple[Said, ...] | None, there: Chunk, be: Chunk, top: Noun | None, after: tuple[Said, ...] | None
+    ) -> Built:
+        """Return *there is a cup on the tray*."""
+        return Built("existential", top, (Verb(be.value, (*(before or ()), *(after or ())), be.span),))
+
+    def command(self, put: Chunk, raws: Noun, said: tuple[Said, ...] | None) -> Built:
+        """Return *put the cup on the tray*."""
+        group: VerbGroup = put.value
+        if group.kind not in ("posture", "lean", "face", "point"):
+            group = replace(group, kind="posture")
+        if group.lemma == "surround" and said:
+            said = tuple(
+                replace(
+                    part,
+                    predicates=tuple(
+                        replace(p, relation="around", reversed=True) if p.relation == "with" else p
+                        for p in part.predicates
+                    ),
+                )
+                for part in said
+            )
+        if said and (group.lemma in WRAPPING or group.lemma in _FASTENING):
+            said = tuple(replace(part, predicates=by_means(group.lemma, part.predicates)) for part in said)
+        if group.lemma in MOVING and said:
+            said = tuple(
+                replace(
+                    part,
+                    predicates=tuple(destination(p) for p in part.predicates),
+                )
+                for part in said
+            )
+        return Built("command", raws, (Verb(group, moved(group, said, put.span) if said else (), put.span),))
+
+    def other(self, do: Chunk, top: Noun) -> Built:
+        """Return a command that does not put anything anywhere: *open the box on the tray*."""
+        return Built("other", top, (Verb(do.value, (), do.span),))
+
+    def search(self, find: Chunk, top: Noun) -> Built:
+        """Return *choose the chair next to the door*."""
+        return Built("search", top, (Verb(find.value, (), find.span),))
+
+    def whether(self, be: Chunk, top: Noun, said: tuple[Said, ...] | None) -> Built:
+        """Return *is the knife to the left of the fork*."""
+        return Built("question", top, (Verb(be.value, said or (), be.span),))
+
+    def asked(self, be: Chunk, top: Noun, verbs: tuple[Verb, ...]) -> Built:
+        """Return *can the cup be on the tray*."""
+        return Built("question", top, verbs)
+
+    def whether_there(self, be: Chunk, there: Chunk, top: Noun) -> Built:
+        """Return *is there a cup on the tray*."""
+        return Built("question", top, (Verb(be.value, (), be.span),))
+
+    def where(self, where: Chunk, be: Chunk, top: Noun, said: tuple[Said, ...] | None) -> Built:
+        """Return *where is the fork*."""
+        return Built("question", top, (Verb(be.value, said or (), be.span),))
+
+    def fronted(self, said: tuple[Said, ...], joint: Chunk, clause: Built) -> Built:
+        """Return a clause with what stands before its comma: *in the corner, a lamp*."""
+        return replace(clause, said=(*said, *clause.said))
+
+    def fronted_statement(self, said: tuple[Said, ...], clause: Built) -> Built:
+        """Return *in the corner I have a lamp*."""
+        return replace(clause, said=(*said, *clause.said))
+
+    def said(self, content: Any) -> Built:
+        """Return predicates without a subject."""
+        if content and isinstance(content[0], Verb):
+            return Built("said", None, content)
+        return Built("said", None, (), content)
+
+    def verbs(self, *parts: Any) -> tuple[Verb, ...]:
+        """Return the verb groups of one subject."""
+        return tuple(part for part in parts if isinstance(part, Verb))
+
+    def verb(self, *parts: Any) -> Verb:
+        """Return a verb group with its complement and its predicates."""
+        chunk = parts[0]
+        group: VerbGroup = chunk.value
+        if chunk.type == "BE":
+            _, nominal, said = parts
+            noun = nominal
+            shown = said or ()
+            if noun is not None and noun.extra:
+                shown = (Said(noun.extra), *shown)
+            return Verb(group, shown, chunk.span, noun)
+        if chunk.type == "VERB":
+            said = moved(group, parts[1] or (), chunk.span)
+            return Verb(group, said, chunk.span)
+        _, things, said = parts
+        if group.lemma in MOVING and said:
+            said = tuple(replace(part, predicates=tuple(map(destination, part.predicates))) for part in said)
+        if group.lemma in MOVING:
+            thing = replace(things.phrase, predicates=tuple(map(destination, things.phrase.predicates)))
+            things = Noun(thing, tuple(map(destination, things.extra)))
+        return Verb(group, said or (), chunk.span, thing=things)
+
+    def nominal(self, nps: Noun, *joined: Any) -> Noun:
+        """Return the noun phrase after *is* or after a transitive verb."""
+        return self.top(nps, *joined)
+
+    # noun phrases
+
+    def top(self, nps: Noun, *joined: Any) -> Noun:
+        """Return a noun phrase with what commas and *and* join to it."""
+        nps, joined = (whole := _with_own_parts((nps, *joined)))[0], whole[1:]
+        phrase, extra = nps.phrase, nps.extra
+        for joint, mods in zip(joined[::2], joined[1::2], strict=True):
+            if joint.type == "OJ":
+                one = mods.phrase.pronoun == "one" and mods.phrase.determiner == "the" and not mods.phrase.negated
+                if (
+                    joint.value == "," and one and not phrase.members
+                ):  # apposition: 'the picture on the left, the one in red'
+                    kind = Predicate("kind", (mods.phrase,), mods.phrase.span)
+                    phrase = replace(
+                        phrase, predicates=(*phrase.predicates, kind), span=union(phrase.span, mods.phrase.span)
+                    )
+                    continue
+                members = (*(phrase.members or (phrase,)), *(mods.phrase.members or (mods.phrase,)))
+                phrase = NounPhrase(union(phrase.span, mods.phrase.span), plural=True, members=members, joined_by="and")
+                extra += mods.extra
+                continue
+            if joint.value in ("and", "or") and phrase.predicates and not phrase.members:
+                shared = _shared([("", phrase.predicates[-1:]), (joint.value, tuple(mods))])
+                phrase = replace(phrase, predicates=(*phrase.predicates[:-1], *shared[0][1]))
+                mods = shared[1][1]
+            if phrase.members and all(member.predicates for member in phrase.members):
+                *rest, last = phrase.members  # 'A on the left and B on the right, next to C'
+                last = _restricted(last, mods)
+                phrase = replace(phrase, members=(*rest, last), span=union(phrase.span, last.span))
+            elif is_place(phrase) or phrase.pronoun in ("it", "they", "this") or phrase.members:
+                extra += tuple(mods)
+            else:
+                phrase = _restricted(phrase, mods)
+        return Noun(phrase, extra)
+
+    def nps(self, *parts: Any) -> Noun:
+        """Return a noun phrase, or the coordination of several."""
+        if len(parts) == 1:
+            only: Noun = parts[0]
+            return only
+        parts = _with_own_parts(parts)
+        if len(parts) == 1:
+            single: Noun = parts[0]
+            return single
+        if len(parts) == 3 and _is_second_content(parts[0].phrase, parts[2].phrase):
+            return parts[0]  # type: ignore[no-any-return]
+        members = [part.phrase for part in parts[::2]]
+        joints = [part.value for part in parts[1::2]]
+        first = members[0]
+        if (
+            is_place(first)
+            and first.of is not None
+            and not any(is_place(m) and m.head in DIRECTION_WORDS for m in members[1:])
+        ):
+            rest = (Noun(first.of), *parts[1:])  # 'to the right of the sink and the cabinet'
+            inner = self.nps(*rest)
+            return Noun(
+                replace(first, of=inner.phrase, span=union(first.span, inner.phrase.span)),
+                (*parts[0].extra, *inner.extra),
+            )
+        if len(members) == 2 and joints == [","] and _completes(first, members[1]):  # 'the small, rainbow towel'
+            second = members[1]
+            whole = replace(
+                second,
+                determiner=first.determiner,
+                adjectives=(*first.adjectives, *second.adjectives),
+                span=union(first.span, second.span),
+            )
+            return Noun(whole, parts[2].extra)
+        extra = tuple(p for part in parts[::2] for p in part.extra)
+        span = union(members[0].span, members[-1].span)
+        if (
+            "or" not in joints
+            and "and" not in joints
+            and "but" not in joints
+            and len(members) == 2
+            and not members[1].negated
+        ):
+            first, second = members
+            named = second.determiner is not None or second.owner is not None
+            if named and not is_place(first) and first.pronoun is None:  # apposition
+                kind = Predicate("kind", (second,), second.span)
+                return Noun(replace(first, predicates=(*first.predicates, kind), span=span), extra)
+        joined_by = "or" if "or" in joints else "and"
+        if first.determiner == "neither":
+            members = [replace(member, determiner="the") for member in members]
+            whole = NounPhrase(span, determiner="neither", plural=True, members=tuple(members), joined_by="and")
+            return Noun(whole, extra)
+        return Noun(NounPhrase(span, plural=True, members=tuple(members), joined_by=joined_by), extra)
+
+    raws = nps
+
+    def np(self, noun: NounPhrase, mods: tuple[Predicate, ...] | None) -> Noun:
+        """Return a noun phrase with its restrictions."""
+        if not mods:
+            return Noun(noun)
+        if noun.pronoun in ("it", "they", "me", "you", "we", "this", "he", "she"):
+            return Noun(noun, tuple(mods))
+        if noun.head == "back" and noun.owner is not None and mods[0].relation == "to":
+            return Noun(_restricted(noun, (replace(mods[0], relation="facing"), *mods[1:])))
+        if noun.head in _PARTS and mods[0].relation in ("facing", "pointing"):
+            return Noun(_restricted(noun, mods))
+        if is_place(noun) and not noun.predicates:
+            return _place_with(noun, tuple(mods))
+        return Noun(_restricted(noun, mods))
+
+    def noun(self, chunk: Chunk) -> NounPhrase:
+        """Return the noun phrase of a chunk."""
+        phrase: NounPhrase = chunk.value
+        return phrase
+
+    def raw(self, chunk: Chunk) -> Noun:
+        """Return a noun phrase that takes no restrictions."""
+        return Noun(chunk.value)
+
+    def complement(self, chunk: Chunk, of: Chunk, thing: Noun) -> NounPhrase:
+        """Return *the end of the shelf* and *a pair of boots*."""
+        phrase: NounPhrase = chunk.value
+        thing, its = _of_the_subject(thing)
+        inner = thing.phrase
+        on_it = tuple(p for p in inner.predicates if any(a.pronoun in ("it", "they") for a in p.arguments))
+        if on_it:  # 'the desk with a piece of paper on it'
+            inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in on_it))
+            its = (*on_it, *its)
+        share = phrase.head in _FRACTIONS and (inner.pronoun is not None or inner.plural) and phrase.owner is None
+        if share and not phrase.adjectives:
+            return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'two thirds of them'
+        aims = tuple(p for p in inner.predicates if p.relation in ("pointing", "facing") or _is_side(p))
+        if aims and last_word(phrase.head) in PARTS:  # 'the handle of the spoon pointing to the right'
+            inner = replace(inner, predicates=tuple(p for p in inner.predicates if p not in aims))
+            its = (*aims, *its)
+        if not phrase.head and phrase.pronoun is None and phrase.determiner in _QUANTIFIERS and inner.head:
+            return replace(inner, plural=True, span=union(phrase.span, inner.span))  # 'most of the knives'
+        if phrase.head.rpartition(" ")[2] in _AMOUNTS and inner.head and not inner.owner and inner.determiner is None:
+            span = union(phrase.span, inner.span)  # 'a thin layer of gravel', '8 cm of soil'
+            return replace(inner, determiner=phrase.determiner if phrase.determiner != "each" else "the", span=span)
+        if not phrase.head and phrase.count is not None and phrase.determiner == "a":  # 'a pair of boots'
+            return replace(inner, count=phrase.count, plural=True, span=union(phrase.span, inner.span))
+        return replace(
+            phrase, of=inner, span=union(phrase.span, inner.span), predicates=(*phrase.predicates, *thing.extra, *its)
+        )
+
+    def raw_complement(self, chunk: Chunk, of: Chunk, thing: Noun) -> Noun:
+        """Return *the end of the shelf* without restrictions."""
+        return Noun(self.complement(chunk, of, thing))
+
+    def mods(self, *parts: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+        """Return the restrictions of a noun phrase."""
+        return merged(parts, check=False)
+
+    # predicates
+
+    def preds(self, *parts: Any) -> tuple[Said, ...]:
+        """Return predicates, grouped by their joints."""
+        groups: list[tuple[str, list[Any]]] = [("", [])]
+        for part in parts:
+            if isinstance(part, Chunk):
+                groups.append((part.value, []))
+            else:
+                groups[-1][1].append(part)
+        made = [(link, merged(tuple(group), check=False)) for link, group in groups]
+        made = _shared(made)
+        return tuple(Said(predicates, link == "or", link == "but") for link, predicates in made)
+
+    def pp(self, prep: Chunk, noun: Noun, than: Chunk | None, other: Noun | None) -> tuple[Predicate, ...]:
+        """Return the predicates of a preposition and its object."""
+        relator: Relator = prep.value
+        relation = relator.preposition.relation
+        span = union(prep.span, noun.phrase.span)
+        extra = noun.extra
+        noun, its = _of_the_subject(noun)
+        extra = (*extra, *its)
+        if other is not None:
+            span, extra = union(span, other.phrase.span), (*extra, *other.extra)
+        if noun.phrase.head.endswith(("degree angle", "degree")) and relation in ("at", "inside"):
+            target = next((p for p in (*noun.phrase.predicates, *extra) if p.relation == "to"), None)
+            return () if target is None else (replace(target, relation="diagonal", span=span),)
+        if noun.phrase.members and all(is_place(member) for member in noun.phrase.members):
+            return (*_places(relator, noun.phrase.members, span), *extra)
+        side = PLACE_NOUNS.get(noun.phrase.head, "")
+        if relation in ("pointing", "facing") and side in _SIDES and noun.phrase.of is None and not noun.phrase.members:
+            aim = Adjective(side, "position", Degree.PLAIN, noun.phrase.span)  # 'pointing to the right'
+            return (Predicate(relation, (), span, value=aim, positive=relator.positive), *extra)
+        own = noun.phrase.owner is not None and noun.phrase.owner.pronoun in ("it", "he", "she", "they")
+        if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
+            turned = Predicate("upside_down", (), span, positive=relator.positive)
+            return (turned, *noun.phrase.predicates, *extra)
+        found = _positioned(relator, noun.phrase, span)
+        if found is not None:
+            main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))
+            return (main, *rest)
+        if noun.phrase.head in _LEVELS and (
+            noun.phrase.determiner == "same" or any(a.word == "same" for a in noun.phrase.adjectives)
+        ):
+            directed = tuple(p for p in noun.phrase.predicates if p.relation != "as")
+            level = Predicate(
+                "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
+            )
+            return (*((level,) if level.arguments else ()), *directed, *extra)
+        if noun.phrase.head in ("level", "height") and relation in ("at", "on"):
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return extra
+        last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
+        if (
+            last is not None
+            and relation in _LEVEL_RELATIONS
+            and last.relation in ("left", "right")
+            and not last.arguments
+            and last.part is None
+        ):  # 'above X to the left'
+            bare = replace(noun.phrase, predicates=noun.phrase.predicates[:-1])
+            noun, extra = Noun(bare, extra), (replace(last, arguments=(bare,)), *extra)
+        if last_word(noun.phrase.head) in GAPS and relation in ("inside", "on") and noun.phrase.predicates:
+            between = tuple(p for p in noun.phrase.predicates if p.relation == "between")
+            if between:  # 'in the space between the plate and the cup'
+                return (*between, *extra)
+        hour = next(
+            (
+                p
+                for p in noun.phrase.predicates
+                if p.value is not None and p.value.dimension == "clock" and not p.arguments
+            ),
+            None,
+        )
+        if hour is not None:
+            rest = tuple(p for p in noun.phrase.predicates if p is not hour)
+            noun = Noun(replace(noun.phrase, predicates=rest), extra)
+            extra = (*extra, replace(hour, arguments=(noun.phrase,)))
+        if relation == "material":
+            word = Adjective(noun.phrase.head or "unknown", "material", Degree.PLAIN, noun.phrase.span)
+            return (Predicate("material", (noun.phrase,), span, value=word, positive=relator.positive), *extra)
+        if noun.phrase.head.rpartition(" ")[2] in _ARRANGEMENTS and relation == "inside":
+            misunderstood(span, f"'{noun.phrase.head}' is not a place")
+            return extra
+        manner = relation == "by" and noun.phrase.head in _MANNERS
+        plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
+        idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
+        if idle or (plain and manner):
+            misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
+            return (*noun.phrase.predicates, *extra)
+        if relation == "-":
+            misunderstood(span, f"'{relator.preposition.phrase}' does not say where something is")
+            return extra
+        degree = relator.preposition.degree
+        if "as" in relator.adverbs and relation in ("near", "far"):
+            degree = Degree.SUPERLATIVE
+        value = None
+        if relator.rank is not None:
+            value = Adjective("ordinal", "rank", degree, prep.span, rank=relator.rank)
+        arguments = noun.phrase
+        written = relator.preposition.phrase
+        shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
+        adverbs = (*relator.adverbs, written) if written == "over" or shaped else relator.adverbs
+        made = Predicate(
+            relation, arguments_of(relation, arguments), span, value=value, degree=degree,
+            than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,
+        )  # fmt: skip
+        return (made, *extra)
+
+    def alone(self, chunk: Chunk) -> tuple[Predicate, ...]:
+        """Return the predicate of a place word: *above*, *upside down*."""
+        relator: Relator = chunk.value
+        preposition = relator.preposition
+        part = None
+        if preposition.phrase.startswith("far ") and preposition.relation in ("left", "right"):
+            return (
+                Predicate(
+                    "part", (), chunk.span, part=preposition.phrase, adverbs=relator.adverbs, positive=relator.positive
+                ),
+            )
+        if preposition.relation == "row":
+            return (Predicate("row", (), chunk.span, part=preposition.phrase),)
+        if preposition.relation in ("up", "down", "forward", "backward", "inward", "outward"):
+            aim = Adjective(preposition.relation, "position", Degree.PLAIN, chunk.span)
+            return (Predicate("pointing", (), chunk.span, value=aim, positive=relator.positive),)
+        value = None
+        if relator.rank is not None:
+            value = Adjective("ordinal", "rank", preposition.degree, chunk.span, rank=relator.rank)
+        return (
+            Predicate(
+                preposition.relation, (), chunk.span, value=value, part=part, degree=preposition.degree,
+                adverbs=relator.adverbs, positive=relator.positive,
+            ),
+        )  # fmt: skip
+
+    def participle(self, chunk: Chunk) -> tuple[Predicate, ...]:
+        """Return a mark for a participle, which :func:`merged` joins to what follows."""
+        group: VerbGroup = chunk.value
+        return (
+            Predicate(f"~{group.lemma}~{group.kind}", (), chunk.span, adverbs=group.adverbs, positive=group.positive),
+        )
+
+    def holding(self, chunk: Chunk, nps: Noun) -> tuple[Predicate, ...]:
+        """Return the predicates of *facing the window*, *holding a pen*."""
+        return transitive(chunk.value, nps, chunk.span)
+
+    def withs(self, chunk: Chunk, *nouns: Any) -> tuple[Predicate, ...]:
+        """Return the predicates of *with a napkin on it*."""
+        relator: Relator = chunk.value
+        found: list[Predicate] = []
+        several: NounPhrase | None = None
+        for noun in nouns[::2]:
+            for member in _with_shared_place(noun.phrase):
+                if several is not None:
+                    member = _beside(member, several)
+                several = replace(member, predicates=()) if member.plural else several
+                found += _accompanied(relator, member, union(chunk.span, noun.phrase.span))
+            found += noun.extra
+        return tuple(found)
+
+    def compared(self, adjective: Chunk, than: Chunk, noun: Noun) -> tuple[Predicate, ...]:
+        """Return the predicates of *taller than the jug*."""
+        words: tuple[Adjective, ...] = adjective.value
+        *others, compared = words
+        span = union(adjective.span, noun.phrase.span)
+        if compared.word in ("near", "far"):
+            made = Predicate(compared.word, (), span, value=compared, degree=Degree.COMPARATIVE, than=noun.phrase)
+        else:
+            relation = COMPARISONS.get(compared.word, "more")
+            if compared.word in ("left", "right"):
+                relation = compared.word
+            made = Predicate(relation, (noun.phrase,), span, value=compared, degree=Degree.COMPARATIVE)
+        return (*_properties(tuple(others)), made, *noun.extra)
+
+    def adjectives(self, chunk: Chunk) -> tuple[Predicate, ...]:
+        """Return a predicate for each adjective."""
+        return _properties(chunk.value)
+
+    def measured(self, chunk: Chunk) -> tuple[Predicate, ...]:
+        """Return a distance without its object."""
+        metres, hedge, bound = chunk.value
+        measure = Measure(metres, hedge, bound, chunk.span)
+        relation = {"<": "distance_less", ">": "distance_more"}.get(bound, "distance")
+        return (Predicate(relation, (), chunk.span, measure=measure),)
+
+    def relative(self, rel: Chunk, verb: Verb) -> tuple[Predicate, ...]:
+        """Return the predicates of *that stands on the tray*."""
+        return tuple(flat(verb))
+
+    def reduced(self, rel: Chunk, said: tuple[Said, ...]) -> tuple[Predicate, ...]:
+        """Return the predicates of *that next to the tray*."""
+        return tuple(p for part in said for p in part.predicates)
+
+    def object_relative(self, rel: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
+        """Return the predicates of *that the cup stands on* and *which I keep under the mug*."""
+        predicates = flat(verb)
+        if noun.phrase.pronoun in ("me", "you", "we", "someone") or not predicates:
+            return tuple(p for p in predicates if p.arguments or p.relation in DIRECTION_RELATIONS)
+        last = predicates[-1]
+        if not last.arguments:
+            span = union(noun.phrase.span, last.span)
+            return (*predicates[:-1], replace(last, arguments=(noun.phrase,), reversed=True, span=span))
+        misunderstood(union(rel.span, verb.span), "this relative clause does not say how the two things lie")
+        return ()
+
+    def whose(self, whose: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
+        """Return the predicates of *whose handle points to the right*."""
+        return tuple(replace(p, subject_part=noun.phrase) for p in flat(verb))
+
+
+def _is_second_content(vessels: NounPhrase, other: NounPhrase) -> bool:
+    """Return True for *the cruets of wine* and *water*, which the cruets hold too."""
+    content = vessels.of
+    bare = other.determiner is None and other.owner is None and other.count is None and not other.predicates
+    return (
+        content is not None and vessels.plural and not content.predicates and bare
+        and content.head in SUBSTANCES and other.head in SUBSTANCES
+    )  # fmt: skip
+
+
+def flat(verb: Verb) -> list[Predicate]:
+    """Return what a verb says of its subject as one list; alternatives after *or* are left out.
+
+    Parameters
+    ----------
+    verb
+        Verb with what it says.
+
+    Returns
+    -------
+    list of Predicate
+        Predicates of the subject. Negation and adverbs of the verb are carried over to each; predicates after *but*
+        keep their own.
+    """
+    found: list[Predicate] = []
+    contrasted: list[Predicate] = []
+    for part in verb.said:
+        if part.contrast:
+            contrasted += part.predicates
+        elif not part.choice:
+            found += part.predicates
+    if verb.thing is not None:
+        found[:0] = transitive(replace(verb.group, positive=True, adverbs=()), verb.thing, verb.span)
+    if verb.nominal is not None:
+        phrase = verb.nominal.phrase
+        found.insert(0, Predicate("kind", (phrase,), phrase.span))
+    if not verb.group.positive:
+        found = [replace(p, positive=not p.positive) for p in found]
+    found += contrasted
+    if verb.group.adverbs:
+        found = [replace(p, adverbs=(*verb.group.adverbs, *p.adverbs)) for p in found]
+    return found
+
+
+def _beside(member: NounPhrase, several: NounPhrase) -> NounPhrase:
+    """Return *the knife to their right* after *with two limes on it* with the limes as what it is beside."""
+    made = []
+    for p in member.predicates:
+        theirs = bool(p.arguments) and all(a.pronoun == "they" for a in p.arguments)
+        own = p.viewpoint is not None and p.viewpoint.own is not None and p.viewpoint.own.pronoun == "they"
+        made.append(replace(p, arguments=(several,), viewpoint=None if own else p.viewpoint) if theirs else p)
+    return replace(member, predicates=tuple(made))
+
+
+def _with_own_parts(parts: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Join *its nozzle turned towards the viewer* to the thing before it, of which it is a part."""
+    kept: list[Any] = [parts[0]]
+    owner_at = 0  # in `kept`: modifiers may stand between the thing and its part
+    for joint, part in zip(parts[1::2], parts[2::2], strict=True):
+        phrase = part.phrase if isinstance(part, Noun) else None
+        before = kept[owner_at]
+        said = phrase.predicates if phrase is not None else ()
+        aims = bool(said) and all(p.relation in ("facing", "pointing", "state") for p in said)
+        owner = None if phrase is None or phrase.owner is None else phrase.owner.pronoun
+        if phrase is not None and aims and owner == "it" and before.phrase.head:
+            bare = replace(phrase, predicates=())
+            said = tuple(replace(p, subject_part=bare) for p in said)
+            kept[owner_at] = Noun(_restricted(before.phrase, said), (*before.extra, *part.extra))
+        else:
+            kept += [joint, part]
+            owner_at = len(kept) - 1 if phrase is not None else owner_at
+    return tuple(kept)
+
+
+def _with_shared_place(phrase: NounPhrase) -> tuple[NounPhrase, ...]:
+    """Return the members of *three pens and a ruler in it*, all of them in it."""
+    members = phrase.members or (phrase,)
+    last = members[-1].predicates
+    if len(members) < 2 or not last or not any(a.pronoun in ("it", "they") for p in last for a in p.arguments):
+        return members
+    return tuple(member if member.predicates else replace(member, predicates=last) for member in members)
+
+
+def _restricted(phrase: NounPhrase, mods: tuple[Predicate, ...]) -> NounPhrase:
+    related = _related(phrase, mods)
+    if related != mods:
+        phrase = replace(phrase, adjectives=tuple(a for a in phrase.adjectives if a.word not in ("near", "far")))
+    mods, adjectives = _ordinals(phrase, related)
+    mods = tuple(checked(list(mods), phrase))
+    last = mods[-1].span if mods else phrase.span
+    return replace(phrase, predicates=(*phrase.predicates, *mods), adjectives=adjectives, span=union(phrase.span, last))
+
+
+def _related(phrase: NounPhrase, mods: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+    """Join *to* and *from* with the adjective before the noun: *the closest block to me*."""
+    near = next((a for a in phrase.adjectives if a.word in ("near", "far") and a.degree is not Degree.PLAIN), None)
+    if near is None:
+        return mods
+    return tuple(
+        replace(p, relation=near.word, degree=near.degree, value=near)
+        if p.relation in ("to", "from") and p.arguments
+        else p
+        for p in mods
+    )
+
+
+def _ordinals(phrase: NounPhrase, mods: tuple[Predicate, ...]) -> tuple[tuple[Predicate, ...], tuple[Adjective, ...]]:
+    """Return the modifiers with *from the left* joined to the ordinal before it: *the second cup from the left*."""
+    ranked = next((a for a in phrase.adjectives if a.rank is not None), None)
+    found, adjectives = [], phrase.adjectives
+    for mod in mods:
+        if mod.relation == "ordinal" and mod.value is None:
+            if ranked is None:
+                misunderstood(
+                    mod.span, "this counts from a side, but no number stands before it", "the second cup from the left"
+                )
+                continue
+            mod = replace(mod, value=ranked, span=union(ranked.span, mod.span))
+            adjectives = tuple(a for a in adjectives if a is not ranked)
+        found.append(mod)
+    return tuple(found), adjectives
+
+
+def _completes(first: NounPhrase, second: NounPhrase) -> bool:
+    """Return True if the second phrase has the noun of the adjectives in the first one."""
+    bare = not first.head and first.pronoun is None and first.determiner is not None and not first.predicates
+    return bare and bool(first.adjectives) and bool(second.head) and second.determiner is None and second.count is None
+
+
+def _place_with(noun: NounPhrase, mods: tuple[Predicate, ...]) -> Noun:
+    """Return a place with its complement after *to*: *at the lower side to X*; further phrases belong above it."""
+    first = mods[0]
+    if first.relation in ("to", "-to") and noun.of is None and len(first.arguments) == 1:
+        return Noun(replace(noun, of=first.arguments[0], span=union(noun.span, first.span)), mods[1:])
+    return Noun(noun, mods)
+
+
+def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
+    """Separate *with its spout pointing to the window* from a place: *its* is the subject's."""
+    phrase = noun.phrase
+    last = phrase.predicates[-1] if phrase.predicates else None
+    part = last.subject_part if last is not None else None
+    if last is None or part is None or part.owner is None or part.owner.pronoun != "it":
+        return noun, ()
+    kept = phrase.predicates[:-1]
+    return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)
+
+
+def _is_side(predicate: Predicate) -> bool:
+    return predicate.relation in ("left", "right", "top", "bottom") and not predicate.arguments
+
+
+def _places(relator: Relator, places: tuple[NounPhrase, ...], span: Span) -> list[Predicate]:
+    """Return the predicates of several places, which share their object: *on the left side and top of X*."""
+    of = next((member.of for member in places if member.of is not None), None)
+    found = []
+    for member in places:
+        predicate = place(relator, replace(member, of=member.of or of, negated=False), span)
+        if predicate is not None:
+            found.append(replace(predicate, positive=not predicate.positive) if member.negated else predicate)
+    return found
+
+
+def _positioned(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
+    """Return the predicate of a place; *from the left* is an ordinal without its number."""
+    relation = relator.preposition.relation
+    if relation == "from" and is_place(phrase) and phrase.of is None:
+        side = (
+            phrase.head
+            if phrase.head != "end" and phrase.head != "side"
+            else " ".join(a.word for a in phrase.adjectives)
+        )
+        return Predicate("ordinal", (), span, part=side)
+    if (
+        is_place(phrase)
+        and phrase.predicates
+        and relation not in ("on", "inside", "at", "to", "along", "from", "facing", "pointing")
+    ):
+        return None
+    if (
+        relation in ("facing", "pointing")
+        and phrase.head in DIRECTION_WORDS
+        and phrase.of is None
+        and phrase.owner is None
+    ):
+        word = Adjective(" ".join((*directions_of(phrase), phrase.head)), "position", Degree.PLAIN, phrase.span)
+        return Predicate(relation, (), span, value=word, adverbs=relator.adverbs, positive=relator.positive)
+    return place(relator, phrase, span)
+
+
+def _with_argument(main: Predicate, extra: tuple[Predicate, ...]) -> tuple[Predicate, tuple[Predicate, ...]]:
+    """Join *to X*, *of X* and *relative to X* after a place without an owner: *at the top position to X*."""
+    if extra and not main.arguments and extra[0].relation == "to" and main.relation != "ordinal":
+        return replace(main, arguments=extra[0].arguments, span=union(main.span, extra[0].span)), extra[1:]
+    return main, extra
+
+
+def _properties(words: tuple[Adjective, ...]) -> tuple[Predicate, ...]:
+    found = []
+    for word in words:
+        relation = word.dimension
+        if word.dimension == "position" and word.word in (
+            "left",
+            "right",
+            "top",
+            "bottom",
+            "middle",
+            "near",
+            "far",
+            "front",
+            "back",
+        ):
+            relation = {"front": "in_front", "back": "behind"}.get(word.word, word.word)
+        elif word.dimension == "rank":
+            relation = "ordinal"
+        elif word.word in ("open", "empty"):
+            relation = word.word
+        elif word.word in ("parallel", "aligned", "stacked", "nested"):
+            relation = {"parallel": "parallel_each_other"}.get(word.word, word.word)
+        found.append(Predicate(relation, (), word.span, value=word, degree=word.degree, positive=word.positive))
+    return tuple(found)
+
+
+def _accompanied(relator: Relator, member: NounPhrase, span: Span) -> list[Predicate]:
+    found = accompanied_by(member, span)
+    if not relator.positive:
+        found = [replace(p, positive=not p.positive) for p in found]
+    return found
+
+
+_PARTS = frozenset({"tip", "end", "front", "back", "side", "top", "bottom", "edge"})
+
+
+_LEVEL_RELATIONS = frozenset({"above", "below", "behind", "in_front", "under", "top", "bottom"})
+_ARRANGEMENTS = frozenset({"setting", "arrangement", "layout", "style", "fashion", "manner", "order"})
+_QUANTIFIERS = frozenset({"most", "many", "several", "few", "some", "half"})
+_FASTENING = word_set(
+    "attach fix secure fasten screw bolt nail tape glue tie strap clip clamp pin connect join wedge press push wrap"
+    " mount install hold affix anchor hook lower raise lift pull drag turn spread pour stick scoop lock"
+)
+"""Commands in which *with* names a tool: *secure it with two bolts*."""
+_FRACTIONS = frozenset({"half", "third", "quarter", "majority", "fifth"})
+_SIDES = frozenset({"left", "right", "top", "bottom", "front", "back"})
+_AMOUNTS = word_set(
+    "layer bed coat coating film drop splash dollop handful pinch spoonful knob drizzle dash dusting scattering heap"
+    " mound bit amount quantity helping cm mm centimetre centimeter millimetre inch gram g kg ml litre liter"
+)
+"""Nouns of an amount, before the substance or the things that are meant."""
+_LEVELS = frozenset({"plane", "level", "height", "line", "axis"})
+
+
+_MANNERS = word_set(
+    "value price brand theme subject author mistake default law tradition custom rule accident chance colour color size"
+    " hand name age height type kind length weight shape date number order"
+)
+"""Nouns after which *by* says how and not where: *sorted by colour*."""
+
+_HEIGHTS = {
+    ("height", Degree.COMPARATIVE): {"low": "below", "high": "above"},
+    ("top", Degree.PLAIN): {"top": "above"},
+    ("bottom", Degree.PLAIN): {"bottom": "below"},
+}
+
+
+_SHARING = DIRECTION_RELATIONS | {"opposite", "next_to", "far", "along", "against"}
+
+
+def _shared(made: list[tuple[str, tuple[Predicate, ...]]]) -> list[tuple[str, tuple[Predicate, ...]]]:
+    """Give a place without an object that of its neighbour: *below and to the left of X*, *above X and to the left*."""
+    for i, (link, predicates) in enumerate(made):
+        if len(predicates) == 1 and (heights := _HEIGHTS.get((predicates[0].relation, predicates[0].degree))):
+            word = predicates[0].value.word if predicates[0].value is not None else ""
+            if word in heights and (i + 1 < len(made) or i):
+                predicates = (replace(predicates[0], relation=heights[word], value=None, degree=Degree.PLAIN),)
+        if len(predicates) != 1 or predicates[0].arguments or predicates[0].relation not in _SHARING:
+            continue
+        this = predicates[0]
+        if i and made[i - 1][1] and made[i - 1][1][-1].relation == "diagonal":
+            made[i] = (link, (replace(this, arguments=made[i - 1][1][-1].arguments),))
+            made[i - 1] = (made[i - 1][0], made[i - 1][1][:-1])
+            continue
+        if this.part not in (None, "side") or this.relation == "corner":
+            continue
+        after = made[i + 1][1][0] if i + 1 < len(made) and made[i + 1][1] and made[i + 1][0] in ("and", "or") else None
+        before = made[i - 1][1][0] if i and made[i - 1][1] and link in ("and", ",", "or") else None
+        if after is not None and after.arguments and after.relation in _SHARING and len(after.arguments) == 1:
+            made[i] = (link, (replace(this, arguments=after.arguments),))
+        elif before is not None and before.arguments and before.relation in _SHARING and len(before.arguments) == 1:
+            made[i] = (link, (replace(this, arguments=before.arguments),))
+    return made
+
+
+def viewpoint_of(predicates: tuple[Predicate, ...]) -> Viewpoint | None:
+    """Return the viewpoint that predicates of *you* state: *you are facing the bed*, *standing at the door*.
+
+    Parameters
+    ----------
+    predicates
+        Predicates of the person who looks.
+
+    Returns
+    -------
+    Viewpoint or None
+        Place and direction of the viewer; None if the predicates name neither.
+    """
+    at = facing = back = None
+    nested = [p for predicate in predicates for argument in predicate.arguments for p in argument.predicates]
+    if (
+        predicates
+        and all(not p.relation.startswith(("facing", "from")) for p in predicates)
+        and predicates[0].arguments
+    ):
+        at = predicates[0].arguments[0]
+    for predicate in (*predicates, *(p for p in nested if p.relation in ("facing", "from"))):
+        if not predicate.arguments:
+            continue
+        if predicate.relation in ("facing", "pointing"):
+            facing = predicate.arguments[0]
+        elif predicate.relation in (
+            "from",
+            "at",
+            "near",
+            "inside",
+            "on",
+            "in_front",
+            "next_to",
+            "opposite",
+            "against",
+            "middle",
+            "end",
+            "behind",
+            "through",
+            "side",
+            "corner",
+        ):
+            at = at or predicate.arguments[0]
+        elif predicate.relation == "with" and predicate.arguments[0].head == "back":
+            back = next((p.arguments[0] for p in predicate.arguments[0].predicates if p.arguments), None)
+        elif predicate.subject_part is not None and predicate.subject_part.head == "back":
+            back = predicate.arguments[0]
+    if at is None and facing is None and back is None:
+        return None
+    return Viewpoint((predicates[0].span[0], predicates[-1].span[1]), at=at, facing=facing, back=back)

@@ -1,0 +1,487 @@
+"""Join the phrases of a predicate: what verbs and participles make of the places after them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import VerbGroup
+from deixis.grammar.english.clauses.built import Noun, Said, misunderstood, union
+from deixis.grammar.english.tree import (
+    Adjective,
+    Degree,
+    NounPhrase,
+    Predicate,
+    Span,
+)
+from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.tables import word_set
+from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
+
+DIRECTION_RELATIONS = word_set(
+    "corner left right top bottom above below in_front behind top_left top_right bottom_left bottom_right under inside"
+    " on beside near"
+)
+"""Relations of places, which can stand without an object and take that of their neighbour."""
+MOVING = frozenset(
+    {"shift", "transfer", "relocate", "return", "move", "bring", "slide", "push", "add", "carry", "take"}
+)
+WRAPPING = {"cover": "on", "top": "on", "line": "on", "fill": "inside", "pack": "inside", "flank": "each_side"}
+"""Relation of what a command uses to the thing that it changes: *cover the bowl with a cloth*."""
+_ATTACHING = word_set(
+    "affix hinge anchor glue screw bolt secure nail tape strap attach fix mount connect"
+    " join fasten tie hook link stick pin clip clamp wire"
+)
+"""Verbs after which *to* means that two things touch."""
+_AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
+"""Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
+_COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
+"""Verbs after which *over* means *on*."""
+_DIRECTIONAL = frozenset(
+    {"left", "right", "top", "bottom", "in_front", "behind", "above", "below", "far", "near", "part"}
+)
+_LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
+_LEAPING = word_set("jump leap climb walk step pass skip hop")
+"""Verbs of a motion past a thing."""
+_PASSIVES = {
+    "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
+    "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
+}  # fmt: skip
+"""Relation of the agent of a participle to its subject: *surrounded by cups*."""
+_ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
+_SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
+_STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
+_STAYING = word_set(
+    "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
+    " lean prop nestle perch find see go come wait live stop linger belong be"
+)
+"""Verbs after which *by* means *near*."""
+_TELLING = word_set(
+    "mention describe list show note picture record state name quote illustrate explain depict photograph"
+)
+"""Verbs after which *in* names a text or a picture."""
+
+_FINISHING = word_set("bind bound upholster gild enamel lacquer varnish paint print dress cast carve engrave sign mark")
+"""Verbs after which *in* names a material or a manner."""
+
+
+def merged(parts: tuple[tuple[Predicate, ...], ...], check: bool = True) -> tuple[Predicate, ...]:
+    """Return predicates as one list; a participle gives its meaning to the phrase after it.
+
+    Parameters
+    ----------
+    parts
+        Predicates of each part of a coordination or a sequence of phrases, in the order of the text.
+    check
+        True to leave out *apart*, and *to* where it names no place, which is noted as misunderstood.
+
+    Returns
+    -------
+    tuple of Predicate
+        Predicates without those that only stood for a participle.
+    """
+    flat_parts = [predicate for part in parts for predicate in part]
+    found: list[Predicate] = []
+    i = 0
+    while i < len(flat_parts):
+        predicate = flat_parts[i]
+        following = flat_parts[i + 1] if i + 1 < len(flat_parts) else None
+        if predicate.relation.startswith("~"):
+            lemma, kind = predicate.relation[1:].split("~")
+            if lemma in ("stack", "pile") and following is not None and following.relation not in ("on", "stacked"):
+                found.append(Predicate("stacked", (), predicate.span, positive=predicate.positive))
+            agent = flat_parts[i + 2] if i + 2 < len(flat_parts) else None
+            if (
+                lemma in _PASSIVES
+                and following is not None
+                and following.relation in ("left", "right")
+                and not following.arguments
+                and agent is not None
+                and agent.relation in ("near", "by")
+            ):  # 'bordered on the right by a pen'
+                flat_parts[i + 1 : i + 3] = [
+                    replace(agent, relation=following.relation, reversed=True, span=union(following.span, agent.span))
+                ]
+                i += 1
+                continue
+            if following is not None and lemma in _SHAPING and "into" in following.adverbs:
+                misunderstood(following.span, "this says what shape something gets, not where it is")
+                i += 2
+                continue  # 'folded into a fan'
+            if following is not None and lemma in ("center", "centre") and following.relation in ("on", "inside"):
+                found.append(replace(following, relation="middle"))  # 'centred on the table'
+            if following is not None and not following.relation.startswith("~"):
+                flat_parts[i + 1] = _meant(lemma, kind, predicate, following)
+                if kind == "unknown" or (lemma in _STATES and following.relation != "pointing"):
+                    found.append(_state(lemma, predicate))
+            elif following is None and lemma in ("find", "see", "notice", "present"):
+                found.append(Predicate("there", (), predicate.span, positive=predicate.positive))
+            elif (following is None or kind == "unknown") and (kind != "posture" or lemma in _STATES):
+                found.append(_state(lemma, predicate))
+            i += 1
+            continue
+        if predicate.measure is not None and not predicate.arguments and following is not None:
+            joined = _distance(predicate, following)
+            if joined is not None:
+                flat_parts[i + 1] = joined[0]
+                if joined[1]:
+                    found.append(joined[1][0])
+                if not joined[0].relation:
+                    del flat_parts[i + 1]
+                i += 1
+                continue
+        if (
+            following is not None
+            and (following.relation == "to" or (following.relation == "from" and predicate.relation in ("near", "far")))
+            and not predicate.arguments
+            and (
+                predicate.relation in ("near", "far")
+                or predicate.relation in DIRECTION_RELATIONS
+                or (predicate.value is not None and predicate.value.dimension == "clock")
+            )
+        ):
+            predicate = replace(predicate, arguments=following.arguments, span=union(predicate.span, following.span))
+            flat_parts[i + 1] = predicate
+            i += 1
+            continue
+        if (
+            predicate.relation == "far"
+            and predicate.degree is Degree.SUPERLATIVE
+            and not predicate.arguments
+            and following is not None
+            and following.relation in ("left", "right", "top", "bottom", "in_front", "behind")
+        ):  # 'the one furthest to the left'
+            joined_span = union(predicate.span, following.span)
+            flat_parts[i + 1] = replace(following, degree=Degree.SUPERLATIVE, span=joined_span)
+            i += 1
+            continue
+        if (
+            predicate.relation == "ordinal"
+            and predicate.value is not None
+            and following is not None
+            and (following.relation == "ordinal" and following.value is None)
+        ):
+            flat_parts[i + 1] = replace(following, value=predicate.value, span=union(predicate.span, following.span))
+            i += 1
+            continue
+        found.append(predicate)
+        i += 1
+    found = [replace(p, relation="near") if p.relation == "by" else p for p in found]
+    return tuple(checked(found)) if check else tuple(found)
+
+
+def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, ...]:
+    """Give the phrases after a verb the meaning of the verb: *leans against X*, *points to the right*, *faces away*.
+
+    Parameters
+    ----------
+    group
+        Verb before the places.
+    said
+        What stands after the verb.
+    span
+        Place of the verb in the text.
+
+    Returns
+    -------
+    tuple of Said
+        Places after the verb, as it makes them.
+    """
+    if not said:
+        if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
+            return ()
+        misunderstood(span, f"'{group.lemma}' does not say where something is")
+        return ()
+    if group.kind not in ("posture", "lean", "be", "face", "point") and group.lemma not in ENTER_VERBS:
+        misunderstood(span, f"'{group.lemma}' does not say where something is")
+        return said
+    first, *others = said
+    marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
+    return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
+
+
+def destination(predicate: Predicate) -> Predicate:
+    """Return *to the drawer* after a verb of motion as the place where the thing is now.
+
+    Parameters
+    ----------
+    predicate
+        Place after a verb of moving.
+
+    Returns
+    -------
+    Predicate
+        *To* and *into* as a place on, in or at their object; another predicate as it is.
+    """
+    if predicate.relation != "to" or not predicate.arguments:
+        return predicate
+    noun = last_word(predicate.arguments[0].head)
+    relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+    return replace(predicate, relation=relation)
+
+
+def by_means(lemma: str, predicates: tuple[Predicate, ...]) -> tuple[Predicate, ...]:
+    """Return the predicates of a command with *with* read as what it uses: a cover, or a tool, which is left out.
+
+    Parameters
+    ----------
+    lemma
+        Verb in its base form.
+    predicates
+        What stands after the verb.
+
+    Returns
+    -------
+    tuple of Predicate
+        Predicates in which *with* and *to* say what the verb makes of them.
+    """
+    found: list[Predicate] = []
+    for predicate in predicates:
+        bare = predicate.relation == "with" and not any(a.predicates for a in predicate.arguments)
+        if bare and predicate.subject_part is None and lemma in WRAPPING:
+            found.append(replace(predicate, relation=WRAPPING[lemma], reversed=True))
+        elif not bare:
+            found.append(predicate)
+    return tuple(found)
+
+
+def transitive(group: VerbGroup, things: Noun, span: Span) -> tuple[Predicate, ...]:
+    """Return the predicates of a transitive verb: *holding a pen*, *facing the window*.
+
+    Parameters
+    ----------
+    group
+        Verb group.
+    things
+        Object of the verb with what belongs to the subject.
+    span
+        Place of the verb in the text.
+
+    Returns
+    -------
+    tuple of Predicate
+        What the verb with its object says of the subject; empty if it says no place.
+    """
+    span = union(span, things.phrase.span)
+    phrase = things.phrase
+    if group.lemma in ("point", "face", "aim") and phrase.head in ("way", "direction") and phrase.adjectives:
+        return (Predicate("parallel_each_other", (), span, value=phrase.adjectives[0]), *things.extra)
+    if group.lemma in ("face", "look") or group.kind == "face":
+        relation, swap = "facing", False
+    elif group.lemma in ("point", "aim", "open"):
+        relation, swap = "pointing", False
+    elif group.lemma in TRANSITIVE_RELATIONS:
+        relation, swap = TRANSITIVE_RELATIONS[group.lemma]
+    elif group.kind in ("posture",):
+        relation, swap = "", False
+    else:
+        relation, swap = "", False
+    if group.lemma in ENTER_VERBS:
+        relation = "through"
+    if relation == "with":
+        found = []
+        for member in phrase.members or (phrase,):
+            found += accompanied_by(member, span)
+        return (*(_adverbs(p, group) for p in found), *things.extra)
+    between = tuple(p for p in phrase.predicates if p.relation == "between")
+    if last_word(phrase.head) in GAPS and between:  # 'soft bags fill the gaps between the cases'
+        return (*between, *things.extra)
+    if not relation:
+        misunderstood(span, f"'{group.lemma}' with an object does not say where something is")
+        return things.extra
+    made = Predicate(
+        relation, arguments_of(relation, phrase), span, adverbs=group.adverbs, reversed=swap, positive=group.positive
+    )
+    return (made, *things.extra)
+
+
+def _adverbs(predicate: Predicate, group: VerbGroup) -> Predicate:
+    return replace(predicate, adverbs=(*group.adverbs, *predicate.adverbs)) if group.adverbs else predicate
+
+
+def accompanied_by(member: NounPhrase, span: Span) -> list[Predicate]:
+    """Return the predicates of *with a napkin on it*, *with its handle pointing right*, *with the monitor*.
+
+    Parameters
+    ----------
+    member
+        Thing after *with*.
+    span
+        Place of the phrase in the text.
+
+    Returns
+    -------
+    list of Predicate
+        Where the thing is, or that the subject has it.
+    """
+    found, rest = [], []
+    if member.head in GAPS:
+        return []
+    for predicate in member.predicates:
+        if any(argument.pronoun in ("it", "they") for argument in predicate.arguments):
+            found.append((predicate, True))
+        elif any(_is_of_it(argument) for argument in predicate.arguments):
+            found.append((predicate, True))  # 'a plate with a knife across its edge'
+        elif not predicate.arguments and predicate.part is None and predicate.relation in _AT_THE_SUBJECT:
+            found.append((replace(predicate, arguments=(member,)), True))
+        elif predicate.relation in ("pointing", "facing", "open", "state", "parallel") and member.determiner != "a":
+            found.append((predicate, False))
+        else:
+            rest.append(predicate)
+    bare = replace(member, predicates=tuple(rest))
+    made = []
+    for predicate, swapped in found:
+        if swapped and len(predicate.arguments) == 1:
+            made.append(replace(predicate, arguments=(bare,), reversed=True, span=span))
+        else:
+            made.append(replace(predicate, subject_part=bare, span=span))
+    return made or [Predicate("with", (member,), span)]
+
+
+def _is_of_it(phrase: NounPhrase) -> bool:
+    """Return True for a part or a place of *it*: *its right-hand edge*."""
+    owned = phrase.owner is not None and phrase.owner.pronoun == "it"
+    return owned and (last_word(phrase.head) in PARTS or phrase.head in PLACE_NOUNS)
+
+
+def arguments_of(relation: str, phrase: NounPhrase) -> tuple[NounPhrase, ...]:
+    """Return the arguments of a relation.
+
+    Parameters
+    ----------
+    relation
+        Name of the relation.
+    phrase
+        Noun phrase after the preposition.
+
+    Returns
+    -------
+    tuple of NounPhrase
+        Members of the phrase for *between* and *among*, otherwise the phrase.
+    """
+    if relation in ("between", "among") and phrase.members and phrase.joined_by == "and":
+        return phrase.members
+    return (phrase,)
+
+
+def checked(found: list[Predicate], phrase: NounPhrase | None = None) -> list[Predicate]:
+    """Return predicates without the marks of participles.
+
+    Parameters
+    ----------
+    found
+        Predicates of one subject.
+    phrase
+        The subject, or None.
+
+    Returns
+    -------
+    list of Predicate
+        Predicates without participles that say nothing of a place, which are noted as misunderstood.
+    """
+    kept = []
+    for predicate in found:
+        if predicate.relation == "apart":
+            continue
+        if predicate.relation == "to":
+            if phrase is not None and (
+                len(phrase.head) == 1
+                or phrase.pronoun == "one"
+                or phrase.head.endswith(("angle", "degree"))
+                or phrase.head.rpartition(" ")[2] in _LEADING
+                or phrase.head == "relation"
+            ):
+                kept.append(predicate)
+                continue
+            misunderstood(predicate.span, f"'{predicate.relation}' does not say where something is here")
+            continue
+        kept.append(predicate)
+    return kept
+
+
+def _state(lemma: str, marker: Predicate) -> Predicate:
+    word = Adjective(lemma, "state", Degree.PLAIN, marker.span)
+    return Predicate("state", (), marker.span, value=word, adverbs=marker.adverbs, positive=marker.positive)
+
+
+def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Predicate:
+    span = union(marker.span, following.span)
+    relation, value, arguments = following.relation, following.value, following.arguments
+    if relation == "to" and arguments and lemma in MOVING:
+        relation = destination(following).relation
+    if relation == "to" and arguments:
+        if lemma in _ATTACHING:
+            relation = "touching"
+        elif lemma in ("pull", "push", "tuck", "move", "scoot", "park"):
+            relation = "near"
+    if (kind == "lean" or lemma in ("lean", "prop")) and relation in ("against", "on", "at", "near"):
+        relation = "leaning"
+    elif (
+        lemma in _ROTATING and not arguments and (relation in ("left", "right") or following.part in ("left", "right"))
+    ):
+        value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
+        relation = "facing"
+    elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
+        relation = "through"  # 'the cat jumped over the vase'
+    elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
+        word = " ".join(filter(None, (following.part, relation)))
+        return replace(following, relation="pointing", arguments=(), part=word, span=span)
+    elif kind in ("face", "point") or lemma in ("look", "aim"):
+        meaning = "pointing" if kind == "point" else "facing"
+        if relation == "pointing":
+            relation = meaning
+        elif not arguments and (relation in _DIRECTIONAL or following.part):
+            value = Adjective((following.part or relation).replace("_", " "), "position", Degree.PLAIN, following.span)
+            relation = meaning
+        elif relation in ("to", "at", "facing", "pointing", "inside", "near", "on"):
+            relation = meaning
+        elif relation in ("far", "apart"):
+            value = Adjective("away", "position", Degree.PLAIN, following.span)
+            relation = meaning
+    elif (lemma == "hang" and relation == "from") or (
+        lemma in ("stack", "pile") and relation in ("on", "stacked") and arguments
+    ):
+        relation = "on"
+    elif lemma in ("centre", "center") and relation == "on":
+        relation = "middle"
+    elif lemma == "hang" and relation == "part" and arguments:
+        return replace(following, relation="on", part=None, span=span)  # 'on the back of the door'
+    elif relation == "next_to" and lemma in _ATTACHING:
+        relation = "touching"  # 'clipped to the side of the jug'
+    elif lemma in ("align", "line") and relation in ("with",):
+        relation = "aligned"
+    elif lemma in _FINISHING and relation in ("inside", "on", "with"):
+        relation = "through"  # 'bound in calfskin'
+    elif lemma in _TELLING and relation in ("inside", "on", "at"):
+        relation = "through"  # 'mentioned in the catalogue'
+    elif lemma in ("cover", "coat", "drape") and relation == "with":
+        return replace(following, relation="on", reversed=True, span=span)
+    elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
+        relation = "on"
+    elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
+        relation = "inside"
+    elif lemma in ("divide", "split", "separate", "cut", "break") and relation in ("inside", "near", "by"):
+        relation = "through"
+    elif relation == "by" and lemma not in _PASSIVES and lemma not in _STAYING:
+        relation = "through"  # 'sorted by price', 'hidden by the lamp' name no place
+    elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
+        return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
+    positive = following.positive if marker.positive else not following.positive
+    return replace(
+        following,
+        relation=relation,
+        value=value,
+        span=span,
+        positive=positive,
+        adverbs=(*marker.adverbs, *following.adverbs),
+    )
+
+
+def _distance(measure: Predicate, following: Predicate) -> tuple[Predicate, tuple[Predicate, ...]] | None:
+    """Return a distance joined with what follows: *10 cm from the cup*, *10 cm to the left of the cup*."""
+    span = union(measure.span, following.span)
+    if following.relation in ("measured_from", "from", "far", "to") and following.arguments:
+        return replace(measure, arguments=following.arguments, span=span), ()
+    if following.relation in DIRECTION_RELATIONS and (following.arguments or following.relation in ("left", "right")):
+        return replace(following, measure=measure.measure, span=span), ()
+    return None

@@ -1,0 +1,637 @@
+"""Rewrite the chunks of a sentence as plain clauses: fill in ellipses, undo inversions and drop asides."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.tree import Degree, NounPhrase
+from deixis.grammar.english.vocabulary.function_words import PERSONS
+from deixis.grammar.english.vocabulary.nouns import (
+    AIMED_PARTS,
+    HEADED,
+    HOLDERS,
+    PARTS,
+    PEOPLE,
+    SURFACES,
+    VESSELS,
+    last_word,
+)
+from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS, Preposition
+from deixis.grammar.english.vocabulary.tables import word_set
+
+_ENDS = frozenset({"COMMA", "CUT", ""})
+_PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
+_BREAKS = frozenset({"COMMA", "CUT", "BUT"})
+_FOUND_OR_PUT = frozenset(
+    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick"}
+)
+"""Verbs whose object is somewhere: *the rest you will find on the shelf*."""
+
+_Run = tuple[int, Chunk | None]
+"""End of a run of chunks, and the chunk that is put in its place, if any."""
+
+
+def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
+    """Return the chunks of a sentence in the order and with the words of plain clauses.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence in the order of the text.
+    text
+        The whole text, for its parentheses.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks from which the clauses are cut. A chunk that was put in is empty and stands where its words would.
+    """
+    chunks = _without_parentheses(chunks, text)
+    for rewrite in (
+        _without_vocatives, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
+        _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
+        _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
+        _without(_count_apart), _with_relative_places, _with_measures_denied, _with_destinations,
+        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _type(chunks: list[Chunk], at: int) -> str:
+    return chunks[at].type if 0 <= at < len(chunks) else ""
+
+
+def _empty(chunk: Chunk, value: str = "") -> Chunk:
+    """Return a chunk as words that say nothing of places."""
+    return Chunk("ADVERB", chunk.start, chunk.end, value, chunk.span)
+
+
+def _cut(chunk: Chunk) -> Chunk:
+    """Return a chunk as the end of a clause."""
+    return Chunk("CUT", chunk.start, chunk.end, None, chunk.span)
+
+
+def _put_in(kind: str, before: Chunk, value: Relator | None = None) -> Chunk:
+    """Return a chunk without words that stands before another one."""
+    return Chunk(kind, before.start, before.start, value, (before.span[0], before.span[0]))
+
+
+def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
+    """Return the chunks with what parentheses say of the noun before them at the end, as a phrase of its own.
+
+    *Set the knife (with its blade to the left) beside the plate* is read as *set the knife beside the plate; the knife
+    with its blade to the left*.
+    """
+    kept: list[Chunk] = []
+    after: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        chunk = chunks[i]
+        closing = next((k for k in range(i, len(chunks)) if text[slice(*chunks[k].span)] == ")"), None)
+        inside = chunks[i + 1 : closing]
+        said = text[slice(*chunk.span)] == "(" and closing is not None and kept and kept[-1].type == "NP" and inside
+        if said and inside[0].type in ("WITH", "PREP", "ADV", "PART", "TPART") and "NP" in [c.type for c in inside]:
+            noun = replace(kept[-1].value, determiner="the", count=None)
+            named = Chunk("NP", kept[-1].start, kept[-1].end, noun, kept[-1].span)
+            after += [Chunk("CUT", inside[0].start, inside[0].start, None, chunk.span), named, *inside]
+            i = (closing or i) + 1
+            continue
+        kept.append(chunk)
+        i += 1
+    ends = len(kept) - 1 if after and kept and kept[-1].type == "CUT" else len(kept)
+    return [*kept[:ends], *after, *kept[ends:]]
+
+
+def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out who is spoken to, and interjections: *My dear boy, the soup is …*, *No, look again*, *Right, …*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        starts = all(c.type == "ADVERB" or (c.type in _ENDS and k) for k, c in enumerate(found))
+        closed = _type(chunks, i + 1) in ("COMMA", "CUT") and (starts or _type(chunks, i - 1) == "COMMA")
+        spoken_to = chunk.type == "NP" and _names_listener(chunk.value) and (starts or _type(chunks, i + 2) in _ENDS)
+        addressed = (
+            starts and chunk.type == "NP" and chunk.value.determiner is None and not chunk.value.plural
+            and bool(chunk.value.head) and chunk.value.owner is None and not chunk.value.adjectives
+            and _type(chunks, i + 1) == "COMMA" and _type(chunks, i + 2) == "NP"
+            and (chunks[i + 2].value.pronoun == "you" or _is_yours(chunks[i + 2].value))
+        )  # fmt: skip
+        spoken_to = spoken_to or addressed  # 'Lena, your bag is …'
+        exclamation = (
+            starts and not found and chunk.type in ("NP", "ADV", "PART") and _type(chunks, i + 1) == "COMMA"
+            and chunk.end == chunk.start + 1 and _is_exclamation(chunk)
+            and any(c.type in FINITE | {"COLON", "PUT", "FIND", "TPART"} for c in chunks[i + 2 :])
+        )  # fmt: skip
+        found.append(_empty(chunk) if closed and (spoken_to or exclamation) else chunk)
+    return found
+
+
+def _is_yours(phrase: NounPhrase) -> bool:
+    return phrase.owner is not None and phrase.owner.pronoun == "you"
+
+
+def _names_listener(phrase: NounPhrase) -> bool:
+    dear = any(adjective.word == "dear" for adjective in phrase.adjectives) or phrase.head.startswith("dear ")
+    own = phrase.owner is not None and phrase.owner.pronoun == "me"
+    if phrase.predicates or phrase.of is not None or phrase.members or phrase.count is not None:
+        return False
+    return (dear and (own or phrase.determiner is None)) or (
+        last_word(phrase.head) in PEOPLE | _ENDEARMENTS and phrase.determiner is None and phrase.owner is None
+        and not phrase.adjectives and " " not in phrase.head
+    )  # fmt: skip
+
+
+def _is_exclamation(chunk: Chunk) -> bool:
+    if chunk.type == "ADV":
+        return bool(chunk.value.preposition.phrase == "right")
+    if chunk.type == "NP":
+        return bool(chunk.value.determiner == "no" and not chunk.value.head)
+    return False
+
+
+def _without_times(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the time at the beginning of a sentence: *Before the run, check …*."""
+    start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if [_type(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
+        return chunks
+    phrase = chunks[start + 1].value
+    before = chunks[start].value.preposition.phrase == "before"
+    inverted = _type(chunks, start + 3) in FINITE | _PREDICATES
+    if not before or phrase.pronoun is not None or not phrase.head or inverted:
+        return chunks
+    return [*chunks[:start], _empty(chunks[start]), *chunks[start + 3 :]]
+
+
+def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
+    helped = (
+        chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and _type(chunks, at + 1) == "NP"
+        and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
+        and _type(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"} and at > 0
+    )  # fmt: skip
+    return (at + 2, None) if helped else None
+
+
+def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the member of an uncounted group that is told apart: *pipettes on the stand, largest on the left*."""
+    apart = (
+        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
+        and _type(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        and chunks[at + 3].value.head in PLACE_NOUNS
+    )  # fmt: skip
+    return (at + 4, None) if apart else None
+
+
+def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find *where it (always) is*: what follows after the comma says where the thing is."""
+    thing = _type(chunks, at + 1) == "NP"
+    there = (
+        chunks[at].type == "REL" and thing and chunks[at + 1].value.pronoun in ("it", "they")
+        and _type(chunks, at + 2) == "BE" and _type(chunks, at + 3) in _ENDS
+    )  # fmt: skip
+    free = (
+        chunks[at].type == "SUB" and chunks[at].value == "where" and _type(chunks, at - 1) == "BE"
+        and thing and _type(chunks, at + 2) in FINITE
+    )  # fmt: skip
+    if not there and not free:
+        return None
+    end = _end(chunks, at + 3, JOINT_TYPES)
+    return end + (_type(chunks, end) == "COMMA"), None
+
+
+def _search(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a command to look somewhere: *look behind the bandages*."""
+    verb = chunks[at].value
+    looks = (
+        isinstance(verb, VerbGroup) and verb.lemma in ("look", "search", "check", "peek")
+        and verb.form == "base" and _type(chunks, at - 1) in JOINT_TYPES | {"", "ADVERB"}
+        and _type(chunks, at + 1) == "PREP"
+        and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
+    )  # fmt: skip
+    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES)) if looks else None
+
+
+def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
+    chunk = chunks[at]
+    to = chunk.type == "UNKNOWN" and chunk.value == "to" and _type(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
+    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+
+
+def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find a number that is given apart: *the mugs hang from the hooks, five of them, and …*."""
+    counts = (
+        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
+        and _type(chunks, at + 4) in _ENDS and chunks[at + 3].value.pronoun in ("they", "these", "those")
+        and not chunks[at + 1].value.head and chunks[at + 1].value.count is not None
+        and any(chunk.type in FINITE for chunk in chunks[:at])
+    )  # fmt: skip
+    return (at + 4, None) if counts else None
+
+
+def _without(find: Callable[[list[Chunk], int], _Run | None]) -> Callable[[list[Chunk]], list[Chunk]]:
+    """Return the rewriting that leaves out each run of chunks that ``find`` finds, or puts its chunk there."""
+
+    def rewrite(chunks: list[Chunk]) -> list[Chunk]:
+        found: list[Chunk] = []
+        at = 0
+        while at < len(chunks):
+            end, instead = find(chunks, at) or (at + 1, chunks[at])
+            found += [] if instead is None else [instead]
+            at = end
+        return found
+
+    return rewrite
+
+
+def _end(chunks: list[Chunk], at: int, types: frozenset[str]) -> int:
+    """Return the place of the first chunk of one of the types, from a place on; the end if there is none."""
+    return next((k for k in range(at, len(chunks)) if chunks[k].type in types), len(chunks))
+
+
+def _unknown(chunks: list[Chunk], at: int, end: int) -> _Run:
+    """Return a run with one chunk for it that is reported as not understood."""
+    return end, Chunk(
+        "UNKNOWN", chunks[at].start, chunks[end - 1].end, None, (chunks[at].span[0], chunks[end - 1].span[1])
+    )
+
+
+def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out an aside after a comma: *as if someone had just put it down*, *which made everyone laugh*."""
+    for i, chunk in enumerate(chunks):
+        after = _type(chunks, i + 1)
+        told = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
+        compared = chunk.type == "SUB" and chunk.value == "as" and after == "SUB"
+        so = chunk.type == "SUB" and chunk.value == "so" and after == "ADJP"
+        so = so or (chunk.type == "SUB" and chunk.value == "once" and after == "PREP")  # 'once on the shelf'
+        searched = (
+            chunk.type in ("SUB", "REL") and chunk.value in ("where", None)
+            and after == "NP" and chunks[i + 1].value.pronoun in PERSONS
+            and any(c.type == "COMMA" for c in chunks[i + 1 :])
+        )  # 'not in the box, where I had looked for it, but …'  # fmt: skip
+        comment = chunk.type == "REL" and after in ("VERB", "TVERB") and chunks[i + 1].value.lemma in _COMMENTING
+        if _type(chunks, i - 1) == "COMMA" and comment:  # '…, which made everyone laugh'
+            return _without_asides([*chunks[: i - 1], *chunks[_end(chunks, i + 2, _BREAKS) :]])
+        if _type(chunks, i - 1) != "COMMA" or not (told or compared or so or searched):
+            continue
+        end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
+        if end is not None and told and _type(chunks, i - 2) == "NOT":
+            return _without_asides([*chunks[: i - 1], *chunks[end + 1 :]])
+        if end is not None:
+            return _without_asides([*chunks[: i - 1], *chunks[end:]])
+    return chunks
+
+
+def _without_insertions(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out what stands between dashes, from a noun phrase to its verb: *the goblets – three of them – are …*."""
+    for i, chunk in enumerate(chunks):
+        first = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES), default=0)
+        subject = [c.type for c in chunks[first:i] if c.type != "ADVERB"]
+        if chunk.type not in ("CUT", "COMMA") or subject not in (["NP"], ["NP", "OF", "NP"]):
+            continue
+        ones = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun == "one" and chunks[i + 1].value.plural
+        if chunk.type == "COMMA" and ones:  # 'bags, small ones on top, large ones below, are stored …'
+            end = next((k for k in range(i, len(chunks)) if chunks[k].type in FINITE), 0) - 1
+            fits = _type(chunks, end) == "COMMA" and not {"PUT", "SUB", "REL"} & {c.type for c in chunks[i:end]}
+        else:
+            end = next((k for k in range(i + 1, len(chunks)) if chunks[k].type == chunk.type), 0)
+            counts = {"THERE"} if chunk.type == "COMMA" else FINITE | {"OF"}
+            fits = _type(chunks, end + 1) in FINITE and not counts.isdisjoint(c.type for c in chunks[i + 1 : end])
+        if fits:
+            return [*chunks[:i], *(_empty(c) for c in chunks[i : end + 1]), *chunks[end + 1 :]]
+    return chunks
+
+
+def _with_counted_labels(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *forks: two, left of the plate* as *two forks, left of the plate*."""
+    if [_type(chunks, k) for k in range(3)] != ["NP", "COLON", "NP"] or _type(chunks, 3) not in _ENDS | {"PREP", "ADV"}:
+        return chunks
+    thing, number = chunks[0].value, chunks[2].value
+    bare = not (number.head or number.pronoun or number.adjectives or number.owner)
+    if not bare or number.count is None or not thing.head or thing.count is not None:
+        return chunks
+    counted = replace(thing, count=number.count, plural=number.count > 1)
+    whole = Chunk("NP", chunks[0].start, chunks[2].end, counted, chunks[0].span)
+    return [whole, *chunks[3 + (_type(chunks, 3) == "COMMA") :]]
+
+
+def _without_resumed_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the pronoun of *the capsules they are inside the tin*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        resumes = (
+            chunk.type == "NP" and chunk.value.pronoun in ("it", "they") and bool(found) and found[-1].type == "NP"
+            and _type(chunks, i + 1) in FINITE and (len(found) == 1 or found[-2].type in JOINT_TYPES | {"ADVERB"})
+            and bool(found[-1].value.head) and found[-1].value.plural is (chunk.value.pronoun == "they")
+        )  # fmt: skip
+        if not resumes:
+            found.append(chunk)
+    return found
+
+
+def _with_existential_have(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *in the room has a table* as *in the room there is a table*."""
+    for i, chunk in enumerate(chunks):
+        places = [c.type for c in chunks[:i] if c.type != "ADVERB"]
+        turned = places[:1] == ["PREP"] and places.count("NP") == places.count("PREP") + places.count("OF")
+        if chunk.type == "TVERB" and chunk.value.lemma == "have" and turned and set(places) <= {"PREP", "NP", "OF"}:
+            there = Chunk("THERE", chunk.start, chunk.start, None, (chunk.span[0], chunk.span[0]))
+            be = Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
+            return [*chunks[:i], there, be, *chunks[i + 1 :]]
+    return chunks
+
+
+def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the second verb of *I stood the candle on it and poured water around it* as one in the past."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type != "TPART" or _type(chunks, i - 1) != "AND" or chunk.value.form != "past":
+            continue
+        first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
+        spoken = _type(chunks, first) == "NP" and chunks[first].value.pronoun in ("me", "we")
+        if spoken and _type(chunks, first + 1) in FINITE:
+            chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
+    return chunks
+
+
+def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Put an object that stands first after its verb: *the rest you'll find on the shelf*, *the bread I put it …*."""
+    for i, chunk in enumerate(chunks):
+        before, verb = _type(chunks, i - 1), chunks[i + 2] if i + 2 < len(chunks) else None
+        first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
+        if not first or verb is None or verb.type not in ("VERB", "TVERB"):
+            continue
+        person = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she")
+        if not person or verb.value.lemma not in _FOUND_OR_PUT:
+            continue
+        again = verb.type == "TVERB" and _type(chunks, i + 3) == "NP" and chunks[i + 3].value.pronoun in ("it", "they")
+        place = i + 3 + again
+        end = next((k for k in range(place, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
+        goes_on = any(c.type in FINITE for c in chunks[place:end]) or (
+            "COMMA" in (c.type for c in chunks[end : end + 1]) and _type(chunks, end + 1) in FINITE
+        )
+        if goes_on or _type(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
+            continue
+        if not again and not before:
+            continue  # 'the chair you see on the left' describes one thing
+        moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
+        return [*chunks[:i], chunks[i + 1], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+    return chunks
+
+
+def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with *on which* resolved.
+
+    *The chair on which the coat hangs* is read as *the chair that the coat hangs on*, and *a board on which there are
+    two onions* as two clauses, of which the second says *on the board there are two onions*.
+    """
+    found: list[Chunk] = []
+    waiting: Chunk | None = None
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        which = following is not None and following.type == "NP" and following.value.pronoun == "which"
+        if chunk.type == "PREP" and which and found and i + 2 < len(chunks):
+            if chunks[i + 2].type == "NP" and chunks[i + 2].value.pronoun not in ("me", "you", "we", "someone"):
+                found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
+                waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
+                continue
+            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
+        elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
+            if waiting is not None and chunks[i - 1].span == waiting.span:
+                continue
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
+            if before is not None:
+                value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
+                chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
+        found.append(chunk)
+        if waiting is not None and chunk.type in ("VERB", "BE"):
+            found.append(waiting)
+            waiting = None
+    return found
+
+
+def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with the relative pronoun of *the book I am reading* put in."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        contact = (
+            chunk.type == "NP"
+            and chunk.value.pronoun in ("me", "you", "we", "he", "she", "nothing", "everyone", "someone")
+            and found
+            and found[-1].type == "NP"
+            and bool(found[-1].value.head)
+            and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
+            and i + 1 < len(chunks)
+            and chunks[i + 1].type in FINITE
+            and not (chunks[i + 1].type == "TVERB" and _type(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head))
+        )
+        if contact:
+            found.append(_put_in("REL", chunk))
+        found.append(chunk)
+    return found
+
+
+def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
+    at = Relator(Preposition("at", "at"))
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        ends = i + 1 == len(chunks) or chunks[i + 1].type in JOINT_TYPES | {"OF"}
+        aside = (
+            len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
+            and _type(chunks, i + 1) in _ENDS
+        )  # fmt: skip
+        kept_in = (
+            i == 2 and ends and [c.type for c in chunks[:3]] == ["NP", "COLON", "NP"] and not chunk.value.plural
+            and last_word(chunk.value.head) in VESSELS | HOLDERS and chunk.value.determiner in (None, "the")
+            and last_word(chunks[0].value.head) not in VESSELS | HOLDERS | SURFACES and bool(chunks[0].value.head)
+            and not any(other.type in FINITE for other in chunks)
+        )  # fmt: skip
+        noted = (
+            chunk.type == "NP" and not found and ends and _type(chunks, i + 1) == "COMMA" and not chunk.value.plural
+            and chunk.value.head in PLACE_NOUNS and chunk.value.determiner is None and chunk.value.owner is None
+            and not any(other.type in FINITE for other in chunks)
+        )  # fmt: skip
+        if noted:  # 'limes? front left, in a bowl, knife across it'
+            found.append(_put_in("PREP", chunk, at))
+            for k in range(i + 2, len(chunks) - 2):
+                if chunks[k].type == "COMMA" and chunks[k + 1].type == "NP" and chunks[k + 2].type in _PREDICATES:
+                    chunks[k] = _cut(chunks[k])
+        if kept_in:  # 'gloves: left-hand pocket'
+            found.append(_put_in("PREP", chunk, Relator(Preposition("in", "inside"))))
+        if (
+            chunk.type == "NP"
+            and ends
+            and found
+            and (
+                found[-1].type in ("NP", "COLON")
+                or (aside and (chunk.value.adjectives or chunk.value.head in _MIDDLES))
+            )
+            and chunk.value.head in PLACE_NOUNS
+            and chunk.value.determiner is None
+            and chunk.value.owner is None
+            and not chunk.value.plural
+            and any(other.type == "NP" for other in found)
+            and (not any(other.type in FINITE for other in found) or (aside and found[-2].value.determiner is not None))
+        ):
+            found.append(_put_in("PREP", chunk, at))
+        found.append(chunk)
+    return found
+
+
+def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *never more than 10 cm from it* as an upper bound, and *you keep it there* as a statement."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        following = chunks[i + 1] if i + 1 < len(chunks) else None
+        if chunk.type == "NOT" and following is not None and following.type == "MEASURE" and following.value[2]:
+            metres, hedge, bound = following.value
+            following.value = (metres, hedge, "<" if bound == ">" else ">")
+            continue
+        told = chunk.type == "PUT" and _type(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
+        if told and _type(chunks, i + 1) == "NP" and _type(chunks, i - 2) == "NP":
+            chunk = Chunk("TVERB", chunk.start, chunk.end, chunk.value, chunk.span)
+        found.append(chunk)
+    return found
+
+
+def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *she moved the pen to the drawer* as *in the drawer*."""
+    for i, chunk in enumerate(chunks[:-3]):
+        moved = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
+        if moved and chunks[i + 2].type == "PREP" and chunks[i + 2].value.preposition.phrase == "to":
+            noun = last_word(chunks[i + 3].value.head) if chunks[i + 3].type == "NP" else ""
+            relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
+            chunks[i + 2].value = Relator(Preposition("to", relation))
+    return chunks
+
+
+def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
+    for i, chunk in enumerate(chunks):
+        beside = [_type(chunks, i + k) for k in (-1, 1)] == ["NP", "NP"] and _type(chunks, i - 2) in ("PREP", "OF")
+        if chunk.type != "COMMA" or not beside:
+            continue
+        part = chunks[i + 1].value
+        told = _type(chunks, i + 2) in ("PART", "ADJP") and _type(chunks, i + 3) in _ENDS
+        verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
+        other = not part.head and (part.pronoun == "one" or part.count is not None) and _type(chunks, i + 2) == "PART"
+        hangs = [_type(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and _type(chunks, i + 5) in _ENDS
+        hangs = hangs and part.determiner is None and chunks[i + 4].value.pronoun == "it"
+        own = last_word(part.head) in PARTS and _type(chunks, i + 2) in ("ADJP", "PART", "TPART")
+        bare = part.determiner is None and part.owner is None and not part.adjectives
+        # 'four chairs around it, one fallen' and 'behind it, lid open towards you'
+        if (verbless and (other or hangs)) or (bare and (own or (told and verbless))):
+            chunks[i] = _cut(chunk)
+    return chunks
+
+
+def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
+    """Return a label that is a colour too as a noun: *cream: side pocket*."""
+    if _type(chunks, 0) == "ADJP" and _type(chunks, 1) == "COLON" and len(chunks[0].value) == 1:
+        word = chunks[0].value[0].word
+        chunks[0] = Chunk("NP", chunks[0].start, chunks[0].end, NounPhrase(chunks[0].span, word), chunks[0].span)
+    return chunks
+
+
+def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        lay = _type(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+        if chunk.type == "COMMA" and (_type(chunks, i + 1) in ("BE", "VERB") or lay) and _type(chunks, i + 2) == "NP":
+            first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA", "AND"}), default=0)
+            clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
+            if FINITE & set(clause) or "THERE" in clause:
+                first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+                clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
+            objects = sum(kind in ("PREP", "TPART", "OF") for kind in clause)
+            places = clause[:1] in (["PREP"], ["ADV"]) and clause.count("NP") == objects
+            if places and not (FINITE & set(clause)):
+                if lay:
+                    chunks[i + 1].type = "VERB"
+                continue
+        found.append(chunk)
+    return found
+
+
+def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *both to the right of the plate* after a comma as said of the things before, not of the subject."""
+    found: list[Chunk] = []
+    for i, chunk in enumerate(chunks):
+        whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")
+        after_list = _type(chunks, i - 1) == "COMMA" and _type(chunks, i - 2) == "NP" and _type(chunks, i - 3) == "AND"
+        if whole and after_list and _type(chunks, i + 1) in ("PREP", "ADV"):
+            phrase = NounPhrase(chunk.span, pronoun=chunk.value, plural=True)
+            chunk = Chunk("NP", chunk.start, chunk.end, phrase, chunk.span)
+        found.append(chunk)
+    return found
+
+
+_COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "prevent", "explain", "save", "help", "seem"})
+"""Verbs of *which* that comment on a whole clause."""
+_MOVING = frozenset({"move", "shift", "transfer", "relocate", "return"})
+_MIDDLES = frozenset({"centre", "center", "middle"})
+_ENDEARMENTS = word_set(
+    "darling dear dearest love sweetheart honey mum mom mummy mommy dad daddy gran grandma grandpa son daughter mate"
+    " buddy guys folks everyone all team sir madam ladies gentlemen kids boys girls"
+)
+"""Nouns by which a person is spoken to."""
+
+
+def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *with its blade to the plate* as *with its blade facing the plate*.
+
+    *The handle* after *with* is that of the subject, and the bowl of a spoon is its tip.
+    """
+    found = list(chunks)
+    for i in range(1, len(found) - 1):
+        chunk, before, after = found[i], found[i - 1], found[i + 1]
+        part = last_word(chunk.value.head) if chunk.type == "NP" and not chunk.value.members else ""
+        owned = part in AIMED_PARTS and (chunk.value.owner is None or chunk.value.owner.pronoun is not None)
+        has = before.type == "TVERB" and before.value.lemma == "have"
+        if not owned or not (has or before.type in ("WITH", "COMMA")):
+            continue
+        to = after.type == "PREP" and after.value.preposition.relation == "to" and _type(found, i + 2) == "NP"
+        aims = to or after.type in ("PART", "TPART", "ADV")
+        aims = aims or (after.type == "PREP" and after.value.preposition.relation in ("pointing", "facing"))
+        if to:
+            aim = Relator(Preposition("to", AIMED_PARTS[part]))
+            found[i + 1] = replace(after, value=aim)
+        tool = any(c.type == "NP" and last_word(c.value.head) in HEADED for c in found[:i])
+        whose = chunk.value
+        own = part in _OF_TOOLS or (tool and part == "edge")
+        if aims and before.type == "WITH" and whose.determiner == "the" and own:
+            whose = replace(whose, determiner=None, owner=NounPhrase(whose.span, pronoun="it"))
+        if aims and part == "bowl" and tool and whose.owner is not None:
+            whose = replace(whose, head="tip")
+        found[i] = replace(chunk, value=whose)
+    return found
+
+
+_OF_TOOLS = frozenset({"handle", "blade", "tine", "prong", "bowl", "spout"})
+
+
+def _with_gaps(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of *leave (a gap of) 2 cm between the cup and the jug* as *leave the cup 2 cm from the jug*."""
+    found = list(chunks)
+    for i in range(len(found) - 5, -1, -1):
+        gap = [c.type for c in found[i + 1 : i + 3]] == ["NP", "OF"] and found[i + 1].value.head in _GAPS
+        at = i + 3 if gap else i + 1
+        types = [chunk.type for chunk in found[at : at + 5]]
+        if found[i].type not in ("PUT", "DO") or found[i].value.lemma not in ("leave", "keep", "allow", "maintain"):
+            continue
+        if types == ["MEASURE", "PREP", "NP", "AND", "NP"] and found[at + 1].value.preposition.relation == "between":
+            measure, _, first, joint, second = found[at : at + 5]
+            put = Chunk("PUT", found[i].start, found[i].end, found[i].value, found[i].span)
+            off = Relator(Preposition("from", "measured_from"))
+            away = Chunk("PREP", joint.start, joint.end, off, joint.span)
+            found[i : at + 5] = [put, first, measure, away, second]
+    return found
+
+
+_GAPS = frozenset({"gap", "space", "distance", "clearance"})

@@ -1,0 +1,172 @@
+"""Find out whether a sentence commits to what it says: reports, wishes, plans, the past, conditions, corrections."""
+
+from __future__ import annotations
+
+import re
+
+from deixis.grammar.english.tree import Sentence
+from deixis.grammar.english.vocabulary.nouns import PEOPLE
+from deixis.grammar.english.vocabulary.verbs import SAYING
+
+PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
+"""Beginning of a relative clause in the past."""
+
+LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|placed)\b", re.IGNORECASE)
+"""Beginning of a clause by which what should be is not so."""
+NOW = re.compile(r"\b(?:was|were|stood|lay|sat|hung)\s+now\b|\bnow\s+(?:stood|lay|sat|hung)\b", re.IGNORECASE)
+"""Words by which a story says what is so in the end."""
+HABIT = re.compile(
+    r"\b(?:always|usually|often|normally|generally)\s+(?:kept|stored|put|placed|had|left(?!\s+of\b)|stood|lay|hung|sat)\b"
+    r"|\b(?:days?|weeks?|months?|years?|hours?)\s+ago\b",
+    re.I,
+)
+"""Words of what was done again and again."""
+WHILE_DOING = re.compile(
+    r"\s*(?:when|while|if|before|after)\s+(?!facing|looking|standing|sitting|seen|entering|viewed)[a-z]+ing\b[^,]*,",
+    re.IGNORECASE,
+)
+"""Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
+CONDITION = re.compile(
+    r"\s*(?:if|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
+    r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
+    r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
+    r"(?:luck|room|space|time)\b[^,.;?]*,"
+    r"|\s*(?:should|were)\s+(?!be\b)[^,.;?]*,",
+    re.IGNORECASE,
+)
+"""Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
+UNSURE_RELATIVE = re.compile(
+    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
+)
+"""Beginning of a relative clause that tells what should be or might be."""
+
+OBLIGED = frozenset({"should", "ought", "shall"})
+REVOKED = re.compile(
+    r"^,?\s*(?:but|though|yet)\s+not\s+(?:today|now|here|yet|always|any\s*more|this\s+time|tonight|any\s+longer)\b|"
+    r"^[,;]?\s*(?:(?:but|though|although|yet)\s+)?(?:we|i|you|they|he|she|it)\s+"
+    r"(?:do|does|did|is|are|was|were|wo|ca|have|has|never)(?:n['\u2019]t|\s+not)?\s*[.!]?$"
+    r"|^,?\s*or\s+(?:else\s+)?(?:not|(?:it|they|he|she)\s+(?:is|are|was|were|do|does|did)(?:n['\u2019]t|\s+not))\s*[.!]?$",
+    re.IGNORECASE,
+)
+"""End of a sentence that takes back what it said: *…, but we don't*."""
+UNREAL = re.compile(
+    r"^\s*(?:according to|rumou?r has it|they say|people say|some say|word has it|supposedly|allegedly|legend has it)\b"
+    r"|\b(?:i|we|he|she|they)\s*(?:['\u2019]d|would)\s+(?:like|love|prefer|rather|sooner)\b"
+    r"|(?<!['\u2019])\b(?!you\b)(?:i|we|he|she|they|[A-Z][a-z]+)\s+(?:wants?|wanted|hopes?|hoped|wish(?:es|ed)?|plans?|planned|tried|tries|intends?|intended|"
+    r"dream(?:s|t|ed)|forgot|refused?|failed)\s+(?:[\w'\u2019]+\s+){0,5}?(?:to|that)\b"
+    r"|\bso\s+(?:the|my|his|her|our|their)?\s*[\w'\u2019]+\s+(?:says?|said|claims?|thinks?|believes?|told|hopes?)\b"
+    r"|\bwhich\s+(?:is|was)\s+(?:wrong|false|untrue|nonsense|a mistake|an error|not true|not right)\b"
+    r"|\b(?:i|we|you|he|she|they)\s+(?:was|were|are|am|is)\s+(?:asked|told|supposed|reminded|instructed|ordered)\s+to\b"
+    r"|\b(?:imagin(?:es?|ed)|pretend(?:s|ed)?|dream(?:s|t|ed)?)\s+(?:that|a|an|the)\b"
+    r"|\b(?:i|we|he|she|they)\s+(?:hopes?|wish(?:es)?|fears?)\s+(?:the|an?|my|his|her|our|their|it)\b"
+    r"|\b(?:i|we|he|she|they)(?:['\u2019]d|\s+had|['\u2019]ve|\s+have)\s+(?:planned|hoped|wanted|intended|meant)\s+to\b"
+    r"|\b(?:is|are)\s+what\s+(?:[\w'\u2019]+\s+){1,3}?(?:demand|want|say|need|call|require|expect|ask|like|suggest)s?\b"
+    r"|\b(?:miss|avoid|escap)(?:e?s|ed|ing)?\s+\w+ing\b"
+    r"|\b(?:less|more|rather)\s+(?:on|in|under|behind|beside|above|below|inside|near|at)\b[^.;]*\bthan\b"
+    r"|\b(?:far|further|farther)\s+from\s+(?:the\s+)?(?:truth|true)\b"
+    r"|\b(?:you|one|we|i)(?:['\u2019]d|\s+would)\s+(?:expect|think|believe|swear|suppose)\b"
+    r"|(?:['\u2019]d|\bwould)\s+(?:have|like|want|prefer)\s+(?:you|us|me|him|her|them|people|everyone|the|a|an)\b"
+    r"|\b(?:stop|prevent|save|discourage|hinder|protect)(?:s|ed|ing)?\s+(?:[\w'\u2019]+\s+){1,4}?from\s+\w+ing\b"
+    r"|\beither\s+(?:[\w'\u2019]+\s+){1,4}?(?:is|are|stands?|lies?|goes|sits?|hangs?)\s[^.;]*\bor\s+(?:else\s+)?"
+    r"(?:it|they|he|she|we|i|you|some\s?(?:body|one)|the|an?|my|his|her|our|their)\b"
+    r"|\blet(?:['\u2019]s|\s+us)\s+(?:hope|say|suppose|assume|pretend|imagine)\b"
+    r"|\b(?:plan|idea|intention|hope|wish|dream|aim)\s+(?:is|was)\s+to\b"
+    r"|(?<=[a-z]\s)(?:asks?|asked|tells?|told|orders|ordered|begs|begged|urge[sd]?|advise[sd]?|persuade[sd]?|expect(?:s|ed)|commanded)\s+"
+    r"(?:[\w'\u2019]+\s+){1,3}?(?:not\s+)?to\s+(?!the\b)[a-z]+"
+    r"|\b(?:refus(?:es?|ed)|declin(?:es?|ed)|forgot|forgets|neglect(?:s|ed)?|omit(?:s|ted)|"
+    r"hesitat(?:es|ed))\s+to\b|\b(?:look|search|hunt|ask|wish)(?:s|es|ed|ing)?\s+for\s+(?:an?|some|any)\b"
+    r"|^\s*in\s+(?:the|an?|this|that|his|her|my|our|your|their|one|[\w-]+['\u2019]s?)\s+(?:[\w'\u2019-]+\s+){0,2}?(?:story|novel|tale|fable|"
+    r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
+    r"|\b(?:think|dream|talk|read|hear|speak|complain)(?:s|ing|ed)?\s+(?:of|about)\b"
+    r"|\bwill\s+have\s+(?:been|stood|lain|\w+ed)\b"
+    r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
+    re.IGNORECASE,
+)
+"""Words of a sentence that tells what a person says, wants, asks for or tries, or that retells a story."""
+_SPEAKERS = rf"(?:he|she|they|others|everybody|everyone|some\s?(?:body|one)|{'|'.join(sorted(PEOPLE))})s?"
+_SAYING = "|".join(sorted(SAYING))
+REPORTED = re.compile(
+    rf"\b{_SPEAKERS}\s+(?:{_SAYING})\s+(?:the|an?|my|his|her|our|their|your|it|they|there|(?-i:[A-Z]))\b"
+    rf"|\b(?:some|many|most|others|people|they)\s+(?:claim|say|think|believe|swear|insist|argue)\s",
+    re.IGNORECASE,
+)
+"""Words of a sentence that tells what other people say: *my son insists the ball is …*."""
+SAID_AFTER = re.compile(
+    rf",\s*(?:or\s+so\s+|so\s+)?(?:(?:my|his|her|our|their|the)\s+)?{_SPEAKERS}\s+(?:{_SAYING})\s*[.!]?$", re.IGNORECASE
+)
+"""End of a sentence that tells what other people say: *the cup is on the tray, he says*."""
+FRAMED = re.compile(
+    r"^\W*(?:(?:and|but|so|well|now)\s+)?(?:"
+    r"(?:in|on)\s+(?:theory|principle|paper|hypothesis|fiction)\b"
+    r"|in\s+(?:an?|the|my|his|her|our|their|your|this|some)\s+(?:[\w-]+\s+)?"
+    r"(?:world|dreams?|opinion|view|mind|imagination|fantasy|eyes|book|plan|sketch|photo|photograph|painting|portrait|poem|film|movie|video|mirror|catalogue)\s*(?:,|(?=(?:the|an?|my|her|his|[\w-]+['\u2019]s)\s))"
+    r"|in\s+(?:other|some|many|most)\s+(?:countries|families|houses|homes|cultures|regions|places|restaurants)\b"
+    r"|(?:at\s+(?:best|worst)|for\s+all\s+(?:i|we)\s+know|who\s+knows|with\s+any\s+luck|god\s+knows)\b"
+    r"|(?:to\s+(?:hear|believe|judge))\s|contrary\s+to\b"
+    r"|(?:reportedly|allegedly|supposedly|hypothetically|theoretically|ostensibly|purportedly|conceivably|potentially)\b"
+    r"|(?:the\s+(?:moment|day|minute|instant)|every\s+time|each\s+time|any\s+time|lest|for\s+fear)\s"
+    r")",
+    re.IGNORECASE,
+)
+"""Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
+UNSURE = re.compile(
+    r"\b(?:not|n['\u2019]t|hardly|never|far\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
+    r"(?:sure|certain|convinced|clear)\b|\b(?:unsure|uncertain|unclear|doubtful|unlikely)\s+(?:if|that|whether|the|an?)\b",
+    re.IGNORECASE,
+)
+"""Words of a speaker who does not know."""
+FUTURE = re.compile(
+    r"(?=.*(?:\b(?:will|shall|going\s+to)\b|['\u2019]ll\b))"
+    r".*\b(?:tomorrow|later|next\s+(?:time|week|month|year|day|spring|summer|autumn|winter)|(?:some|one)\s*day|soon|eventually)\b",
+    re.IGNORECASE | re.DOTALL,
+)
+"""Sentence about a later time."""
+PAST_TIME = re.compile(
+    r"\b(?:yesterday|last\s+(?:night|week|month|year|spring|summer|autumn|winter|time)|formerly|originally|back\s+then"
+    r"|in\s+those\s+days|in\s+the\s+old\s+days|at\s+(?:the|that)\s+time|once\s+upon\s+a\s+time|years?\s+ago)\b"
+    r"|\buntil\s+(?:[\w'\u2019]+\s+){1,3}(?:was|were|had|broke|sold|died|left|came|went|got|took|\w+ed)\b"
+    r"|\b(?:ceas|stopp|quitt)ed\s+(?:to\s+)?(?:be|being|stand|standing|lying|lie)\b",
+    re.IGNORECASE,
+)
+"""Time at which something was so, and words for its end."""
+PRESENT = re.compile(
+    r"\b(?:is|are|has|have|stands|lies|hangs|sits|goes|belongs)\b"
+    r"|\b(?:it|that|there|here|he|she)['\u2019]s\b|['\u2019](?:re|ve)\b",
+    re.IGNORECASE,
+)
+"""Verbs in the present."""
+CONSEQUENCE = re.compile(
+    r"^[,;]?\s*(?:and|or)\s+(?:you|it|he|she|they|some\s?(?:body|one)|there|we)(?:['\u2019]ll|\s+will|['\u2019]d|\s+would)\s+"
+    r"(?!(?:see|have|find|be\s+(?:ready|done|able|fine))\b)",
+    re.IGNORECASE,
+)
+"""Words after a command that make it a condition: *put it there and you will be sorry*."""
+LIMITED = re.compile(
+    r"\bonly\s+(?:on|in|at|during|when|for)\s+[^,.;]*|\bon\s+(?:mon|tues|wednes|thurs|fri|satur|sun)days\b"
+    r"|\bon\s+(?:holidays|weekends|weekdays|birthdays)\b|\b(?:in|during)\s+(?:the\s+)?(?:summer|winter)\b|\bat\s+night\b"
+    r"|\bin\s+(?:\w+\s+)?weather\b|\bin\s+(?:the\s+)?(?:rain|snow)\b",
+    re.IGNORECASE,
+)
+"""Time outside which a statement need not hold."""
+ELSEWHERE = re.compile(
+    r"\s*at\s+(?:my|our|your|his|her|their|the)\s+(?!own\b)[\w-]+(?:['\u2019]s|s['\u2019])\b[^,.;]*,", re.IGNORECASE
+)
+"""Place of other people at the beginning of a sentence: *at my neighbour's table*."""
+
+
+def condition_of(sentence: Sentence) -> str | None:
+    """Return the condition that a sentence begins with, up to its comma: *If you serve soup, …*.
+
+    Parameters
+    ----------
+    sentence
+        Parsed sentence.
+
+    Returns
+    -------
+    str or None
+        Text of the condition with single spaces, or None for a sentence that does not begin with one.
+    """
+    if not WHILE_DOING.match(sentence.text) and not CONDITION.match(sentence.text):
+        return None
+    return " ".join(sentence.text.split(",", 1)[0].split())

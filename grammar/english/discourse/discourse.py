@@ -1,0 +1,472 @@
+"""Turn parsed sentences into facts: what each clause states of which objects, and with what qualification."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+from deixis.grammar.english.discourse.commitment import (
+    CONSEQUENCE,
+    ELSEWHERE,
+    FRAMED,
+    FUTURE,
+    HABIT,
+    LEFT,
+    LIMITED,
+    NOW,
+    OBLIGED,
+    PAST_RELATIVE,
+    PAST_TIME,
+    PRESENT,
+    REPORTED,
+    REVOKED,
+    SAID_AFTER,
+    UNREAL,
+    UNSURE,
+    condition_of,
+)
+from deixis.grammar.english.discourse.drafts import RARE, Draft, Qualification
+from deixis.grammar.english.discourse.entities import Entity, Role
+from deixis.grammar.english.discourse.mentions import SUPERLATIVES, _with_restrictions_of_contents
+from deixis.grammar.english.discourse.references import POLES, Focus
+from deixis.grammar.english.discourse.statements import Statements
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
+from deixis.ontology.claims import PLACES
+
+UNCERTAIN = frozenset({"might", "may", "could", "would"})
+
+NOT_NEEDED = frozenset({"need", "needn't", "have to", "has to", "needs to", "need to"})
+
+BARE_AFTER_BE = re.compile(
+    r"\b(?:is|are|was|were|be|been|remains?|perfectly|quite)\s+(?:all\s+)?$|['\u2019]s\s+$", re.IGNORECASE
+)
+"""Words before *left* or *right* that is not a place, because no *on the* or *of* goes with it."""
+
+CONTRARY = re.compile(r"\b(?:but|instead|actually|yet|however|in fact)\b")
+"""Words between what should be and what is."""
+
+MAX_BETWEEN_CLAUSES = 40
+"""Number of characters between two clauses that are contrasted."""
+
+ABSENT = frozenset(["missing", "miss", "absent", "gone"])
+
+
+def _is_moved(clause: Clause, subject: NounPhrase) -> bool:
+    """Return True for a part that a command puts somewhere, such as a leg of a chair that is assembled."""
+    commanded = clause.mood is Mood.COMMAND and clause.span[0] < subject.span[0]
+    return commanded and not any(p.relation in ("pointing", "facing") for p in clause.predicates)
+
+
+class Discourse(Statements):
+    """Reader of parsed sentences, in order; it collects drafts of facts."""
+
+    def read(self) -> list[Draft]:
+        """Read all sentences; return the drafts of what they state.
+
+        Returns
+        -------
+        list of Draft
+            Facts and claims about entities, which have no names yet, in the order of the text.
+        """
+        for number, sentence in enumerate(self.sentences):
+            self.references.sentence = number
+            self.references.start, self.end = sentence.span
+            self.references.lost = [problem.span for problem in sentence.misunderstood]
+            self.condition = condition_of(sentence)
+            parts: list[Clause | NounPhrase] = list(sentence.clauses)
+            if sentence.fragment is not None and sentence.text.rstrip("\"'\u201d) ").endswith("?"):
+                self._ask_about(sentence.fragment)
+            elif sentence.fragment is not None and not sentence.heading:
+                parts.append(sentence.fragment)
+            for part in sorted(parts, key=lambda part: part.span[0]):
+                if isinstance(part, NounPhrase):
+                    self._fragment(part, number)
+                else:
+                    self._clause(part, number)
+        return self.drafts
+
+    def _fragment(self, phrase: NounPhrase, sentence: int) -> None:
+        """Read a sentence without a verb: *rucksack at the back*, or a heading that tells the order of a list."""
+        wished = UNREAL.search(self.text[self.references.start : self.end]) is not None
+        self.how = Qualification(
+            phrase.span, sentence, weight=0.5 if wished else 1.0, optional=wished, uncertain=wished,
+            guesses=self.sentences[sentence].guesses,
+        )  # fmt: skip
+        for predicate in phrase.predicates:
+            if predicate.relation == "row":
+                self.order = predicate.part or self.order
+        listed = phrase.members or (phrase,)
+        label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
+        if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
+            self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            return
+        if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
+            return
+        if any(last_word(p.head) in ("lot", "content", "list", "thank", "note", "inventory") for p in listed):
+            return
+        if phrase.determiner == "no" and phrase.head:
+            self._nothing(phrase, Clause(phrase, phrase.predicates, phrase.span))
+            return
+        subject: Entity | None = None
+        fronted = bool(phrase.members and phrase.predicates) and phrase.predicates[0].span[0] < listed[0].span[0]
+        if fronted:  # 'left of it, two cups and a spoon on them': *it* goes back to what was said before
+            placed = tuple(replace(p, predicates=()) for p in listed if not _is_own_part(p))
+            whole = self._introduce(NounPhrase(phrase.span, plural=True, members=placed, joined_by="and"))
+            if whole is not None:
+                self._say(whole, phrase.predicates, phrase)
+        for part in self._with_shared_places(listed):
+            if subject is not None and _is_own_part(part):
+                for predicate in part.predicates:  # 'shells, front left, hollow side down'
+                    self._predicate(subject, predicate, [])
+                continue
+            if part.pronoun == "one" and subject is not None and subject.members:
+                self._one_each(subject, part)
+                continue
+            subject = self._introduce(replace(part, predicates=()))
+            if not self.story and PAST_RELATIVE.search(self.text[slice(*part.span)]):
+                self.how = replace(self.how, past=True)
+            if subject is not None and part.predicates:
+                self._say(subject, part.predicates, part)
+        if phrase.members and phrase.predicates and not fronted:
+            whole = self._introduce(replace(phrase, predicates=()))
+            if whole is not None:
+                self._say(whole, phrase.predicates, phrase)
+
+    def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
+        """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""
+        waiting: NounPhrase | None = None
+        for part, following in zip(listed, (*listed[1:], None), strict=True):
+            if waiting is not None:
+                members = (waiting, replace(part, predicates=()))
+                span = (waiting.span[0], part.span[1])
+                yield NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
+                waiting = None
+            elif (
+                following is not None and len(listed) > 2 and not part.predicates and following.predicates
+                and self.text[part.span[1] : following.span[0]].strip() in ("and", "&")
+            ):  # fmt: skip
+                waiting = part
+            else:
+                yield part
+
+    def _ask_about(self, phrase: NounPhrase | None) -> None:
+        """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
+        if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
+            return
+        if phrase.determiner is None and not phrase.plural:
+            return
+        asked = self.references.find(replace(phrase, predicates=()))
+        if asked is not None and asked.role is Role.THING:
+            self.references.recent.insert(0, Focus(asked, [], None, self.references.sentence))
+            self.asked = (self.references.sentence, asked)
+
+    def _one_each(self, group: Entity, phrase: NounPhrase) -> None:
+        """Read *one at either end*: a member of the group at each."""
+        for predicate in phrase.predicates:
+            if predicate.relation in ("end", "side") and predicate.part in (None, "either", "each"):
+                for leaf, side in zip(group.leaves(), ("left", "right"), strict=False):
+                    leaf.adjectives |= {("picked", f"position {side}")}
+                    self._add(predicate.relation, (leaf,), (), value=side)
+
+    def _clause(self, clause: Clause, sentence: int) -> None:
+        if clause.mood is Mood.QUESTION:
+            self._ask_about(clause.subject)
+            return
+        modal = clause.modal
+        weight = min([self.hedges.get(word, 1.0) for word in clause.hedges] or [1.0])
+        positive = clause.positive and all(p.positive for p in clause.predicates)
+        if modal in NOT_NEEDED and not positive:
+            return
+        forbids = clause.subject is not None and (
+            clause.subject.pronoun == "nothing" or clause.subject.determiner == "no"
+        )  # 'nothing may be stacked on it'
+        uncertain = (
+            (modal in UNCERTAIN and positive and not (forbids and modal == "may"))
+            or weight == 0.5
+            or not RARE.isdisjoint(clause.hedges)
+        )
+        uncertain = uncertain or (modal == "must" and clause.past)  # 'it must have lain there'
+        uncertain = uncertain or (modal == "would" and clause.positive)  # 'without the clamp it would lie there'
+        none = clause.subject is not None and clause.subject.pronoun == "none"
+        self.how = Qualification(
+            clause.span, sentence, clause.positive and not none, min(weight, 0.5) if uncertain else weight,
+            optional=uncertain or "optionally" in clause.hedges or (modal == "can" and positive and weight == 1.0),
+            condition=clause.condition or self.condition,
+            past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
+        )  # fmt: skip
+        subject = clause.subject
+        if subject is not None and {m.determiner == "no" for m in subject.members} == {True, False}:
+            members = tuple(
+                replace(m, determiner=None, negated=True) if m.determiner == "no" else m for m in subject.members
+            )
+            subject = replace(subject, members=members)  # 'a spoon but no fork'
+        if subject is not None and any(member.negated for member in subject.members):
+            self._contrast(clause, subject, sentence)  # 'the glass, not the cup, is on the mat'
+            return
+        if subject is None and self.asked is not None and self.asked[0] == sentence - 1 and clause.predicates:
+            self._say(self.asked[1], clause.predicates, None)  # 'the cups? on the crate'
+            return
+        first = len(self.drafts)
+        missing = [
+            p for p in clause.predicates
+            if p.value is not None and p.value.word in ABSENT and p.positive and p.subject_part is None
+        ]  # fmt: skip
+        lost = () if subject is None else subject.members or (subject,)
+        if missing and lost and all(m.head for m in lost) and not self.how.past and clause.positive:
+            for member in lost:
+                self._absent(member)
+            return
+        if (
+            subject is not None and subject.pronoun in ("anything", "something")
+            and (not clause.positive or any(not p.positive for p in clause.predicates))
+        ):  # fmt: skip
+            predicates = (*clause.predicates, *subject.predicates)
+            subject = replace(subject, pronoun="nothing", predicates=())
+            clause = replace(clause, predicates=tuple(replace(p, positive=True) for p in predicates))
+        if subject is not None and subject.pronoun == "neither" and subject.of is not None:
+            subject = replace(subject, pronoun="both")
+            self.how = replace(self.how, positive=not self.how.positive)
+        if subject is None or subject.pronoun == "nothing" or subject.determiner == "no" or (
+            subject.members and all(m.determiner == "no" for m in subject.members)
+        ):  # fmt: skip
+            if subject is not None:
+                self._nothing(subject, clause)
+            return
+        if (not clause.predicates and subject.pronoun == "they") or (
+            subject.of is not None and subject.of.pronoun == "they" and not subject.head and not clause.predicates
+        ):
+            self._count(subject)
+            return
+        subject = _with_restrictions_of_contents(subject)
+        order = tuple(p for p in subject.predicates if p.relation == "follows")
+        if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
+            subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
+            clause = replace(clause, predicates=(*clause.predicates, *order))
+        if not clause.predicates and not clause.choices and not clause.existential:
+            handled = self._introduce(subject)  # 'fold the napkin'
+            if handled is not None:
+                self.references.recent.insert(0, Focus(handled, [], None, sentence))
+            return
+        if clause.existential and not clause.predicates and subject.predicates:
+            clause = replace(clause, predicates=subject.predicates)
+            subject = replace(subject, predicates=())
+        whole = self.text[self.references.start : self.end]
+        unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
+        unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
+        unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
+        if clause.mood is Mood.COMMAND:
+            unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
+        if unreal and positive:
+            self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
+        limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
+            self.text[self.references.start : self.end]
+        )
+        if limit is not None and self.how.condition is None:
+            self.how = replace(self.how, condition=limit[0].strip(" ,."))
+        predicates = tuple(p for p in clause.predicates if not self._remains(p, clause.existential))
+        if not predicates and clause.predicates and not clause.existential:
+            return
+        aimed = bool(predicates) and all(
+            p.relation in ("pointing", "facing")
+            or (p.relation == "far" and any(a.pronoun in VIEWER_WORDS for a in p.arguments))
+            for p in predicates
+        )
+        own = subject.determiner is None and subject.owner is None and bool(subject.head) and not subject.count
+        last = next((f for f in self.references.recent if f.subject is not None), None)
+        if (
+            aimed and own and clause.modal is None and last is not None and last.sentence == sentence
+            and self.references.earlier(replace(subject, determiner="the")) is None
+            and self._of_last(predicates, subject)
+        ):  # fmt: skip
+            return  # 'the forceps lie in the middle, beaks pointing away'
+        if (
+            subject.head in PARTS
+            and subject.owner is None
+            and subject.of is None
+            and not (
+                (last_word(subject.head) in REMOVABLE or _is_moved(clause, subject))
+                and any(
+                    (p.arguments and not (subject.determiner is None and p.relation in ("facing", "pointing")))
+                    or p.relation in PLACES
+                    for p in predicates
+                )
+            )
+            and self._of_last(predicates, subject)
+        ):
+            return
+        if last_word(subject.head) in GENERAL and any(a.degree is Degree.SUPERLATIVE for a in subject.adjectives):
+            self._superlative_apposition(subject, predicates)
+            return
+        entity = self._subject(subject, predicates)
+        if entity is None:
+            return
+        if self.obliged is not None and self.how.past and LEFT.search(self.text[self.obliged[3] : clause.span[1]]):
+            self.how = replace(self.how, past=False)  # 'it should be here, but I left it there'
+        if modal is None and not self.how.past and clause.mood is Mood.STATEMENT:
+            self._replaces_what_should_be(entity, clause)
+        choices = clause.choices
+        if choices:
+            self.alternatives += 1
+            for option in (predicates, *choices):
+                share = weight / (len(choices) + 1)
+                need_not = self.how.optional if self.how.alternative is None else self.how.need_not_hold
+                self.how = replace(
+                    self.how, alternative=self.alternatives, optional=True, weight=share, need_not_hold=need_not
+                )
+                self._say(entity, option, clause.subject)
+        else:
+            self._say(entity, predicates, subject, existential=clause.existential)
+        if modal in UNCERTAIN:
+            self._alternative_to_the_last(first, entity)
+        if modal in OBLIGED:
+            self.obliged = (entity, first, len(self.drafts), clause.span[1])
+
+    def _is_past(self, clause: Clause) -> bool:
+        """Return True for what was so, and need not be so now: *my mother always kept it here*."""
+        said = self.text[slice(*clause.span)]
+        if self.story or NOW.search(said):
+            return False
+        whole = self.text[self.references.start : self.end]
+        ended = PAST_TIME.search(whole) is not None and PRESENT.search(said) is None
+        return clause.past or ended or HABIT.search(said) is not None
+
+    def _contrast(self, clause: Clause, subject: NounPhrase, sentence: int) -> None:
+        for negated in (False, True):
+            members = tuple(replace(m, negated=False) for m in subject.members if m.negated is negated)
+            if members:
+                phrase = members[0] if len(members) == 1 else replace(subject, members=members)
+                said = tuple(replace(p, positive=not p.positive) if negated else p for p in clause.predicates)
+                self._clause(replace(clause, subject=phrase, predicates=said), sentence)
+
+    def _replaces_what_should_be(self, entity: Entity, clause: Clause) -> None:
+        """Take back *it should be in the drawer* before *but it is on the shelf*."""
+        if self.obliged is None or self.obliged[0].itself is not entity.itself:
+            return
+        _, first, last, end = self.obliged
+        between = self.text[end : clause.span[0]].casefold()
+        if len(between) > MAX_BETWEEN_CLAUSES or not CONTRARY.search(
+            between + self.text[slice(*clause.span)].casefold()
+        ):
+            return
+        for place in range(first, last):
+            if self.drafts[place].subjects == (entity,):
+                how = replace(self.drafts[place].how, uncertain=True, optional=True, weight=0.5)
+                self.drafts[place] = replace(self.drafts[place], how=how)
+        self.obliged = None
+
+    def _remains(self, predicate: Predicate, existential: bool) -> bool:
+        """Return True for *left* of *leave* and *right* that means correct: *two forks are left*, *that is right*."""
+        word = self.text[slice(*predicate.span)].casefold()
+        if word not in ("left", "right") or predicate.arguments:
+            return False
+        if BARE_AFTER_BE.search(self.text[: predicate.span[0]]):
+            return True
+        if word != "left":
+            return False
+        after = (*self.text[predicate.span[1] :].casefold().split(None, 1)[:1], "")[0].strip(",.;")
+        return existential or after in ("over", "the", "a", "an", "it", "them")
+
+    def _alternative_to_the_last(self, first: int, entity: Entity) -> None:
+        """Mark *should be there, but might be here* as a choice."""
+        before = next((d for d in reversed(self.drafts[:first]) if d.subjects == (entity,)), None)
+        if before is None or before.how.sentence != self.how.sentence or before.how.alternative is not None:
+            return
+        self.alternatives += 1
+        for place, draft in enumerate(self.drafts):
+            if (place >= first or draft is before) and draft.subjects == (entity,):
+                how = replace(
+                    draft.how, alternative=self.alternatives, weight=min(draft.how.weight, 0.7), optional=True
+                )
+                self.drafts[place] = replace(draft, how=how)
+
+    def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
+        """Read *nothing lies between the boots*, *no stopper was found*."""
+        predicates = clause.predicates
+        if all(p.relation == "there" for p in predicates):
+            for phrase in subject.members or (subject,):
+                if phrase.head and last_word(phrase.head) not in GENERAL:
+                    self._absent(phrase)
+            return
+        forbidden = clause.modal in (None, "may", "must", "should", "shall", "can")
+        if not forbidden and subject.pronoun is None and last_word(subject.head) not in GENERAL:
+            return
+        known = self.references.earlier(replace(subject, determiner="the")) if subject.head else None
+        inside = all(p.relation in ("on", "inside") for p in predicates)
+        if known is None and subject.head and inside and last_word(subject.head) not in GENERAL:
+            self._absent(subject)
+            return
+        if known is not None and last_word(subject.head) not in GENERAL:
+            self.how = replace(self.how, positive=False)  # 'no glass stands to the left of it' after 'the glasses'
+            self._say(known, tuple(replace(p, positive=True) for p in predicates), None)
+            return
+        specific = bool(subject.head) and last_word(subject.head) not in GENERAL and subject.pronoun is None
+        if specific and all(p.arguments and p.relation in DIRECTIONS | {"near", "next_to"} for p in predicates):
+            thing = self.references.find(replace(subject, determiner="the", predicates=()))
+            if thing is not None:  # 'no flowers may stand in front of the cross', which may or may not be there
+                self.how = replace(self.how, positive=False)
+                self._say(thing, tuple(replace(p, positive=True) for p in predicates), None)
+                thing.absent = True
+            return
+        for predicate in predicates:
+            arguments = [
+                a for p in predicate.arguments if isinstance(a := self._argument(p, predicate.relation, None), Entity)
+            ]
+            if arguments and arguments[0].role is Role.PART and arguments[0].whole is not None:
+                self._add(f"none_{predicate.relation}", (arguments[0].whole,), (), value=arguments[0].noun)
+                continue
+            if not arguments or arguments[0].role is Role.SURFACE:
+                if subject.head and last_word(subject.head) not in GENERAL:
+                    self._absent(subject)
+                continue
+            if predicate.relation == "between" and len(arguments) == 1 and not arguments[0].itself.members:
+                arguments[0].itself.split(2)
+            if not subject.head or last_word(subject.head) in GENERAL:
+                self._add(f"none_{predicate.relation}", tuple(arguments), ())
+
+    def _of_last(self, predicates: tuple[Predicate, ...], part: NounPhrase) -> bool:
+        """Read *toes pointing forward* of the last subject; False if there is none."""
+        last = next((f.subject for f in self.references.recent if f.subject is not None), None)
+        if last is None:
+            return False
+        if last.size > 1 and part.determiner == "the" and any(p.arguments for p in predicates):
+            return False  # 'the hinges are next to the tin'
+        if last.size > 1 and last_word(part.head) in REMOVABLE:
+            return True  # 'rosin and cloth are in the case, lid open'
+        for predicate in predicates:
+            if predicate.relation in ("left", "right") and not predicate.arguments:
+                self._add("pointing", (last,), (), value=predicate.relation)
+                continue
+            if predicate.relation == "far":
+                predicate = replace(predicate, relation="pointing", arguments=(), value=None, part="away")
+            if (predicate.relation == "pointing" and any("same" in self._words(a) for a in predicate.arguments)) or (
+                predicate.relation == "pointing" and predicate.part is not None and "same" in predicate.part
+            ):
+                self._add("parallel_each_other", (last,), ())
+            else:
+                self._predicate(last, predicate, [])
+        return True
+
+    def _superlative_apposition(self, phrase: NounPhrase, predicates: tuple[Predicate, ...]) -> None:
+        last = next((f.subject for f in self.references.recent if f.subject is not None), None)
+        if last is None:
+            return
+        where = next((p.part for p in predicates if p.relation in PLACES), None)
+        for adjective in phrase.adjectives:
+            name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if name is not None:
+                self._add(name, (last,), (), value=where)
+
+
+_FRONTS = frozenset({"display", "dial", "lens", "logo", "opening", "writing", "picture", "window", "keyhole"})
+"""Nouns that, without an article, stand for the front of the thing before: *timer on the rack, display facing you*."""
+
+
+def _is_own_part(phrase: NounPhrase) -> bool:
+    """Return True for a part of the thing before in a note: *shells, hollow side down*, *spoons, bowls downwards*."""
+    bare = phrase.determiner is None and phrase.owner is None and bool(phrase.predicates)
+    aimed = all(p.relation == "pointing" and p.value is not None and not p.arguments for p in phrase.predicates)
+    directed = all(p.relation in ("pointing", "facing") for p in phrase.predicates)
+    return bare and directed and (aimed or last_word(phrase.head) in PARTS | _FRONTS)

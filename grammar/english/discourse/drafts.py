@@ -1,0 +1,172 @@
+"""Drafts of facts about things that have no names yet, and the state of a text that is being read."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+from deixis.grammar.english.confidence import Guess, is_doubtful
+from deixis.grammar.english.discourse.entities import Entity, Role
+from deixis.grammar.english.discourse.references import References
+from deixis.grammar.english.discourse.surfaces import surface_noun
+from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
+from deixis.grammar.english.vocabulary.nouns import HEADED, last_word
+from deixis.ontology.claims import COLLECTIVE
+
+MIN_PAST_OF_STORY = 3
+"""Number of clauses in the past tense from which a text is a story, whose past is its present."""
+
+SUPPOSED = {
+    "apparently": 0.7,
+    "seemingly": 0.7,
+    "presumably": 0.7,
+    "ideally": 0.7,
+    "preferably": 0.7,
+}
+"""Weights of adverbs that the layout language does not have."""
+
+RARE = frozenset({"hardly", "rarely", "seldom", "scarcely"})
+
+NO_FACTS = frozenset({"other", "with", "outside", "from", "as", "through", "to"})
+"""Relations of the parser that say nothing of where a thing is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Qualification:
+    """Negation, weight, condition and other qualifications of the facts of a clause."""
+
+    span: Span
+    sentence: int
+    positive: bool = True
+    weight: float = 1.0
+    optional: bool = False
+    condition: str | None = None
+    past: bool = False
+    uncertain: bool = False
+    alternative: int | None = None
+    quantifier: str | None = None
+    need_not_hold: bool = False  # of a choice: none of its alternatives need hold
+    guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the fact was read (confidence.py)
+    by_handle: bool = False  # a direction of the handle of a tool
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A fact before its objects have names: groups are expanded when the whole text was read."""
+
+    relation: str
+    subjects: tuple[Entity, ...]
+    arguments: tuple[Entity, ...]
+    how: Qualification
+    value: str | None = None
+    metres: float | None = None
+
+    @property
+    def collective(self) -> bool:
+        """True if the relation is one of all subjects together."""
+        one_on_another = self.relation == "stacked" and bool(self.arguments)
+        return (self.relation in COLLECTIVE and not one_on_another) or self.relation == "count"
+
+
+TURNED_AWAY = re.compile(r"\b(?:point|fac|turn|aim|look|direct)\w*\s+(?:\w+\s+)?away\s+from\b", re.IGNORECASE)
+"""Directions that are denied: *pointing away from the plate*."""
+
+
+class Drafting:
+    """State of a text while its clauses are read in order, with the drafts of facts so far."""
+
+    def __init__(self, text: str, sentences: tuple[Sentence, ...], hedges: dict[str, float]) -> None:
+        self.text = text
+        self.sentences = sentences
+        self.hedges = SUPPOSED | hedges
+        self.drafts: list[Draft] = []
+        self.drafted: set[Draft] = set()
+        self.told: set[tuple[int, str, str]] = set()
+        surface = surface_noun(sentences)
+        self.references = References(surface, self._compare, text=text)
+        self.order: str | None = None
+        self.alternatives = 0
+        self.part = ""  # noun of the part that the present predicate is about: 'handle'
+        self.shared: tuple[str, list[Entity]] | None = None  # relation and things of 'share'
+        self.how = Qualification((0, 0), 0)
+        self.asked: tuple[int, Entity] | None = None  # sentence and thing of the last question
+        self.introduced: dict[tuple[Span, str, int | None], Entity] = {}  # by their first mention
+        self.restricted: dict[Entity, tuple[Entity, int]] = {}  # the last thing of a relative clause and its end
+        self.on_surface: Span | None = None  # clause with a place on the surface
+        self.edge: str | None = None
+        self.end = 0  # of the sentence in the text
+        self.condition: str | None = None
+        self.obliged: tuple[Entity, int, int, int] | None = None  # subject, drafts and end of 'it should be …'
+        tenses = [c.past for s in sentences for c in s.clauses if c.predicates and c.mood is not Mood.QUESTION]
+        past = sum(tenses)
+        self.story = past >= MIN_PAST_OF_STORY and past >= len(tenses) / 2
+
+    def _add(
+        self,
+        relation: str,
+        subjects: tuple[Entity, ...],
+        arguments: tuple[Entity, ...],
+        value: str | None = None,
+        metres: float | None = None,
+        how: Qualification | None = None,
+    ) -> None:
+        if any(s.role is Role.SURFACE for s in subjects) or relation in NO_FACTS:
+            return
+        if relation == "more" and value is None:
+            return  # 'fewer than three'
+        if relation == "at":
+            relation = "near"
+        how = how or self.how
+        if relation in ("pointing", "facing"):
+            turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None
+            if turned and value == "viewer":
+                value = "away"
+            elif turned and arguments:
+                how = replace(how, positive=not how.positive)
+            if self.part == "handle" and all(last_word(s.noun) in HEADED for s in subjects):
+                how = replace(how, by_handle=True)
+        start, end = self.how.span
+        if any(start <= use.span[0] and use.span[1] <= end for use in self.references.doubtful[-3:]):
+            how = replace(how, guesses=how.guesses | {Guess.PRONOUN})
+        if is_doubtful(how.guesses):
+            how = replace(how, uncertain=True, optional=True, weight=min(how.weight, 0.5))
+        draft = Draft(relation, subjects, arguments, how, value, metres)
+        if draft not in self.drafted:
+            self.drafted.add(draft)
+            self.drafts.append(draft)
+
+    def _compare(self, relation: str, subject: Entity, other: Entity, phrase: NounPhrase) -> None:
+        how = Qualification(phrase.span, self.references.sentence)
+        self._add(relation, (subject,), (other,), how=how)
+
+    def _words(self, phrase: NounPhrase) -> str:
+        return " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
+
+    def _guessed(self, guess: Guess) -> Qualification:
+        """Return the present qualification with one more guess."""
+        return replace(self.how, guesses=self.how.guesses | {guess})
+
+    def _hedge(self, adverbs: tuple[str, ...]) -> None:
+        """Give the next fact the weight of a hedge of its own: *on the tray and probably next to the jug*."""
+        weight = min([self.hedges.get(word, 1.0) for word in adverbs] or [1.0])
+        uncertain = weight == 0.5 or not RARE.isdisjoint(adverbs)
+        optional = self.how.optional or uncertain or "optionally" in adverbs
+        self.how = replace(self.how, weight=weight, optional=optional, uncertain=self.how.uncertain or uncertain)
+
+    def _within(self, relation: str) -> bool:
+        """Return True if the clause says *at the back of the table*, and not *behind the table*."""
+        words = " ".join(self.text[slice(*self.how.span)].casefold().split())
+        place = "back" if relation == "behind" else "front"
+        return any(f"{preposition} the {place} of" in words for preposition in ("at", "in", "on", "towards", "toward"))
+
+    def _at_each(self, predicate: Predicate) -> bool:
+        words = self.text[slice(*predicate.span)].casefold().split()
+        return predicate.part is None and not {"each", "either", "both"}.isdisjoint(words[:3])
+
+    def _identify(self, entity: Entity, other: Entity) -> None:
+        """Record that two entities are one; the second keeps its name."""
+        entity, other = entity.itself, other.itself
+        if entity is not other:
+            other.mentions += [m for m in entity.mentions if m not in other.mentions]
+            other.adjectives |= entity.adjectives
+            entity.same_as = other

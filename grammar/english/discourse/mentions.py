@@ -1,0 +1,239 @@
+"""Read noun phrases: the things that they introduce or refer to, and what they say of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import replace
+
+from deixis.grammar.english.discourse.commitment import PAST_RELATIVE, UNSURE_RELATIVE
+from deixis.grammar.english.discourse.drafts import Drafting
+from deixis.grammar.english.discourse.entities import Entity, Role
+from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, Region
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.nouns import PARTS, SURFACES, VESSELS, VIEWER_WORDS, last_word
+from deixis.ontology.claims import PLACES
+
+SUPERLATIVES = {
+    ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",
+    ("length", 1): "longest", ("length", -1): "shortest", ("width", 1): "widest", ("width", -1): "narrowest",
+    ("thickness", 1): "thickest", ("thickness", -1): "thinnest",
+}  # fmt: skip
+
+
+def _with_restrictions_of_contents(phrase: NounPhrase) -> NounPhrase:
+    """Attach to the vessel what follows its contents: *a box of screws on the left*."""
+    of = phrase.of
+    if of is None or not of.predicates or last_word(phrase.head) in PARTS | REGIONS:
+        return phrase
+    bare = replace(of, predicates=(), span=(of.span[0], max(of.span[0], of.predicates[0].span[0])))
+    return replace(phrase, of=bare, predicates=(*phrase.predicates, *of.predicates))
+
+
+def _said_of_subject(entity: Entity, phrase: NounPhrase) -> bool:
+    """Return True if what follows a surface is said of the subject: *on the floor to the left*."""
+    around = entity.role is Role.SURFACE or (entity.role is Role.SURROUNDING and last_word(entity.noun) != "shelf")
+    bare = all((not p.arguments and p.relation in DIRECTIONS) or p.reversed for p in phrase.predicates)
+    noun = last_word(entity.noun)
+    wide = noun in ("wall", "floor", "ceiling", "ground")
+    beside = all(p.relation in _BESIDE and p.degree is Degree.PLAIN for p in phrase.predicates)
+    flat = noun in ("wall", "ceiling") and all(
+        p.relation in DIRECTIONS | {"next_to", "near"} for p in phrase.predicates
+    )
+    amid = noun in SURFACES and all(p.relation == "between" for p in phrase.predicates)
+    own = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS and noun in _LIMBS
+    return (around and (bare or (wide and beside))) or flat or amid or own
+
+
+COMPARTMENTS = frozenset(
+    {"row", "slot", "hole", "well", "compartment", "column", "position", "tier", "section", "pocket"}
+)
+"""Nouns of places in a thing, which stand for the thing: *in slot 3 of the rack*."""
+
+
+class Mentions(Drafting, ABC):
+    """Reader of noun phrases."""
+
+    @abstractmethod
+    def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """State what a predicate, such as the restriction of a noun phrase, says of its subject."""
+
+    def _subject(self, subject: NounPhrase, predicates: tuple[Predicate, ...]) -> Entity | None:
+        """Return the subject of a clause; one new object for each member of a group that an argument quantifies."""
+        if (
+            subject.determiner in ("a", "an", None)
+            and subject.head
+            and subject.count in (None, 1)
+            and not subject.plural
+        ):
+            for predicate in predicates:
+                if predicate.relation == "each_side" and not predicate.reversed:
+                    return self._introduce(replace(subject, count=2, determiner=None, plural=True))
+                if predicate.relation in ("end", "side") and self._at_each(predicate):
+                    return self._introduce(replace(subject, count=2, determiner=None, plural=True))
+                for argument in predicate.arguments:
+                    if argument.determiner in ("each", "every"):
+                        group = self.references.find(argument)
+                        if group is not None and group.size > 1:
+                            self.how = replace(self.how, quantifier="each")
+                            return self._introduce(replace(subject, count=group.size, determiner=None, plural=True))
+        entity = self._introduce(subject)
+        if subject.determiner in ("each", "every") or subject.pronoun == "each":
+            self.how = replace(self.how, quantifier="each")
+        return entity
+
+    def _introduce(
+        self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None
+    ) -> Entity | None:
+        """Return what a phrase stands for, and state what its adjectives, its number and its clauses say of it."""
+        if phrase.members:
+            found = [e for m in phrase.members if (e := self._introduce(m, relation, besides)) is not None]
+            return found[0] if len(found) == 1 else Entity("", members=found) if found else None
+        phrase = _with_restrictions_of_contents(phrase)
+        key = (phrase.span, phrase.head, phrase.count)
+        if phrase.head and key in self.introduced:
+            return self.introduced[key]
+        known = len(self.references.entities)
+        entity = self.references.find(phrase, relation, besides)
+        if entity is None:
+            return None
+        if phrase.head and phrase.determiner in ("a", "an", None):
+            self.introduced[key] = entity
+        new = len(self.references.entities) > known and self.references.entities[-1] is entity
+        if entity.role is Role.THING or entity.role is Role.SURROUNDING:
+            self._describe(entity, phrase, new)
+        if phrase.determiner == "the" and besides is not None:
+            heights = ("above", "below")  # 'the cupboard underneath' is not below the thing in it
+            kept = tuple(p for p in phrase.predicates if p.arguments or p.relation not in heights)
+            phrase = replace(phrase, predicates=kept)
+        rows = tuple(p for p in phrase.predicates if p.relation in ("row", "circle") and not p.arguments)
+        if rows and besides is not None and not entity.plural and not entity.itself.members:
+            self._say(besides, rows, phrase, focus=False)
+            phrase = replace(phrase, predicates=tuple(p for p in phrase.predicates if p not in rows))
+        bare = all(p.relation in PLACES | DIRECTIONS and not p.arguments for p in phrase.predicates)
+        carried = relation in ("on", "inside") and new and entity.indefinite and phrase.plural and bare
+        if phrase.predicates and besides is not None and carried:  # 'the dishes stand on trivets in the middle'
+            self._say(besides, phrase.predicates, phrase, focus=False)
+        if phrase.predicates and besides is not None and _said_of_subject(entity, phrase):
+            self._say(besides, phrase.predicates, phrase, focus=False)
+        elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT):
+            outer = self.how
+            self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
+            if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
+                self.how = replace(self.how, past=True)
+            if UNSURE_RELATIVE.search(self.text[slice(*phrase.span)]):
+                self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
+            self._say(entity, phrase.predicates, phrase, focus=False)
+            self.how = outer
+            restriction = self.references.recent[-1]
+            if restriction.subject is entity and restriction.others:
+                self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
+        return entity
+
+    def _describe(self, entity: Entity, phrase: NounPhrase, new: bool) -> None:
+        plain = replace(self.how, positive=True, weight=1.0, optional=False, quantifier=None, alternative=None)
+        if self.how.condition or self.how.past or self.how.uncertain:
+            return
+        for adjective in phrase.adjectives:
+            if adjective.degree is Degree.PLAIN and adjective.dimension in ("colour", "size", "material", "shape"):
+                if entity.members and not phrase.plural and not new:
+                    continue
+                key = (id(entity), adjective.dimension, adjective.word)
+                if key not in self.told:
+                    self.told.add(key)
+                    self._add(
+                        adjective.dimension, (entity,), (), value=adjective.word, how=replace(plain, span=phrase.span)
+                    )
+        for adjective in phrase.adjectives:
+            name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+            if new and adjective.degree is Degree.SUPERLATIVE and name is not None and not entity.members:
+                self._add(name, (entity,), (), how=replace(plain, span=phrase.span))
+        if new and entity.members:
+            self._add("count", (entity,), (), value=str(entity.size), how=replace(plain, span=phrase.span))
+        if phrase.of is not None and phrase.of.head and new:
+            stuff = phrase.of.head
+            if last_word(phrase.head) in VESSELS:
+                self._add("contents", (entity,), (), value=stuff, how=plain)
+
+    def _count(self, phrase: NounPhrase) -> None:
+        """Read *there are four of them*."""
+        group = self.references.find(NounPhrase(phrase.span, pronoun="they"))
+        if group is not None and not group.members and phrase.count is not None and 1 < phrase.count <= 1000:
+            group.split(phrase.count)
+            self._add("count", (group,), (), value=str(phrase.count))
+
+    def _absent(self, phrase: NounPhrase) -> None:
+        entity = self.references.find(replace(phrase, determiner="the", predicates=()))
+        if entity is not None:
+            entity.absent = True
+            self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True, past=False))
+            self.references.recent.insert(0, Focus(entity, [], None, self.how.sentence))
+
+    def _say(
+        self,
+        entity: Entity,
+        predicates: tuple[Predicate, ...],
+        phrase: NounPhrase | None,
+        focus: bool = True,
+        existential: bool = False,
+    ) -> None:
+        others: list[Entity] = []
+        if focus:
+            self.references.named = others
+        if any(p.relation == "one_each" for p in predicates):
+            self.how = replace(self.how, quantifier="each")
+        outer = self.how
+        places = {p.part for p in predicates if p.relation in ("part", "edge") and not p.arguments and p.part}
+        for predicate in predicates:
+            if predicate.relation == "there" and self.text[predicate.span[1] :].lstrip().casefold().startswith("but "):
+                outer = replace(outer, positive=False)  # everywhere but left of the plate
+                continue
+            self.how = replace(outer, positive=outer.positive and predicate.positive, quantifier=self.how.quantifier)
+            if outer.weight == 1 and outer.alternative is None:
+                self._hedge(predicate.adverbs)
+            if predicate.relation == "middle" and not predicate.part and places and entity.role is Role.THING:
+                self._add("middle", (entity,), (), value=min(places))
+                continue
+            self._predicate(entity, predicate, others)
+        relation = next(
+            (p.relation for p in predicates
+             if p.arguments and not (p.relation in ("in_front", "behind") and self._within(p.relation))), None
+        )  # fmt: skip
+        if focus:
+            self.references.recent.insert(0, Focus(entity, others, relation, self.how.sentence))
+        else:
+            self.references.recent.append(Focus(entity, others, relation, self.how.sentence))
+
+    def _argument(self, phrase: NounPhrase, relation: str, subject: Entity | None) -> Entity | Region | None:
+        if relation in ("inside", "on") and phrase.of is not None and (
+            phrase.head.partition(" ")[0] in COMPARTMENTS
+        ):  # fmt: skip
+            phrase = phrase.of  # 'in row 1 of the rack'
+        region = self.references.region(phrase)
+        if region is not None:
+            return region
+        if (phrase.pronoun in ("each", "other") and phrase.determiner in ("each",)) or phrase.pronoun == "another":
+            return None
+        owned = phrase.owner is not None and phrase.head and last_word(phrase.head) not in PARTS and not phrase.plural
+        if owned and subject is not None and subject.itself.members and self.how.quantifier == "each":
+            return self._introduce(replace(phrase, owner=None, determiner=None, count=subject.size, plural=True))
+        if (
+            subject is not None and self.how.quantifier == "each" and subject.size > 1
+            and phrase.determiner in ("a", "an") and phrase.head and not phrase.plural
+        ):  # fmt: skip
+            return self._introduce(replace(phrase, determiner=None, count=subject.size, plural=True))
+        if phrase.determiner in ("each", "every"):
+            self.how = replace(self.how, quantifier="each")
+        found = self._introduce(phrase, relation, subject)
+        if (
+            found is not None and subject is not None and phrase.count is not None and phrase.count > 1
+            and found.size == subject.size and phrase.determiner is None
+        ):  # fmt: skip
+            self.how = replace(self.how, quantifier="each")
+        return found
+
+
+_BESIDE = DIRECTIONS | {"near", "next_to", "between", "under", "opposite"}
+"""Relations that, after a wall or a floor, are those of the thing that is on it: *on the wall near the exit*."""
+
+_LIMBS = frozenset({"elbow", "hand", "arm", "foot", "knee", "shoulder", "side"})

@@ -1,0 +1,752 @@
+"""Find the objects that noun phrases stand for: new ones, earlier ones, members of groups, and pronouns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+from deixis.grammar.english.discourse.entities import Entity, Role, is_one_thing
+from deixis.grammar.english.tree import Adjective, Degree, NounPhrase, Span
+from deixis.grammar.english.vocabulary.nouns import (
+    ABSTRACT,
+    GENERAL,
+    GROUPS,
+    PAIRED,
+    PARTS,
+    PEOPLE,
+    REMOVABLE,
+    SINGLE_PLURALS,
+    SURROUNDINGS,
+    VIEWER,
+    VIEWER_WORDS,
+    last_word,
+)
+from deixis.grammar.english.vocabulary.relation_words import prepositions
+from deixis.ontology.inflection import singulars
+
+MAX_COUNTED = 1000
+"""Largest number of a noun phrase that is read as so many things."""
+NAMED = re.compile(
+    r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
+    re.IGNORECASE,
+)
+"""Noun phrase at the end of a clause."""
+MIN_LOST = 12
+"""Number of characters from which a phrase that was not understood can name a thing."""
+REGIONS = frozenset(
+    [
+        "corner",
+        "edge",
+        "end",
+        "side",
+        "middle",
+        "centre",
+        "midpoint",
+        "quadrant",
+        "center",
+        "front",
+        "back",
+        "rear",
+        "half",
+        "part",
+        "rim",
+        "border",
+    ]
+)
+DEFINITE = frozenset({"the", "this", "that", "these", "those", "same", "its", "their", "my", "your"})
+OPPOSITES = {
+    "left": "right", "right": "left", "in_front": "behind", "behind": "in_front", "above": "below", "below": "above",
+    "on": "under", "under": "on", "top": "bottom", "bottom": "top",
+}  # fmt: skip
+POLES = {
+    **dict.fromkeys(("large", "big", "tall", "long", "wide", "thick", "high", "deep", "heavy", "broad"), 1),
+    **dict.fromkeys(("small", "little", "short", "narrow", "thin", "low", "shallow", "light", "tiny"), -1),
+}
+COMPARATIVES = {
+    ("size", 1): "bigger", ("size", -1): "smaller", ("height", 1): "taller", ("height", -1): "shorter",
+    ("length", 1): "longer", ("length", -1): "shorter", ("width", 1): "wider", ("width", -1): "narrower",
+    ("thickness", 1): "thicker", ("thickness", -1): "thinner",
+}  # fmt: skip
+"""Relation of a comparative by its dimension and pole."""
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A part of the surface or of an object, such as the *right end of the counter*: ``term`` is ``end``."""
+
+    term: str
+    value: str | None
+    of: Entity | None
+
+
+@dataclass
+class Focus:
+    """Subject, other objects and relation of a clause, which pronouns in later clauses refer to."""
+
+    subject: Entity | None
+    others: list[Entity]
+    relation: str | None
+    sentence: int
+
+
+@dataclass(frozen=True, slots=True)
+class PronounUse:
+    """A pronoun, the object that it was taken for, and the others of the clause before that it could stand for."""
+
+    span: Span
+    word: str
+    chosen: Entity
+    others: tuple[Entity, ...]
+
+
+@dataclass
+class References:
+    """Objects of a text so far, and the rules by which a phrase refers to one of them.
+
+    ``compare`` is called with a relation and two objects when a phrase such as *the larger beaker* tells two members of
+    a group apart.
+    """
+
+    surface_noun: str | None
+    compare: Callable[[str, Entity, Entity, NounPhrase], None]
+    entities: list[Entity] = field(default_factory=list)
+    recent: list[Focus] = field(default_factory=list)
+    sentence: int = 0
+    start: int = 0  # of the sentence in the text
+    text: str = ""
+    lost: list[Span] = field(default_factory=list)  # of the sentence, phrases that were not understood
+    surface: Entity | None = None
+    named: list[Entity] = field(default_factory=list)  # objects that the present clause named after its subject
+    doubtful: list[PronounUse] = field(default_factory=list)
+    renamed: list[Entity] = field(default_factory=list)  # entities with aliases
+    _by_last_word: dict[str, list[Entity]] = field(default_factory=dict)
+    _indexed: int = 0  # entities that the index holds
+
+    def __post_init__(self) -> None:
+        self.viewer = Entity(VIEWER, Role.VIEWER)
+
+    # Noun phrases -----------------------------------------------------------------------------------------------
+
+    def region(self, phrase: NounPhrase) -> Region | None:
+        """Return the region that a phrase names, or None if it names an object.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase such as *the far left corner of the tray*.
+
+        Returns
+        -------
+        Region or None
+            Part of an object, or of the whole surface if the phrase names no object.
+        """
+        term = phrase.head if phrase.head in REGIONS else last_word(phrase.head)
+        if term not in REGIONS or phrase.owner is not None or phrase.members:
+            return None
+        if phrase.head != term and (phrase.count or 0) > 1 and phrase.of is None:
+            return None  # 'two cigarette ends'
+        words = [a.word for a in phrase.adjectives if a.dimension in ("position", "size", "length", "other")]
+        of = self.find(phrase.of) if phrase.of is not None else None
+        term = {"centre": "middle", "center": "middle", "midpoint": "middle", "rear": "back"}.get(term, term)
+        if term in ("front", "back", "half", "part", "quadrant"):
+            words, term = ([*words, term] if term in ("front", "back") else words), "part"
+        return Region(term, " ".join(words) or None, None if of is None or of.role is Role.SURFACE else of)
+
+    def find(self, phrase: NounPhrase, relation: str | None = None, besides: Entity | None = None) -> Entity | None:
+        """Return the object or group that a phrase stands for, a new one if need be; None for nothing.
+
+        Parameters
+        ----------
+        phrase
+            The noun phrase.
+        relation
+            Relation of which the phrase is an argument; it decides between antecedents of a pronoun.
+        besides
+            Subject of the clause, which a pronoun in its predicate does not stand for.
+
+        Returns
+        -------
+        Entity or None
+            Object, or a group for a coordination or a plural; None also for a phrase that refers to nothing.
+        """
+        if phrase.members:
+            found = [entity for part in phrase.members if (entity := self.find(part, relation, besides)) is not None]
+            return found[0] if len(found) == 1 else Entity("", members=found) if found else None
+        if phrase.pronoun is not None and not phrase.head:
+            return self._pronoun(phrase, relation, besides)
+        if phrase.head:
+            return self._noun(phrase, relation, besides)
+        return self._ellipsis(phrase, besides, relation)
+
+    def _noun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        noun, last = phrase.head, last_word(phrase.head)
+        if last in ABSTRACT and noun == last:
+            return self._earlier(phrase) or self._new(phrase, Role.ABSTRACT)
+        if last == VIEWER or (last in PEOPLE and noun == last):
+            entity = self._earlier(phrase) or self._new(phrase, Role.VIEWER if last == VIEWER else Role.PERSON)
+            return entity
+        if self.surface_noun is not None and last == self.surface_noun and phrase.determiner != "another":
+            if self.surface is None:
+                self.surface = Entity(noun, Role.SURFACE, born=self.sentence)
+            return self.surface
+        worn = phrase.owner is not None and phrase.owner.pronoun in VIEWER_WORDS | {"he", "she"} and last in REMOVABLE
+        if last in PARTS and noun == last and not worn and (phrase.owner is not None or phrase.of is not None):
+            whole = None
+            if phrase.owner is not None and phrase.owner.pronoun == "it" and besides is not None:
+                whole = next((e for e in self.named[-1:] if e is not besides and not e.itself.members), None)
+            whole = whole or self.find(phrase.owner or phrase.of, relation, besides)  # type: ignore[arg-type]
+            return None if whole is None else Entity(noun, Role.PART, whole=whole)
+        if last in PARTS - REMOVABLE and noun != last and phrase.determiner != "a":
+            whole = self._earlier(replace(phrase, head=noun.rpartition(" ")[0], adjectives=(), determiner="the"))
+            if whole is not None:
+                return Entity(last, Role.PART, whole=whole)  # 'the knife blade'
+        if phrase.of is not None and last in GENERAL:
+            counted = phrase.count is not None and phrase.of.count is None and phrase.of.determiner is None
+            inner = replace(phrase.of, count=phrase.count, plural=True) if counted else phrase.of
+            return self.find(inner, relation, besides)
+        earlier = self._earlier(phrase)
+        if earlier is not None and besides is not None and earlier is besides.itself and besides.born == self.sentence:
+            others = [e for e in self._named_like(noun) if e is not earlier and _can_name(noun, e) and not e.members]
+            earlier = next((e for e in others if not _conflicting(e, phrase)), earlier)
+        of_it = phrase.owner is not None and phrase.owner.pronoun in ("it", "they")
+        if of_it and earlier is not None and earlier.noun != noun and not earlier.was_called(noun):
+            earlier = None  # 'the cake is in its box' beside a cool box
+        if earlier is not None:
+            return self._seen(earlier, phrase)
+        several = phrase.plural and phrase.count is None and phrase.determiner in DEFINITE
+        if several and last in GENERAL and noun == last:
+            return None  # 'the following items'
+        if phrase.owner is not None:
+            self.find(phrase.owner, relation, besides)
+        return self._new(phrase, Role.SURROUNDING if noun in SURROUNDINGS else Role.THING)
+
+    def _new(self, phrase: NounPhrase, role: Role) -> Entity:
+        entity = Entity(phrase.head, role, born=self.sentence, indefinite=phrase.determiner in ("a", "an", None))
+        entity.adjectives = {
+            (a.dimension, a.word)
+            for a in phrase.adjectives
+            if a.degree is Degree.PLAIN or a.dimension in ("position", "size", "height", "length")
+        }
+        written = self.text[phrase.span[0] : phrase.span[1]].casefold()
+        words = written.replace(",", " ").split()
+        count = phrase.count
+        stem = last_word(phrase.head)
+        amount = written.partition(" of ")[0].split()[-1:] if " of " in written and phrase.of is None else []
+        if amount and not phrase.plural:  # 'a drop of water', and later 'the drop'
+            entity.aliases.add(amount[0])
+            self.renamed.append(entity)
+        lump = next((word for word in words if word in SINGLE_PLURALS and is_one_thing(written)), None)
+        if count is None and phrase.plural and lump is None and (stem in PAIRED or phrase.determiner == "both"):
+            count = 2
+        if phrase.of is not None and phrase.of.plural and stem in GROUPS:
+            entity.aliases.add(phrase.of.head)
+            self.renamed.append(entity)  # 'a stack of three towels', and later 'the towels'
+        if lump is not None and count == 2 and "pair" in words:
+            count = None
+        if count is not None and 1 < count <= MAX_COUNTED:
+            entity.split(count)
+        elif phrase.plural:
+            entity.plural, entity.single = True, lump is not None
+            plural = next((w for w in reversed(words) if w.startswith(stem[: max(2, len(stem) - 2)])), None)
+            if plural is not None:
+                entity.written = f"{phrase.head[: -len(stem)]}{plural}".strip()
+        self.entities.append(entity)
+        return self._seen(entity, phrase)
+
+    def _seen(self, entity: Entity, phrase: NounPhrase) -> Entity:
+        words = self.words(phrase)
+        entity.mention(words)
+        if entity.members and entity.noun:
+            for leaf in entity.leaves():
+                leaf.mention(words)
+        return entity
+
+    def words(self, phrase: NounPhrase) -> str:
+        """Return the words of a phrase without its restrictions and commas.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase of the text.
+
+        Returns
+        -------
+        str
+            Words as written, from the start of the phrase to its head or complement, with single spaces.
+        """
+        said = " ".join(self.text[phrase.span[0] : phrase.span[1]].split())
+        stem = last_word(phrase.head)
+        if not stem:
+            one = re.match(r".*?\bones?\b", said, re.IGNORECASE) if phrase.pronoun == "one" else None
+            return (said if one is None else one[0]).strip(" ,;:.")
+        first = max(said.casefold().find(phrase.head.split()[0][:2]), 0)
+        start = re.escape(stem[: max(2, len(stem) - 2)].casefold())
+        whole = re.search(rf"\b{start}", said.casefold()[first:]) or re.search(start, said.casefold()[first:])
+        place = first + whole.start() if whole is not None else -1
+        if place < 0:
+            return said.strip(" ,;:.")
+        end = next((i for i in range(place, len(said)) if said[i] in " ,;:."), len(said))
+        if phrase.of is not None and phrase.of.span[1] <= phrase.span[1] and phrase.of.span[0] >= phrase.span[0]:
+            part = re.escape(last_word(phrase.of.head)[: max(2, len(last_word(phrase.of.head)) - 2)].casefold())
+            named = re.search(rf"\b{part}[\w'-]*", said[end:].casefold()) if phrase.of.head else None
+            whole_of = min(len(said), phrase.of.span[1] - phrase.span[0])
+            end = max(end, whole_of if named is None else end + named.end())
+        return said[:end].strip(" ,;:.").removesuffix("'s")
+
+    def earlier(self, phrase: NounPhrase) -> Entity | None:
+        """Return the earlier object that a definite phrase stands for, or None.
+
+        Parameters
+        ----------
+        phrase
+            Noun phrase with a head.
+
+        Returns
+        -------
+        Entity or None
+            Object or group that the text introduced before.
+        """
+        return self._earlier(phrase)
+
+    def _earlier(self, phrase: NounPhrase) -> Entity | None:
+        """Return the earlier object with the same noun, unless the phrase introduces another one."""
+        if phrase.determiner in ("another", "a", "an", "some", "no") or (
+            phrase.count is not None and phrase.determiner not in DEFINITE | {"both", "all", "other"}
+        ):
+            return None
+        latest_first = self._named_like(phrase.head)
+        if phrase.plural and (several := self._all_of(phrase, latest_first)) is not None:
+            return several
+        for entity in sorted(
+            latest_first,
+            key=lambda entity: (
+                entity.noun != phrase.head and not entity.was_called(phrase.head), -_agreement(entity, phrase),
+                not phrase.plural and phrase.determiner in DEFINITE and bool(entity.members),
+            ),
+        ):  # fmt: skip
+            if not _can_name(phrase.head, entity) or _conflicting(entity, phrase):
+                continue
+            if phrase.determiner == "other" and not entity.members:
+                continue
+            if (phrase.count or 1) > 1 and not (entity.members or entity.plural or entity.group is not None):
+                continue  # 'the two rails' after 'a rail'
+            if self._is_further(phrase, entity):
+                continue
+            if entity.group is not None and entity.group in self.entities:
+                continue
+            if (
+                entity.plural
+                and not entity.members
+                and not phrase.plural
+                and any(a.degree is Degree.COMPARATIVE for a in phrase.adjectives)
+            ):
+                entity.split(2)
+            if entity.plural and not entity.members and 1 < (phrase.count or 0) <= MAX_COUNTED:
+                entity.split(phrase.count or 0)  # 'the two corks'
+            if entity.members and not phrase.plural and phrase.determiner not in ("each", "every", "all", "both"):
+                return self.member(entity, phrase) or entity
+            return entity
+        return None
+
+    def _is_further(self, phrase: NounPhrase, entity: Entity) -> bool:
+        """Return True for *the second panel* after *one panel*: another one, which is not counted from a side."""
+        rank = next((a.rank for a in phrase.adjectives if a.rank is not None), None)
+        counted = any(p.relation == "ordinal" for p in phrase.predicates)
+        alone = not (entity.members or entity.plural or entity.group is not None)
+        ranked = any(dimension == "rank" for dimension, _ in entity.adjectives)
+        return alone and not ranked and rank is not None and rank > 1 and not counted and not phrase.plural
+
+    def _named_like(self, head: str) -> list[Entity]:
+        """Return the known objects whose noun, or another noun for them, has the same last word, the latest first."""
+        for entity in self.entities[self._indexed :]:
+            self._by_last_word.setdefault(last_word(entity.noun), []).append(entity)
+        self._indexed = len(self.entities)
+        found = [
+            *self._by_last_word.get(last_word(head), ()),
+            *(e for e in self.renamed if last_word(head) in e.aliases),
+        ]
+        return [entity.itself for entity in reversed(found) if not entity.absent]
+
+    def _all_of(self, phrase: NounPhrase, latest_first: list[Entity]) -> Entity | None:
+        """Return the single things that a definite plural stands for: *the bins* after a green bin and a blue bin."""
+        named = [e for e in latest_first if _can_name(phrase.head, e) and not _conflicting(e, phrase)]
+        if any(entity.members or entity.plural for entity in named) or phrase.determiner not in DEFINITE | {
+            "both",
+            "all",
+        }:
+            return None
+        kept = named[: phrase.count] if phrase.count is not None else named
+        return Entity("", members=kept[::-1]) if len(kept) > 1 and len(kept) >= (phrase.count or 0) else None
+
+    def _known(self) -> Iterator[Entity]:
+        exact: list[Entity] = [entity.itself for entity in self.entities if not entity.absent]
+        yield from exact
+
+    # Members of groups ------------------------------------------------------------------------------------------
+
+    def member(self, group: Entity, phrase: NounPhrase) -> Entity | None:
+        """Return the member of a group that adjectives pick out, such as *the taller one* or *the second*.
+
+        Parameters
+        ----------
+        group
+            Group with its members.
+        phrase
+            Noun phrase, the adjectives of which pick the member out. An adjective that no member has yet is given to a
+            free one.
+
+        Returns
+        -------
+        Entity or None
+            Member; None if the phrase picks none out.
+        """
+        leaves = list(group.leaves())
+        if phrase.determiner == "other" or phrase.pronoun == "other":
+            taken = [leaf for leaf in leaves if any(pair[0] == "picked" for pair in leaf.adjectives)]
+            return next((leaf for leaf in leaves if leaf not in taken), leaves[-1])
+        for predicate in phrase.predicates:  # 'the second fork from the left', with the leaves from left to right
+            rank = predicate.value.rank if predicate.relation == "ordinal" and predicate.value is not None else None
+            if rank is not None and 0 < abs(rank) <= len(leaves):
+                from_left = (rank > 0) == (predicate.part not in ("right", "back", "far"))
+                return self._picked(leaves[abs(rank) - 1 if from_left else -abs(rank)], phrase)
+        for adjective in phrase.adjectives:
+            if adjective.dimension == "rank" and adjective.rank is not None and abs(adjective.rank) <= len(leaves):
+                return self._picked(leaves[adjective.rank - 1 if adjective.rank > 0 else adjective.rank], phrase)
+            tag = _tag(adjective)
+            for leaf in leaves:
+                if (adjective.dimension, adjective.word) in leaf.adjectives or ("picked", tag) in leaf.adjectives:
+                    return self._picked(leaf, phrase)
+            free = [leaf for leaf in leaves if not any(p[0] == "picked" for p in leaf.adjectives)]
+            if not free or adjective.dimension == "state":
+                continue
+            leaf = free[0]
+            leaf.adjectives.add(("picked", tag))
+            if adjective.degree is Degree.PLAIN and adjective.dimension != "position":
+                leaf.adjectives.add((adjective.dimension, adjective.word))
+            self._compare(adjective, leaf, leaves, phrase)
+            return self._picked(leaf, phrase)
+        return None
+
+    def _compare(self, adjective: Adjective, leaf: Entity, leaves: list[Entity], phrase: NounPhrase) -> None:
+        relation = None
+        if adjective.degree is not Degree.PLAIN:
+            relation = COMPARATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+        elif adjective.dimension == "position" and len(leaves) == 2:
+            relation = {"left": "left", "right": "right", "far": "behind", "near": "in_front"}.get(adjective.word)
+        elif adjective.dimension == "size" and len(leaves) == 2:
+            relation = COMPARATIVES.get(("size", POLES.get(adjective.word, 0)))
+        if relation is not None and not any(
+            p[0] == "picked" and p[1] == _opposite_tag(adjective) for other in leaves for p in other.adjectives
+        ):
+            for other in leaves:
+                if other is not leaf:
+                    self.compare(relation, leaf, other, phrase)
+
+    def _picked(self, leaf: Entity, phrase: NounPhrase) -> Entity:
+        if not any(pair[0] == "picked" for pair in leaf.adjectives):
+            leaf.adjectives.add(("picked", "named"))
+        leaf.mention(self.words(phrase))
+        return leaf
+
+    def last_group(self, besides: Entity | None = None) -> Entity | None:
+        """Return the group that the text mentioned last.
+
+        Parameters
+        ----------
+        besides
+            Entity that is not meant. If it is a member of a group, that group is returned.
+
+        Returns
+        -------
+        Entity or None
+            Group with a noun; None if the text has none yet.
+        """
+        if besides is not None and besides.group is not None:
+            return besides.group
+        for focus in self.recent:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides:
+                    continue
+                group = entity.itself if entity.itself.members else entity.itself.group
+                if group is not None and group.noun:
+                    return group
+        return next((e for e in reversed(self.entities) if e.members and e.noun), None)
+
+    # Pronouns ---------------------------------------------------------------------------------------------------
+
+    def _pronoun(self, phrase: NounPhrase, relation: str | None, besides: Entity | None) -> Entity | None:
+        word = phrase.pronoun or ""
+        if word in VIEWER_WORDS:
+            return self.viewer
+        if phrase.of is not None and word not in ("it", "they"):
+            group = self.find(phrase.of, relation, besides)
+            if group is None or word in ("all", "both", "each", "everything"):
+                return group
+            return (self.member(group, phrase) or next(group.leaves())) if group.members else group
+        if word in ("it", "they") and self._is_lost(phrase):
+            return None
+        if word == "they" and (left_out := self._left_out(phrase)) is not None:
+            return left_out
+        if word in ("they", "both", "all", "each", "these", "those"):
+            return self._plural(relation, besides, word == "both")
+        if word in ("it", "itself", "they") and (left_out := self._left_out(phrase)) is not None:
+            return left_out
+        if word in ("it", "this", "that", "itself"):
+            chosen = self._singular(relation, besides)
+            self._note_doubt(phrase, chosen, relation, besides)
+            return chosen
+        if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
+            last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
+            return last if last is not None and last.role is Role.THING and not last.members else None
+        if word in ("former", "latter"):
+            pair = next(
+                (f for f in self.recent if f.subject is not None and f.others and f.sentence < self.sentence), None
+            )
+            pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
+            last = self.recent[0].subject if self.recent else None
+            if last is not None and not last.noun and len(last.members) > 1:
+                return last.members[0 if word == "former" else -1]
+            return None if pair is None else pair.subject if word == "former" else pair.others[0]
+        if word in ("one", "other"):
+            return self._ellipsis(phrase, besides, relation)
+        return None
+
+    def _is_lost(self, phrase: NounPhrase) -> bool:
+        """Return True for a pronoun after a clause of its sentence that was not understood, which it may go back to."""
+        if any(focus.sentence == self.sentence for focus in self.recent) or (self._left_out(phrase) is not None):
+            return False
+        return any(end <= phrase.span[0] and end - start > MIN_LOST for start, end in self.lost)
+
+    def _left_out(self, phrase: NounPhrase) -> Entity | None:
+        """Return the object of an earlier clause of the sentence that says no place: *fold the napkin and put it …*."""
+        if any(focus.sentence == self.sentence and not _is_person(focus.subject) for focus in self.recent):
+            return None
+        before = self.text[self.start : phrase.span[0]]
+        named = list(NAMED.finditer(before))
+        words = named[-1][1].casefold().split() if named else []
+        if not words or len(words) > 3 or not prepositions().keys().isdisjoint(words):
+            return None
+        one = singulars(words[-1])[0]
+        if (phrase.pronoun == "they") is not (one != words[-1] or words[-1] in SINGLE_PLURALS):
+            return None
+        span = (self.start + named[-1].start(1), self.start + named[-1].end(1))
+        head = " ".join([*words[:-1], one])
+        return self.find(NounPhrase(span, head=head, determiner="the", plural=one != words[-1]))
+
+    def _ellipsis(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
+        two = phrase.count == 2 and phrase.determiner in ("the", "these", "those") and not phrase.adjectives
+        if two and phrase.of is None and (pair := self._plural(None, besides)) is not None and pair.size == 2:
+            return pair  # 'behind the two'
+        group = self.find(phrase.of, None, besides) if phrase.of is not None else None
+        if (
+            phrase.of is None
+            and phrase.pronoun == "one"
+            and phrase.determiner in ("this", "that")
+            and not phrase.adjectives
+        ):
+            return self._singular(relation, besides)  # 'behind that one'
+        if group is None and phrase.pronoun == "one" and any(a.dimension == "colour" for a in phrase.adjectives):
+            contrasted = self._contrasted(phrase)
+            if contrasted is not None:
+                return contrasted
+        if group is None and phrase.adjectives:
+            colours = {a.word for a in phrase.adjectives if a.dimension == "colour"}
+            if colours and (noun := self._last_noun()):  # the blue one, beside the red box
+                for entity in self._known():
+                    if _same_noun(entity.noun, noun) and any(("colour", c) in entity.adjectives for c in colours):
+                        return entity
+                group = self.last_group(besides)
+                if group is None or not _same_noun(group.noun, noun):
+                    entity = Entity(noun, born=self.sentence)
+                    entity.plural = phrase.plural
+                    entity.adjectives = {("colour", c) for c in colours}
+                    self.entities.append(entity)
+                    return self._seen(entity, phrase)
+        if group is None and (contrasted := self._contrasted(phrase)) is not None:
+            return contrasted
+        if group is None and not phrase.adjectives and relation in ("inside", "on", "under"):
+            another = self._another_one(phrase, besides, relation)
+            if another is not None:
+                return another
+        ranks = [a.rank for a in phrase.adjectives if a.rank is not None]
+        if group is None and ranks and besides is not None and besides.noun and not besides.itself.members:
+            like = [e for e in self._known() if e.noun == besides.noun and not e.members and e is not besides.itself]
+            if like and besides.itself.group is None:
+                return self._seen(like[0], phrase)  # 'the second panel opposite the first one'
+        some = (
+            group is not None and not group.members and phrase.of is not None and 1 < (phrase.count or 0) <= MAX_COUNTED
+        )
+        if some and phrase.of is not None and phrase.of.head and phrase.of.plural:
+            return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
+        group = group or self.last_group(besides)
+        further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
+        if further and group is not None and group.noun and phrase.of is None:
+            return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
+        if further and phrase.of is None and (last := self._last_thing(besides)) is not None:
+            return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
+        if group is None or not group.members:
+            return self._another_one(phrase, besides, relation)
+        found = self.member(group, phrase)
+        if found is None and phrase.pronoun == "one":
+            free = [leaf for leaf in group.leaves() if not any(pair[0] == "picked" for pair in leaf.adjectives)]
+            found = self._picked(free[0], phrase) if free else None
+        if found is not None:
+            self._picked(found, phrase)
+        return found
+
+    def _last_thing(self, besides: Entity | None) -> Entity | None:
+        """Return the single thing that the last clause is about."""
+        last = self.recent[0].subject if self.recent else None
+        known = last is not None and last is not besides and last.role is Role.THING and bool(last.noun)
+        return last if known else None
+
+    def _contrasted(self, phrase: NounPhrase) -> Entity | None:
+        """Return *the front one* beside *the back burner*: the thing of the same noun with the other adjective."""
+        for adjective in phrase.adjectives:
+            if adjective.dimension not in ("position", "size", "height", "length", "rank", "colour"):
+                continue
+            for entity in reversed(list(self._known())):
+                words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
+                if not words or entity.group is not None or entity.members or not entity.noun:
+                    continue
+                if adjective.word in words:
+                    return self._seen(entity, phrase)
+                return self._new(replace(phrase, head=entity.noun, pronoun=None), entity.role)
+        return None
+
+    def _another_one(self, phrase: NounPhrase, besides: Entity | None, relation: str | None = None) -> Entity | None:
+        """Return a new thing with the noun of the subject for *the one leaning against the wall*.
+
+        After *in* and *on* it has the noun of the thing that the one before is in or on: *onions in the bowl, garlic in
+        the one behind it*.
+        """
+        if phrase.pronoun != "one" or not phrase.predicates:
+            return None
+        if besides is not None and relation in ("inside", "on", "under"):
+            parallel = next((f.others[0] for f in self.recent[:2] if f.relation == relation and f.others), None)
+            return (
+                None if parallel is None else self._new(replace(phrase, head=parallel.noun, pronoun=None), Role.THING)
+            )
+        last = besides or next((f.subject for f in self.recent if f.subject is not None), None)
+        if last is None or last.role is not Role.THING or not last.noun:
+            return None
+        return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)
+
+    def _last_noun(self) -> str | None:
+        return self.entities[-1].noun if self.entities else None
+
+    def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
+        last = self.recent[0] if self.recent else None
+        if (
+            besides is not None and last is not None and relation in OPPOSITES and last.others
+            and OPPOSITES[relation] == last.relation and last.subject is not besides
+        ):  # fmt: skip
+            return last.others[0]
+        several: Entity | None = None
+        for focus in self.recent[:4]:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT):
+                    continue
+                entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
+                if entity.itself.members or entity is besides:
+                    continue
+                if entity.itself.plural and not entity.itself.single:
+                    several = several or entity
+                    continue
+                return entity
+        return several
+
+    def _note_doubt(
+        self, phrase: NounPhrase, chosen: Entity | None, relation: str | None, besides: Entity | None
+    ) -> None:
+        """Record a pronoun after a relation where the clause before names two objects that it could stand for.
+
+        A pronoun that is the subject goes on with the subject before it, and one after the opposite of the relation
+        before (*left of the plate … right of it*) with its object; neither is in doubt.
+        """
+        last = self.recent[0] if self.recent else None
+        if chosen is None or last is None or besides is None or chosen.role is not Role.THING:
+            return
+        if relation in OPPOSITES and OPPOSITES[relation] == last.relation:
+            return
+        named = [e for e in (last.subject, *last.others) if e is not None and e.role is Role.THING]
+        others = [e for e in named if e.itself not in (chosen.itself, besides.itself) and not e.itself.members]
+        if others and chosen.itself in [e.itself for e in named]:
+            self.doubtful.append(PronounUse(phrase.span, phrase.pronoun or "", chosen, tuple(others)))
+
+    def _plural(self, relation: str | None, besides: Entity | None, both: bool = False) -> Entity | None:
+        last = self.recent[0] if self.recent else None
+        if both and last is not None and last.sentence == self.sentence and len(last.others) == 2:
+            return Entity("", members=list(last.others))  # 'it has a fork and a spoon, both …'
+        for group in reversed(self.named):
+            if group is not besides and relation != "between" and (group.itself.members or group.plural):
+                return group  # 'next to the trays but not touching them'
+        if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
+            return two
+        for focus in self.recent[:4]:
+            for entity in [focus.subject, *focus.others]:
+                if entity is None or entity is besides or entity.role is not Role.THING:
+                    continue
+                if entity.itself.members or entity.plural:
+                    return entity
+            pair = [e for e in [focus.subject, *focus.others[:1]] if e is not None and e.role is Role.THING]
+            if len(pair) == 2 and besides not in pair:
+                return Entity("", members=pair)
+        return None
+
+    def _last_two_subjects(self, besides: Entity | None) -> Entity | None:
+        """Return the subjects of two clauses of one sentence: *the pump is left and the motor right of it*."""
+        last = [f for f in self.recent[:2] if f.subject is not None and f.subject is not besides]
+        if len(last) < 2 or last[0].sentence != last[1].sentence or last[0].others:
+            return None
+        pair = [f.subject.itself for f in reversed(last) if f.subject is not None and f.subject.role is Role.THING]
+        return Entity("", members=pair) if len(set(pair)) == 2 and not any(e.members for e in pair) else None
+
+
+def _is_person(entity: Entity | None) -> bool:
+    return entity is not None and entity.role in (Role.VIEWER, Role.PERSON)
+
+
+def _same_noun(first: str, second: str) -> bool:
+    """Return True if two nouns can name one thing: equal, or the longer one ends in the shorter one."""
+    a, b = first.split(), second.split()
+    short, long = sorted((a, b), key=len)
+    return bool(short) and long[-len(short) :] == short
+
+
+def _can_name(head: str, entity: Entity) -> bool:
+    """Return True if a noun can name an entity again: its own noun, the end of it, or another noun for it."""
+    words = head.split()
+    return any(noun.split()[-len(words) :] == words for noun in (entity.noun, *entity.aliases))
+
+
+def _agreement(entity: Entity, phrase: NounPhrase) -> int:
+    """Return the number of adjectives of a phrase that were used for an entity before."""
+    several = phrase.plural and bool(entity.members or entity.plural)
+    return several + sum((a.dimension, a.word) in entity.adjectives for a in phrase.adjectives)
+
+
+def _conflicting(entity: Entity, phrase: NounPhrase) -> bool:
+    if entity.members:
+        return False
+    for adjective in phrase.adjectives:
+        words = {word for dimension, word in entity.adjectives if dimension == adjective.dimension}
+        if adjective.dimension in ("colour", "material", "position", "rank") and words and adjective.word not in words:
+            return True
+        if adjective.dimension in ("size", "height", "length") and words:
+            pole = POLES.get(adjective.word)
+            if pole is not None and all(POLES.get(word) == -pole for word in words):
+                return True
+    return False
+
+
+def _tag(adjective: Adjective) -> str:
+    pole = POLES.get(adjective.word)
+    return f"{adjective.dimension} {pole}" if pole is not None else f"{adjective.dimension} {adjective.word}"
+
+
+def _opposite_tag(adjective: Adjective) -> str:
+    pole = POLES.get(adjective.word)
+    other = {"left": "right", "right": "left", "far": "near", "near": "far"}.get(adjective.word, "")
+    return f"{adjective.dimension} {-pole}" if pole is not None else f"{adjective.dimension} {other}"

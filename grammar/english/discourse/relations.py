@@ -1,0 +1,358 @@
+"""State where things are: relations between things, and places on the surface."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from deixis.grammar.english.confidence import Guess
+from deixis.grammar.english.discourse.entities import Entity, Role
+from deixis.grammar.english.discourse.mentions import Mentions
+from deixis.grammar.english.discourse.references import OPPOSITES, Region
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tree import Degree, Predicate
+from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
+from deixis.ontology.claims import COLLECTIVE
+
+GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
+
+MAX_WORDS_AFTER = 3
+"""Number of words between a relative clause and the pronoun that stands for its last thing."""
+
+EXACT = (DIRECTIONS - {"in_front", "behind", "above", "below"}) | {"on", "under"}
+"""Relations that have an exact reading: *exactly left of*."""
+
+CONTAINING = frozenset({"contains", "contain", "containing"})
+
+HOLDING = frozenset({"holds", "hold", "holding"})
+
+SUPPORTS = frozenset(
+    [
+        "saucer",
+        "plate",
+        "tray",
+        "mat",
+        "coaster",
+        "napkin",
+        "board",
+        "cloth",
+        "stand",
+        "shelf",
+        "table",
+        "doily",
+        "tile",
+    ]
+)
+
+
+def _whole(entity: Entity) -> Entity:
+    """Return the thing that a part belongs to: *across the rim of the bowl* is across the bowl."""
+    return entity.whole if entity.role is Role.PART and entity.whole is not None else entity
+
+
+class Relations(Mentions):
+    """Reader of predicates that tell a place."""
+
+    def _relate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """State a relation between the subject and the arguments."""
+        relation = predicate.relation
+        if "exactly" in predicate.adverbs and relation in EXACT:
+            relation = f"exactly_{relation}"
+        if relation == "touching" and not {"almost", "nearly"}.isdisjoint(predicate.adverbs):
+            relation = "near"
+        found: list[Entity | Region] = []
+        restricted, end = self.restricted.get(subject, (None, 0))
+        options = [a for a in predicate.arguments if a.joined_by == "or"]
+        if options and relation != "between" and not self.how.alternative:
+            self.alternatives += 1
+            outer = self.how
+            for member in options[0].members:
+                self.how = replace(
+                    outer, alternative=self.alternatives, optional=True, weight=1 / len(options[0].members)
+                )
+                self._relate(subject, replace(predicate, arguments=(member,)), others)
+            self.how = outer
+            return
+        if subject.size == 2 and any(a.pronoun == "other" and a.determiner == "each" for a in predicate.arguments):
+            first, second = subject.leaves()
+            self._pair(first, relation, second, False)
+            self._pair(second, relation, first, False)
+            return
+        for phrase in predicate.arguments:
+            if phrase.pronoun == "one" and not predicate.positive and others and not phrase.adjectives:
+                phrase = replace(phrase, head=others[-1].noun, pronoun=None, determiner="another")  # 'not in the one …'
+            last = others[-1].itself if others and phrase.pronoun == "it" and not phrase.head else None
+            if phrase.pronoun == "it" and not others and self.on_surface == self.how.span and self.references.surface:
+                found.append(self.references.surface)  # 'outside the tray, behind it'
+                continue
+            near = predicate.span[0] >= end and len(self.text[end : predicate.span[0]].split()) <= MAX_WORDS_AFTER
+            if phrase.pronoun == "it" and restricted is not None and not others and near:
+                last = restricted  # 'the comb, which was in front of the mirror, is behind it'
+
+            if last is not None and last.role is Role.THING and not last.members and last is not subject.itself:
+                found.append(last)  # above the saucer and to the left of it
+                continue
+            for member in ([m for m in phrase.members if m.negated] and phrase.members) or (phrase,):
+                if member.negated:
+                    other = self._argument(replace(member, negated=False), relation, subject)
+                    if isinstance(other, Entity):
+                        how = replace(self.how, positive=not self.how.positive)
+                        self._add(relation, (subject,), (other,), how=how)
+                    continue
+                thing = self._argument(member, relation, subject)
+                if thing is not None:
+                    found.append(thing)
+        entities = [_whole(thing) for thing in found if isinstance(thing, Entity)]
+        regions = [thing for thing in found if isinstance(thing, Region)]
+        if any(e.role is Role.SURFACE for e in entities):
+            self.on_surface = self.how.span
+        others += [e for e in entities if e.role is Role.THING]
+        if predicate.arguments and not found:
+            return
+        if relation.startswith("distance") or predicate.measure is not None:
+            self._distance(subject, predicate, entities, others, regions)
+            if relation.startswith("distance"):
+                return
+        if predicate.degree is Degree.COMPARATIVE and relation in ("near", "far"):
+            than = [] if predicate.than is None else [self._argument(predicate.than, relation, subject)]
+            more = [e for e in than if isinstance(e, Entity)]
+            name = "closer" if relation == "near" else "farther"
+            value = " ".join(filter(None, (regions[0].value, regions[0].term))) if regions else None
+            self._add(name, (subject,), tuple(entities + more), value=value)
+            return
+        if predicate.degree is Degree.SUPERLATIVE and relation in ("near", "far"):
+            self._add("nearest" if relation == "near" else "farthest", (subject,), tuple(entities))
+            return
+        if regions and not entities:
+            self._at_region(subject, relation, regions[0])
+            return
+        if relation == "between":
+            self._between(subject, entities)
+            return
+        single = subject.size == 1 and not subject.plural and not entities
+        if single and relation in ("near_each_other", "parallel_each_other", "nested"):
+            return
+        if relation in COLLECTIVE and not (relation == "stacked" and entities):
+            if subject.itself.members:
+                subject.itself.aliases.add({"stacked": "stack"}.get(relation, relation))
+                self.references.renamed.append(subject.itself)  # later 'the row'
+            value = predicate.part if relation == "row" else None
+            if relation == "stacked" and "inside" in self.text[predicate.span[0] : predicate.span[1]]:
+                relation = "nested"
+            self._add(relation, tuple(dict.fromkeys([subject, *entities])), (), value=value)
+            return
+        if not entities:
+            if relation in ("pointing", "facing") and (predicate.part or predicate.value):
+                self._add(
+                    relation,
+                    (subject,),
+                    (),
+                    value=predicate.part or (predicate.value.word if predicate.value is not None else None),
+                )
+            return
+        for other in entities:
+            self._pair(subject, relation, other, predicate.reversed)
+
+    def _pair(self, subject: Entity, relation: str, other: Entity, swapped: bool) -> None:
+        same_group = subject.itself.group is not None and subject.itself.group is other.itself.group
+        if other is subject or (same_group and relation == "inside"):
+            return
+        if other.role is Role.ABSTRACT:
+            return
+        if other.role is Role.VIEWER or other.role is Role.PERSON:
+            self._add(relation, (subject,), (), value=other.noun)
+        elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
+            if subject.role is not Role.SURFACE and relation in ("on", "inside"):
+                self._add("on", (subject,), ())
+                if not self.how.positive and not swapped:
+                    self._is_not_here(subject)
+            elif subject.role is not Role.SURFACE and relation in ("in_front", "behind") and self._within(relation):
+                self._add("part", (subject,), (), value="far" if relation == "behind" else "near")
+            elif subject.role is not Role.SURFACE and not swapped:
+                self._add(relation, (subject,), (), value=other.noun)
+        elif (
+            relation in ("in_front", "behind") and last_word(other.noun) in VESSELS | HOLDERS and self._within(relation)
+        ):
+            self._add("part", (subject,), (other,), value="back" if relation == "behind" else "front")
+        elif other.role is Role.SURROUNDING and relation in (
+            "pointing",
+            "facing",
+            "leaning",
+            "inside",
+            "against",
+            "under",
+        ):
+            self._add(relation, (subject,), (), value=other.noun)
+        elif self._holds_substance(*((other, subject) if swapped else (subject, other)), relation):
+            return
+        elif swapped:
+            self._add(relation, (other,), (subject,))
+        else:
+            self._add(relation, (subject,), (other,))
+
+    def _holds_substance(self, content: Entity, vessel: Entity, relation: str) -> bool:
+        """Read *the tea is in the jar* as the contents of the jar; the words for the tea then mean the jar as well."""
+        if relation != "inside" or content.noun not in SUBSTANCES or content.itself is vessel.itself:
+            return False
+        if last_word(vessel.noun) not in VESSELS or vessel.itself.members or not self.how.positive:
+            return False
+        self._add("contents", (vessel,), (), value=content.noun)
+        if content.same_as is None and not content.members:
+            if (
+                len([d for d in self.drafts if content in (*d.subjects, *d.arguments)]) > 0
+                or content.born < self.how.sentence
+            ):
+                self._identify(vessel, content)
+            else:
+                self._identify(content, vessel)
+        return True
+
+    def _between(self, subject: Entity, entities: list[Entity]) -> None:
+        if len(entities) == 1 and not entities[0].itself.members and entities[0].plural:
+            entities[0].itself.split(2)
+        ends = [e for e in entities if e.role in (Role.THING, Role.SURROUNDING)]
+        if ends and (len(ends) > 1 or ends[0].size > 1):
+            self._add("between", (subject,), tuple(ends))
+
+    def _distance(
+        self, subject: Entity, predicate: Predicate, entities: list[Entity], others: list[Entity], regions: list[Region]
+    ) -> None:
+        measure = predicate.measure
+        ends = entities or others[-1:]
+        name_of_bound = {"<": "distance_less", ">": "distance_more"}
+        if measure is not None and regions and not entities and predicate.relation.startswith("distance"):
+            region = regions[0]
+            self._add(
+                name_of_bound.get(measure.bound or "", "distance"), (subject,),
+                () if region.of is None else (region.of,), metres=measure.metres,
+                value=" ".join(filter(None, (region.value, region.term))),
+            )  # fmt: skip
+            return
+        if measure is not None and entities and entities[-1].role is Role.SURROUNDING:
+            name = name_of_bound.get(measure.bound or "", "distance")
+            self._add(name, (subject,), (), value=entities[-1].noun, metres=measure.metres)
+            return
+        if measure is not None and entities and entities[-1].role is Role.SURFACE:
+            name = name_of_bound.get(measure.bound or "", "distance")
+            self._add(name, (subject,), (), value=entities[-1].noun, metres=measure.metres)
+            return
+        if measure is None or not ends or ends[-1].role is not Role.THING:
+            return
+        name = {"<": "distance_less", ">": "distance_more"}.get(measure.bound or "", "distance")
+        self._add(name, (subject,), tuple(ends[-1:]), metres=measure.metres)
+
+    def _at_region(self, subject: Entity, relation: str, region: Region) -> None:
+        arguments = () if region.of is None else (region.of,)
+        if relation == "parallel":
+            self._add("parallel", (subject,), arguments, value=" ".join(filter(None, (region.value, region.term))))
+        elif relation in ("against", "touching", "leaning") and region.of is not None and region.of.role is Role.THING:
+            self._pair(subject, relation, region.of, False)
+        elif relation in ("on", "inside", "near", "next_to", "at", "along", "touching", "against", "aligned"):
+            self._add(region.term, (subject,), arguments, value=region.value)
+        elif region.of is not None and region.of.role is Role.THING:
+            self._pair(subject, relation, region.of, False)
+        elif region.of is None:
+            self._add(relation, (subject,), (), value=" ".join(filter(None, (region.value, region.term))))
+
+    def _place(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """State a place on the surface or on an object: a corner, an edge, the middle."""
+        if predicate.reversed:  # 'a towel with a rest on its near edge'
+            for phrase in predicate.arguments:
+                held = self._introduce(phrase, predicate.relation, subject)
+                if held is not None and held.role is Role.THING:
+                    of = () if subject.role is Role.SURFACE else (subject,)
+                    self._add(predicate.relation, (held,), of, value=predicate.part)
+            return
+        if subject.role is Role.SURFACE:
+            return
+        arguments: list[Entity] = []
+        for phrase in predicate.arguments:
+            found = self._argument(phrase, predicate.relation, subject)
+            if isinstance(found, Region):
+                if found.term == "edge" and predicate.relation == "middle":
+                    self._add("edge", (subject,), (), value=found.value)
+                    self._add("middle", (subject,), (), value=f"{found.value or ''} edge".strip())
+                    self.edge = found.value
+                return
+            if found is not None and found.role is Role.THING:
+                arguments.append(found)
+        if not arguments and predicate.relation in ("end", "edge", "side", "corner") and predicate.part:
+            before = [
+                d for d in self.drafts if d.how.sentence == self.how.sentence and d.relation == predicate.relation
+            ]
+            if before and before[-1].value != predicate.part and subject not in before[-1].subjects:
+                arguments = list(before[-1].arguments)  # 'at the left end of the rail … and at the right end'
+        if predicate.relation == "edge":
+            self.edge = predicate.part
+        others += arguments
+        part = predicate.part
+        if part in ("either", "each", "both"):
+            part = None
+        if predicate.relation in ("end", "side") and subject.size == 2 and self._at_each(predicate):
+            for leaf, side in zip(subject.leaves(), ("left", "right"), strict=True):
+                self._add(predicate.relation, (leaf,), tuple(arguments), value=side)
+            return
+        self._add(predicate.relation, (subject,), tuple(arguments), value=part)
+
+    def _on_top(self, subject: Entity) -> None:
+        """Read *on top*: of the last object, or the farthest one of a line that the subject is a member of."""
+        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        if last is None or last.role is not Role.THING:
+            return
+        rest = [leaf for leaf in last.leaves() if leaf is not subject.itself]
+        if len(rest) < last.size:
+            for other in rest:
+                self._pair(subject, "top", other, False)
+        else:
+            self._pair(subject, "on", last, False)
+
+    def _bare_direction(self, subject: Entity, predicate: Predicate) -> None:
+        last = next((f.subject for f in self.references.recent if f.subject is not subject), None)
+        if (
+            predicate.part is None
+            and last is not None
+            and last.role is Role.THING
+            and self.how.positive
+            and (predicate.relation not in ("near", "far"))
+            and not GROUNDS.search(self.text[slice(*predicate.span)])
+        ):
+            before = next(f for f in self.references.recent if f.subject is not subject)
+            if before.others and OPPOSITES.get(before.relation or "") == predicate.relation:
+                last = before.others[0]  # 'the spoon to the right of the plate, the fork to the left'
+            self.how = self._guessed(Guess.OF_THE_LAST)
+            self._pair(subject, predicate.relation, last, False)
+            if predicate.measure is not None and last.role is Role.THING:
+                self._add("distance", (subject,), (last,), metres=predicate.measure.metres)
+            return
+        value = {"in_front": "near", "behind": "far"}.get(predicate.relation, predicate.part or predicate.relation)
+        if predicate.relation in ("in_front", "behind") and not self.how.positive:
+            return
+        value = value.replace("_", " ")
+        if value in ("near", "far", "side") or predicate.relation in DIRECTIONS:
+            self._add("part", (subject,), (), value=predicate.relation if value == "side" else value)
+
+    def _hold(self, subject: Entity, held: Entity, words: list[str]) -> None:
+        """State what a support or a vessel holds as on or inside it; what another thing is with is near it."""
+        noun = last_word(subject.noun)
+        if subject.role is Role.SURFACE or (noun in SUPPORTS | SURFACES and CONTAINING.isdisjoint(words)):
+            self._pair(held, "on", subject, False)
+        elif not CONTAINING.isdisjoint(words) or (noun in VESSELS | HOLDERS and not HOLDING.isdisjoint(words)):
+            self._pair(held, "inside", subject, False)
+        elif not {"with", "without"}.isdisjoint(words):  # what a thing has may be a part of it
+            self._add("near", (held,), (subject,), how=self._guessed(Guess.ACCOMPANIED))
+
+    def _is_not_here(self, subject: Entity) -> None:
+        """Take a thing that is not on the surface, and is said to be nowhere else, as absent."""
+        plain = not (self.how.condition or self.how.past or self.how.uncertain or self.how.optional)
+        entity = subject.itself
+        placed = any(entity in d.subjects and d.arguments and d.how.positive and not d.how.past for d in self.drafts)
+        if plain and not placed and not entity.members and entity.role is Role.THING:
+            entity.absent = True
+            self._add("count", (entity,), (), value="0", how=replace(self.how, positive=True))
+
+    def _found_elsewhere(self, entity: Entity) -> None:
+        """Take back that a thing is absent: *it isn't here, it is in the trunk*."""
+        entity.absent = False
+        self.drafts = [
+            d for d in self.drafts if not (d.relation == "count" and d.value == "0" and entity in d.subjects)
+        ]

@@ -1,0 +1,274 @@
+"""State what each predicate says of its subject: a place, a property, contents, an order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.discourse.entities import Entity, Role, plain_noun
+from deixis.grammar.english.discourse.mentions import SUPERLATIVES
+from deixis.grammar.english.discourse.references import POLES
+from deixis.grammar.english.discourse.relations import CONTAINING, HOLDING, SUPPORTS, Relations
+from deixis.grammar.english.discourse.surfaces import DIRECTIONS
+from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
+from deixis.grammar.english.vocabulary.nouns import (
+    GAPS,
+    GENERAL,
+    HOLDERS,
+    PARTS,
+    SUBSTANCES,
+    SURFACES,
+    VESSELS,
+    VIEWER,
+    VIEWER_WORDS,
+    last_word,
+)
+from deixis.ontology.claims import PLACES
+
+UNARY = frozenset(
+    [
+        "upside_down",
+        "empty",
+        "open",
+        "closed",
+        "colour",
+        "size",
+        "shape",
+        "material",
+        "state",
+        "height",
+        "length",
+        "width",
+        "thickness",
+    ]
+)
+
+NOT_STATES = frozenset(["need", "turn", "roll", "lay", "put", "place", "set", "leave", "open", "water"])
+
+
+class Statements(Relations):
+    """Reader of predicates."""
+
+    def _predicate(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        relation = predicate.relation
+        part_said = predicate.subject_part.head if predicate.subject_part is not None else ""
+        self.part = last_word(subject.noun if subject.role is Role.PART else part_said)
+        handler = getattr(self, f"_say_{relation}", None)
+        if subject.itself.absent and predicate.arguments and self.how.positive and not self.how.past:
+            self._found_elsewhere(subject.itself)
+        if subject.role is Role.PART and subject.whole is not None:
+            if not predicate.arguments and relation in ("left", "right"):  # its handle to the right
+                self._add("pointing", (subject.whole,), (), value=relation)
+                return
+            lies = relation in DIRECTIONS or relation in ("on", "under", "inside")
+            if relation in PLACES or (not predicate.arguments and lies):
+                return  # said of the part alone: 'the rounded edge is at the top'
+            if relation == "upside_down":
+                return  # the label, and not the bottle
+            subject = subject.whole
+        if subject.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT) or subject.noun in GAPS:
+            return
+        if predicate.subject_part is not None and " " in predicate.subject_part.head:
+            owner, _, part = predicate.subject_part.head.rpartition(" ")
+            if part in PARTS:  # 'with the knife blade facing the plate'
+                named = self.references.earlier(NounPhrase(predicate.subject_part.span, owner, "the"))
+                subject = named or subject
+        if predicate.subject_part is not None and relation not in ("pointing", "facing", "open", "closed", "parallel"):
+            return  # said of a part: 'whose stick is in the pot'
+        if handler is not None:
+            handler(subject, predicate, others)
+        elif self._is_seen_from_the_viewer(predicate):
+            nearer = replace(predicate, relation="bottom" if relation == "near" else "top", degree=Degree.PLAIN)
+            self._relate(subject, replace(nearer, arguments=(predicate.than,), than=None), others)  # type: ignore[arg-type]
+        elif relation in UNARY or (predicate.value is not None and not predicate.arguments and not predicate.part):
+            self._property(subject, predicate)
+        elif relation in PLACES:
+            self._place(subject, predicate, others)
+        elif not predicate.arguments and relation == "inside" and predicate.span[0] == self.how.span[0]:
+            self._bare_direction(subject, predicate)  # 'inside are my earrings'
+        elif not predicate.arguments and relation == "on" and not predicate.part:
+            if "top" in self.text[slice(*predicate.span)].casefold():
+                self._on_top(subject)
+        elif not predicate.arguments and (relation in DIRECTIONS or relation in ("near", "far", "around")):
+            self._bare_direction(subject, predicate)
+        else:
+            self._relate(subject, predicate, others)
+
+    def _is_seen_from_the_viewer(self, predicate: Predicate) -> bool:
+        """Return True for *nearer to you than X* and *farther than X*, which compare along the line of sight."""
+        return (
+            predicate.relation in ("near", "far")
+            and predicate.degree is Degree.COMPARATIVE
+            and predicate.than is not None
+            and all(a.pronoun in VIEWER_WORDS or last_word(a.head) == VIEWER for a in predicate.arguments)
+        )
+
+    def _property(self, subject: Entity, predicate: Predicate) -> None:
+        value = predicate.value.word if predicate.value is not None else None
+        relation = predicate.relation
+        if predicate.degree is Degree.SUPERLATIVE and predicate.value is not None:
+            if subject.itself.members:
+                return  # 'the smallest' of them is one of them
+            name = SUPERLATIVES.get((predicate.value.dimension, POLES.get(predicate.value.word, 0)))
+            if name is not None:
+                self._add(name, (subject,), ())
+            return
+        if relation in ("colour", "material", "shape", "size") and value is not None and self.how.positive:
+            for leaf in subject.leaves():
+                leaf.adjectives.add((relation, value))
+        if value in ("nested", "nest", "stacked", "stack") and (subject.itself.members or subject.plural):
+            relation, value = ("nested" if value.startswith("nest") else "stacked"), None
+        elif relation in ("upside_down", "empty", "open", "closed"):
+            value = None
+        elif value is None or relation == "other" or value in NOT_STATES:
+            return
+        self._add(relation, (subject,), (), value=value)
+
+    def _say_one_each(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        pass
+
+    def _say_there(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        if self.how.positive or self.how.past:
+            return
+        for leaf in subject.leaves():
+            leaf.absent = True
+            self._add("count", (leaf,), (), value="0", how=replace(self.how, positive=True))
+
+    def _say_follows(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read *followed by the probe*: it is farther on in the direction in which the first was placed."""
+        last = next((d for d in reversed(self.drafts) if subject in d.subjects and d.relation != "count"), None)
+        sides = {"left", "right"} & {last.relation, *(last.value or "").split()} if last is not None else set()
+        ordered = self.order is not None or (last is not None and last.relation == "part")
+        relation = "right" if ordered and "left" in sides else "left" if ordered and "right" in sides else None
+        relation = relation or (last.relation if last is not None and last.relation in ("left", "right") else "next_to")
+        if last is not None and last.relation in ("on", "inside", "above", "under"):
+            return  # 'on the gravel comes moss, followed by charcoal' tells an order in time
+        for phrase in predicate.arguments:
+            for member in phrase.members or (phrase,):
+                following = self._introduce(member, "right", subject)
+                if following is not None:
+                    self._pair(following, relation, subject, False)
+                    others.append(following)
+
+    def _say_kind(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read *it is the tallest*, *the third is the shortest of them*, *it is a red cup*."""
+        for phrase in predicate.arguments:
+            for adjective in phrase.adjectives:
+                name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
+                if adjective.degree is Degree.SUPERLATIVE and name is not None:
+                    group = None if phrase.of is None else self.references.find(phrase.of, None, subject)
+                    rest = [
+                        leaf for leaf in (group.leaves() if group is not None else ()) if leaf is not subject.itself
+                    ]
+                    self._add(name, (subject,), tuple(rest))
+                elif adjective.degree is Degree.SUPERLATIVE and adjective.word in ("left", "right"):
+                    self._add(f"{adjective.word}most", (subject,), ())
+                elif adjective.dimension == "rank" and adjective.rank is not None and phrase.head not in GENERAL:
+                    self._add("ordinal", (subject,), (), value=f"{adjective.rank} from left")
+                elif adjective.dimension in ("colour", "size", "material", "shape") and phrase.head:
+                    self._add(adjective.dimension, (subject,), (), value=adjective.word)
+            if phrase.head and phrase.head not in GENERAL and phrase.determiner in ("a", "an"):
+                subject.itself.aliases.add(phrase.head)
+                self.references.renamed.append(subject.itself)
+                subject.mention(self.references.words(phrase))
+            if (
+                phrase.head
+                and phrase.head not in GENERAL
+                and not phrase.adjectives
+                and phrase.determiner in ("a", "an")
+            ):
+                self._add("kind", (subject,), (), value=plain_noun(phrase.head))
+            if phrase.predicates:
+                self._say(subject, phrase.predicates, phrase, focus=False)
+
+    def _say_ordinal(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        if predicate.value is not None and predicate.value.rank is not None:
+            group = subject.itself.group
+            rest = () if group is None else tuple(leaf for leaf in group.leaves() if leaf is not subject.itself)
+            value = f"{predicate.value.rank} from {predicate.part or 'left'}"
+            self._add("ordinal", (subject,), rest, value=value)
+
+    def _say_with(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        """Read what a thing has: contents, a part in some state, or another thing at it."""
+        for phrase in predicate.arguments:
+            if not predicate.positive:
+                continue  # without the cup on the saucer
+            if phrase.pronoun in ("none", "nothing") or phrase.determiner == "no":
+                for thing in self.shared[1] if self.shared is not None else ():
+                    self._add(self.shared[0], (subject,), (thing,), how=replace(self.how, positive=False))  # type: ignore[index]
+            elif phrase.owner is not None and not phrase.head and self.shared is not None:
+                thing = Entity(self.shared[1][0].noun, born=self.how.sentence)
+                thing.mention(self._words(phrase))
+                self.references.entities.append(thing)
+                self.shared[1].append(thing)
+                self._add(self.shared[0], (subject,), (thing,))
+            elif phrase.head in SUBSTANCES or (
+                last_word(subject.noun) in VESSELS and phrase.head and phrase.determiner is None and not phrase.plural
+                and phrase.owner is None and not phrase.predicates and phrase.count is None
+            ):  # fmt: skip
+                self._add("contents", (subject,), (), value=phrase.head)
+            elif last_word(phrase.head) in PARTS or phrase.head == "glass":
+                states = [a.word for a in phrase.adjectives if a.dimension == "state"]
+                if states:
+                    self._add("state", (subject,), (), value=f"{states[0]} {phrase.head}")
+            elif phrase.head:
+                phrase = self._placed_on(phrase, subject)
+                held = self._introduce(phrase, "with", subject)
+                part = (
+                    phrase.plural
+                    and phrase.determiner is None
+                    and phrase.count is None
+                    and predicate.relation == "with"
+                )
+                vague = part and last_word(subject.noun) not in SUPPORTS | SURFACES | VESSELS | HOLDERS
+                if held is not None and held.role is Role.THING:
+                    others.append(held)
+                if held is not None and held.role is Role.THING and not phrase.predicates and not vague:
+                    self._hold(subject, held, self._words_of_clause())
+
+    def _words_of_clause(self) -> list[str]:
+        """Return the words of the clause; those of the sentence if the clause leaves out the verb of the one before."""
+        words = self.text[slice(*self.how.span)].casefold().split()
+        if {"with", "has", "have", "having", *CONTAINING, *HOLDING}.isdisjoint(words):
+            return self.text[self.references.start : self.end].casefold().split()
+        return words
+
+    def _placed_on(self, phrase: NounPhrase, subject: Entity) -> NounPhrase:
+        """Return *a lamp at each end*, which a thing has, with the thing as what the ends are of."""
+        if subject.role is not Role.THING or not phrase.predicates:
+            return phrase
+        whole = NounPhrase(phrase.span, subject.noun, "the")
+        made = []
+        for predicate in phrase.predicates:
+            own = [a for a in predicate.arguments if a.pronoun == "it"]
+            if (
+                predicate.relation in PLACES | {"each_side", "left", "right"}
+                and (own or not predicate.arguments)
+                and (predicate.relation in PLACES | {"each_side"} or own)
+            ):
+                if self._at_each(predicate) and phrase.count is None and not phrase.plural:
+                    phrase = replace(phrase, count=2, determiner=None, plural=True)
+                predicate = replace(predicate, arguments=(whole,))
+            made.append(predicate)
+        return replace(phrase, predicates=tuple(made))
+
+    def _say_leftmost(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        self._add("leftmost", (subject,), ())
+
+    def _say_share(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        for phrase in predicate.arguments:
+            thing = self._introduce(phrase, None, subject)
+            if thing is not None:
+                relation = "inside" if last_word(thing.noun) in VESSELS - SUPPORTS else "on"
+                self.shared = (relation, [thing])
+                self._add(relation, (subject,), (thing,))
+
+    def _say_parallel(self, subject: Entity, predicate: Predicate, others: list[Entity]) -> None:
+        for phrase in predicate.arguments:
+            if phrase.pronoun == "it" and self.edge is not None:
+                self._add("parallel", (subject,), (), value=f"{self.edge} edge")
+                return
+            region = self.references.region(phrase)
+            if region is not None and region.value is None and region.term == "edge" and self.edge is not None:
+                self._add("parallel", (subject,), (), value=f"{self.edge} edge")
+                return
+        self._relate(subject, predicate, others)

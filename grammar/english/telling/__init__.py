@@ -1,0 +1,1 @@
+"""Facts as English sentences, and paraphrases of what was read."""

@@ -1,0 +1,1 @@
+"""Words that the reader of English knows: closed classes, relation words, adjectives, verbs, special nouns."""

@@ -1,0 +1,206 @@
+"""Verbs with their forms, by what they tell: a posture, an action, a relation, a report."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+from deixis.grammar.english.vocabulary.tables import table, word_set
+
+# Verbs: lemma: third person, past, participle, -ing form (regular ones are made).
+_VERBS = """
+posture: stand stands stood stood standing, lie lies lay lain lying, sit sits sat sat sitting, lay lays laid laid laying
+posture: hang hangs hung hung hanging, rest, go goes went gone going, belong, set sets set set setting
+posture: place, put puts put put putting, position, locate, situate, mount
+posture: attach, push, tuck, pull, install, fix, build
+posture: arrange, find finds found found finding, keep keeps kept kept keeping, leave leaves left left leaving, prop
+posture: store, bury buries buried buried burying, stick sticks stuck stuck sticking, insert, seat, stay, remain, float
+posture: fit, present, happen, come comes came come coming, stack
+posture: pile, line, perch, house, hide hides hid hidden hiding
+posture: label, use, see sees saw seen seeing, plug, nestle, nest, wedge
+posture: squeeze, drape, throw throws threw thrown throwing, sprinkle, pour, spread, fold, roll, roll, roost
+posture: extend, run runs ran run running, start, begin begins began begun beginning, end, look, appear, seem, occur
+posture: shove, jam, press, center, centre, space, scatter, group, fasten, connect, link, tie, drop, serve, slide, hook
+posture: suspend, surround, cover, associate, align, angle, pair, connect, join, leave, turn, wall-mount, embed, display
+posture: base, raise, lift, tie
+posture: affix, hinge, anchor, glue, screw, bolt, secure
+posture: nail, tape, strap, wrap, lift, drag, raise, build builds built built building
+posture: fall falls fell fallen falling
+posture: pin, slot, lock, recess, lodge, sandwich, crowd, cram, carry, tip, shelve, park
+lean: lean leans leant leant leaning, prop, lean
+face: face, stare, gaze, peer, view
+point: point, aim, direct, open
+transitive: hold holds held held holding, contain, support, touch, cover, have has had had having, share, include
+transitive: show shows shown shown showing, carry carries carried carried carrying, surround, block, flank, feature
+transitive: overlook, border, abut, adjoin, wear wears wore worn wearing, bear bears bore borne bearing, display, divide
+transitive: separate, own, resemble, match matches matched matched matching, use, meet meets met met meeting
+transitive: overlap, hug, intersect, enclose
+transitive: serve, form, make makes made made making, occupy occupies occupied occupied occupying
+other: read reads read read reading, need, allow, mean, move, change, water
+other: start, help, look, walk, enter, approach, turn
+other: come comes came come coming, want, like, say says said said saying, think thinks thought thought thinking, try
+other: eat eats ate eaten eating, drink drinks drank drunk drinking, write writes wrote written writing, wash, let, take
+other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
+other: lose loses lost lost losing, sell sells sold sold selling, buy buys bought bought buying
+other: steal steals stole stolen stealing, forget forgets forgot forgotten forgetting, send sends sent sent sending
+other: follow, shift, transfer, relocate, return
+other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, notice
+other: see sees seen seen seeing
+other: ignore, disregard, skip, exclude
+other: choose chooses chose chosen choosing, find, select, pick, locate, identify, click, get gets got got getting, grab
+other: spot, hit hits hit hit hitting, search, situate
+other: balance, wrap, slide slides slid slid sliding, bring brings brought brought bringing
+posture: sleep sleeps slept slept sleeping, poke, peek, peep, dangle, sprawl, curl, coil, snake, loom, tower, doze
+posture: kneel kneels knelt knelt kneeling, crouch, squat, recline, droop, sag, teeter, soak, dry, cool, gather
+posture: gleam, glow, glint, glitter, sparkle, shimmer, spill, stretch, hunch, cluster, bob, totter
+posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range, reside, protrude, balance
+posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
+posture: travel, trail, dot, ladle, step
+other: replace, provide, require, protect, prevent, receive, create, explain, reduce, avoid, knock
+other: destroy, believe, weigh, bake, allow
+other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
+posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
+transitive: encircle, straddle
+other: lead leads led led leading, separate, shine shines shone shone shining, block, belong, protrude, jut, stick, fill
+"""
+
+REPORTS = word_set(
+    "states claims reports says insists maintains asserts swears testifies stated claimed reported said insisted"
+    " maintained asserted swore testified alleges alleged"
+)
+"""Verbs of persons who tell something that need not be so."""
+
+SAYING = word_set(
+    "swore swears says said claims claimed insists insisted believes thinks thought reckons"
+    " maintains suspects guesses assumes supposes argues"
+)
+"""Such verbs after which *that* can be left out: *the butler swore it hung there*."""
+
+TRANSITIVE_RELATIONS = {
+    "hold": ("with", False),
+    "contain": ("inside", True),
+    "support": ("on", True),
+    "touch": ("touching", False),
+    "abut": ("touching", False),
+    "adjoin": ("next_to", False),
+    "border": ("next_to", False),
+    "hug": ("against", False),
+    "cover": ("on", False),
+    "have": ("with", False),
+    "include": ("with", False),
+    "feature": ("with", False),
+    "carry": ("on", True),
+    "bear": ("with", False),
+    "show": ("with", False),
+    "display": ("with", False),
+    "wear": ("with", False),
+    "surround": ("around", False),
+    "encircle": ("around", False),
+    "straddle": ("across", False),
+    "occupy": ("inside", False),
+    "fill": ("inside", False),
+    "enclose": ("around", False),
+    "flank": ("each_side", False),
+    "block": ("in_front", False),
+    "overlook": ("facing", False),
+    "face": ("facing", False),
+    "divide": ("between", False),
+    "separate": ("between", False),
+    "share": ("share", False),
+}
+"""Relation of a transitive verb between its subject and its object, and whether they change places."""
+
+FIND_VERBS = word_set(
+    "choose find select pick locate identify click want take use get grab hit lift spot point search chose need"
+)
+
+PUT_VERBS = word_set(
+    "put place set lay position keep leave stand arrange hang stack lean rest move slide push add drop insert store"
+    " line fold roll turn center centre align tuck mount attach install fix plug bring stick spread"
+    " surround situate locate seat nest wrap pile prop start finish balance"
+    " plant heap pour scatter screw bolt glue nail tape strap sprinkle drizzle spoon load thread drape lower raise pin"
+    " slot hook suspend fasten secure connect press wedge nestle space clip clamp tip park sit lodge sandwich group"
+    " tie shelve stow bury hide cram slip pack feed affix anchor angle straddle"
+    " cover top fill flank tilt swing pull lift drag scoop ladle fit float dot fan"
+)
+
+NAMED_LIKE_THINGS = word_set(
+    "plant heap screw bolt glue nail tape strap spoon load thread pin slot hook press wedge clip clamp tip park group"
+    " tie pack feed anchor angle top lower fit dot fill float cover position space spread stick stack pile line drop"
+    " center centre turn roll fold fan prop nest seat store rest stand set place mount slide bring"
+)
+"""Commands whose verb is a noun as well: *screw the bracket to it* and *screw holes*."""
+
+FACE_VERBS = frozenset(
+    {
+        "staring",
+        "stare",
+        "gazing",
+        "facing",
+        "looking",
+        "viewing",
+        "face",
+        "look",
+        "view",
+        "turn",
+        "turning",
+        "faced",
+        "looked",
+    }
+)
+
+ENTER_VERBS = frozenset(
+    {"walking", "entering", "coming", "walk", "enter", "come", "approach", "approaching", "step", "go", "stepping"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class VerbForm:
+    """One form of a verb: ``form`` is ``base``, ``s``, ``past``, ``participle`` (also past) or ``ing``."""
+
+    lemma: str
+    kind: str
+    form: str
+
+
+@cache
+def verb_forms() -> dict[str, VerbForm]:
+    """Return the verbs by their forms; the first entry of a form counts."""
+    found: dict[str, VerbForm] = {}
+    for kind, entries in table(_VERBS).items():
+        for entry in entries:
+            parts = entry.split()
+            lemma = parts[0]
+            forms: dict[str, str] = dict(zip(("s", "past", "participle", "ing"), parts[1:], strict=False))
+            for form, regular in (("base", lemma), *_regular(lemma).items()):
+                if lemma in _ONLY_PARTICIPLES and form in ("base", "s"):
+                    continue
+                word = forms.get(form, regular) if form != "base" else lemma
+                found.setdefault(word, VerbForm(lemma, kind, form))
+    for lemma in sorted(PUT_VERBS | FIND_VERBS):
+        found.setdefault(lemma, VerbForm(lemma, "posture", "base"))
+    return found
+
+
+_ONLY_PARTICIPLES = word_set(
+    "clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
+    " thread pack feed scoop dot ladle stretch swing"
+)
+"""Verbs whose plain forms are nouns or adjectives more often."""
+
+
+def _regular(lemma: str) -> dict[str, str]:
+    stem = lemma[:-1] if lemma.endswith("e") else lemma
+    doubled = lemma + lemma[-1] if lemma in _DOUBLED else stem
+    y = lemma.endswith("y") and lemma[-2:-1] not in "aeou"
+    return {
+        "s": lemma[:-1] + "ies" if y else lemma + ("es" if lemma.endswith(("s", "sh", "ch", "x", "z", "o")) else "s"),
+        "past": lemma[:-1] + "ied" if y else doubled + "ed",
+        "participle": lemma[:-1] + "ied" if y else doubled + "ed",
+        "ing": doubled + "ing",
+    }
+
+
+_DOUBLED = frozenset({"set", "put", "sit", "run", "stop", "jut", "plug", "prop", "pin", "slot", "jam", "cram", "hug",
+                      "fit", "tip", "drop", "step", "get", "overlap", "abut", "begin", "slip", "clip", "wrap", "sag",
+                      "bob", "strap", "drag", "transfer", "refer"})  # fmt: skip

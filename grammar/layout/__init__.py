@@ -1,0 +1,1 @@
+"""The layout language: its words, parser, error messages and canonical form."""

@@ -1,0 +1,164 @@
+"""The parser of ``layout.lark``, and the lexer for the words of an ontology."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any
+
+from lark import Lark, Token
+from lark.lark import PostLex
+from lark.lexer import Lexer
+
+from deixis.grammar.layout.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN, PHRASE_STARTS
+from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE, Scanner
+from deixis.grammar.layout.tree import TreeBuilder
+from deixis.grammar.layout.words import chains, phrase_pattern
+from deixis.ontology.relation import plain_phrase
+from deixis.ontology.tbox import Ontology
+
+NOTHING = "(?!)"  # pattern that matches nothing: a terminal for which the ontology has no word
+
+
+class NoLexer(Lexer):
+    """Placeholder for lark's lexer: a :class:`Scanner` feeds the parser, so that lark compiles no patterns."""
+
+    def __init__(self, conf: Any) -> None:
+        pass
+
+    def lex(self, lexer_state: Any, parser_state: Any) -> Iterator[Token]:
+        """Raise NotImplementedError: lark never calls it.
+
+        Parameters
+        ----------
+        lexer_state, parser_state
+            States of lark.
+
+        Yields
+        ------
+        Token
+            Nothing.
+
+        Raises
+        ------
+        NotImplementedError
+            Always.
+        """
+        raise NotImplementedError("tokens come from the scanner")
+
+
+class KeepUnusedTerminals(PostLex):
+    """Postprocessor that keeps lark from dropping the terminals that no rule uses."""
+
+    always_accept = TERMINALS_WITHOUT_RULE
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        """Return the tokens unchanged.
+
+        Parameters
+        ----------
+        stream
+            The tokens.
+
+        Yields
+        ------
+        Token
+            A token.
+        """
+        return stream
+
+
+@dataclass(frozen=True)
+class Language:
+    """Lexer and parser for the words of one ontology."""
+
+    lark: Lark
+    scanner: Scanner
+    phrase_starts: frozenset[str]  # words that begin a longer relation phrase: 'upper', 'to', 'in front'
+
+    def reads_as_name(self, text: str) -> bool:
+        """Say whether an unquoted text is read as a name of exactly this spelling, also before a relation.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
+        return plain_phrase(text) not in self.phrase_starts and self.is_name_token(text)
+
+    def is_name_token(self, text: str) -> bool:
+        """Return True if the unquoted text, alone, is one NAME token of this spelling, with blanks as underscores.
+
+        Parameters
+        ----------
+        text
+            The text.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
+        found = list(self.scanner.tokens(text))
+        return len(found) == 1 and found[0].type == "NAME" and str(found[0]) == text.replace(" ", "_")
+
+
+def language_of(ontology: Ontology) -> Language:
+    """Return the language with the words of an ontology; it is cached by these words.
+
+    Parameters
+    ----------
+    ontology
+        The ontology.
+
+    Returns
+    -------
+    Language
+        The language: its lexer and its parser.
+    """
+    return _build(
+        tuple(ontology.relations.by_word),
+        tuple(plain_phrase(hedge) for hedge in ontology.hedges),
+        tuple(chains(ontology)),
+        tuple(word for word in ontology.kinds.words if " and " in word),
+    )
+
+
+@lru_cache(maxsize=8)
+def _build(
+    relations: tuple[str, ...], hedges: tuple[str, ...], chain_heads: tuple[str, ...], compounds: tuple[str, ...]
+) -> Language:
+    patterns = {
+        "CLAIM": CLAIM_PATTERN,
+        "CLAIM_OF": CLAIM_OF_PATTERN,
+        "HAS": HAS_PATTERN,
+        "RELATION": phrase_pattern(relations),
+        "HEDGE": phrase_pattern(hedges) if hedges else NOTHING,
+        "CHAIN": phrase_pattern(chain_heads) + r"[ \t]*:" if chain_heads else NOTHING,
+        "COMPOUND": phrase_pattern(compounds) if compounds else NOTHING,
+    }
+    lark = _parser()
+    scanner = Scanner(lark.terminals, {name: f"(?i:{pattern})" for name, pattern in patterns.items()})
+    split = [phrase.split() for phrase in relations]
+    starts = frozenset(" ".join(words[:end]) for words in split for end in range(1, len(words)))
+    return Language(lark, scanner, starts | PHRASE_STARTS)
+
+
+@cache
+def _parser() -> Lark:
+    """Return the parser of ``layout.lark``, which all ontologies share."""
+    return Lark.open(
+        "layout.lark",
+        rel_to=__file__,
+        parser="lalr",
+        lexer=NoLexer,
+        start="statement",
+        transformer=TreeBuilder(),
+        postlex=KeepUnusedTerminals(),
+    )

@@ -1,0 +1,35 @@
+"""Reading JSON strictly: each mistake comes with its place and with what to do."""
+
+from __future__ import annotations
+
+import pytest
+
+from deixis.errors import DeixisError
+from deixis.ontology.strict_json import parse_json
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"objects": [\n {"id": "a",\n {"id": "b"}]}', "3:2: the '{' at 2:2 is not closed; add '}' before the ','"),
+        ('{"objects": [\n {"id": "a"\n]}', "3:1: the '{' at 2:2 is not closed; add '}' before this ']'"),
+        ('{"min": [0, 1}', "1:14: the '[' at 1:9 is not closed; add ']' before this '}'"),
+        ('{"objects": []', "1:15: the '{' at 1:1 is not closed; add '}' at the end"),
+        ('{"a}": [1, 2', "1:13: the '[' at 1:8 is not closed; add ']' at the end"),
+        ("[1, 2,]", "1:7: remove the ',' before this ']'"),
+        ('{"a": 1,}', "1:9: remove the ',' before this '}'"),
+        ('[{"a": 1} {"a": 2}]', "1:11: a ',' is missing before this"),
+        ('{"a" 1}', "1:6: a ':' is missing between the key and its value"),
+        ("{'a': 1}", '1:2: write strings in double quotes ("), not in single ones'),
+        ('{"a": "b\n"}', "1:9: a string must be closed by '\"' on its own line"),
+        ("[fork]", "1:2: a value is expected here"),
+        (" \n", ": the text is empty"),
+    ],
+    ids=range(13),
+)
+def test_a_mistake_comes_with_what_to_do(text: str, message: str) -> None:
+    place, _, what = message.partition(": ")
+    with pytest.raises(DeixisError) as caught:
+        parse_json(text, "t.json", DeixisError, None)
+    assert place in str(caught.value)
+    assert f"this is not valid JSON: {what}" in str(caught.value)

@@ -1,0 +1,138 @@
+"""Films: where things truly are while a hand moves them, and what the camera sees of them."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from deixis.perception.errors import SimulationError
+from deixis.perception.simulator.films.camera_paths import HeadMotion, Walk
+from deixis.perception.simulator.films.motion import (
+    Bring,
+    Film,
+    Move,
+    PassOver,
+    Rest,
+    TakeAway,
+    film,
+    laying_film,
+)
+from deixis.perception.simulator.films.stories import random_film
+from deixis.perception.simulator.laying import Placement, lay
+
+PLATE = Placement("plate", "dinner plate", 0.0, 0.0, seed=1)
+MUG = Placement("mug", "mug", 0.3, 0.1, seed=2)
+FORK = Placement("fork", "dinner fork", 0.0, 0.0, 0.4, seed=3)
+
+
+def seconds(story: Film, count: int = 200) -> np.ndarray:
+    return np.linspace(0, story.seconds, count)
+
+
+def test_resting_thing_keeps_its_pose() -> None:
+    story = film([PLATE, MUG], [Rest(0.3), Move("mug", -0.3, 0.0, 1.0), Rest(0.3)])
+    poses = [story.poses(at)["plate"] for at in seconds(story)]
+    assert all(np.array_equal(pose, poses[0][0]) and not held for pose, held in poses)
+
+
+def test_moved_thing_ends_at_its_new_place() -> None:
+    story = film([PLATE, MUG], [Move("mug", -0.3, 0.05, 1.0)])
+    before, after = story.poses(0.0)["mug"][0], story.poses(story.seconds)["mug"][0]
+    turn = after[:3, :3] @ before[:3, :3].T
+    assert after[:2, 3] == pytest.approx([-0.3, 0.05])
+    assert np.arctan2(turn[1, 0], turn[0, 0]) == pytest.approx(1.0)
+    assert after[2, 3] == pytest.approx(before[2, 3], abs=1e-6)
+
+
+def test_thing_never_jumps_while_it_is_carried() -> None:
+    story = film([PLATE, MUG], [Rest(0.2), Move("mug", -0.3, 0.05, 1.0), Rest(0.2)])
+    times = seconds(story, 1000)
+    places = np.array([story.poses(at)["mug"][0][:3, 3] for at in times])
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).max() < 1.5 * np.diff(times)[0]
+    assert any(story.poses(at)["mug"][1] for at in times)
+    assert max(places[:, 2]) > places[0, 2] + 0.05
+
+
+def test_carried_thing_takes_its_load_along() -> None:
+    story = film([PLATE, FORK, MUG], [Move("plate", -0.2, 0.1)])
+    before, after = story.poses(0.0), story.poses(story.seconds)
+    first, last = (np.linalg.inv(poses["plate"][0]) @ poses["fork"][0] for poses in (before, after))
+    assert np.allclose(first, last, atol=1e-9)
+    assert np.array_equal(before["mug"][0], after["mug"][0])
+
+
+def test_thing_set_down_on_another_rests_on_it() -> None:
+    story = film([PLATE, MUG], [Move("mug", 0.0, 0.0)])
+    plate, mug = (thing.mesh for thing in story.things)
+    poses = story.poses(story.seconds)
+    bottom = (mug.vertices @ poses["mug"][0][:3, :3].T + poses["mug"][0][:3, 3])[:, 2].min()
+    assert 0.001 < bottom < np.ptp(plate.vertices[:, 2]) + 0.001
+
+
+def test_taken_thing_goes_and_brought_thing_comes() -> None:
+    story = film([PLATE, MUG], [TakeAway("mug"), Bring(FORK), Rest(0.1)])
+    assert set(story.poses(0.0)) == {"plate", "mug"}
+    assert set(story.poses(story.seconds)) == {"plate", "fork"}
+
+
+def test_passing_hand_hides_a_thing_for_two_seconds() -> None:
+    story = film([PLATE, MUG], [Rest(0.2), PassOver(0.25, 0.2), Rest(0.2)])
+    frames = list(story.frames(5, scale=0.3))
+    shown = [frame.things[1].points for frame in frames]
+    hidden = [points < 0.5 * shown[0] for points in shown]
+    assert sum(hidden) >= 9 and not any(frame.things[1].held for frame in frames)
+    assert shown[-1] > 0.9 * shown[0] and frames[-1].hand_points == 0
+
+
+def test_equal_seeds_give_equal_clouds() -> None:
+    stories = [random_film(3, 2, seed=4) for _ in range(2)]
+    one, other = (list(islice(story.frames(2, seed=5, scale=0.25), 8)) for story in stories)
+    assert all(np.array_equal(a.cloud.points, b.cloud.points, equal_nan=True) for a, b in zip(one, other, strict=True))
+    again = next(stories[0].frames(2, seed=6, scale=0.25))
+    assert not np.array_equal(again.cloud.points, one[0].cloud.points, equal_nan=True)
+
+
+def test_true_box_holds_the_points_of_its_thing() -> None:
+    story = film([PLATE, MUG], [Move("mug", -0.3, 0.05, 1.0)], path=HeadMotion(seed=2))
+    for frame in islice(story.frames(3, scale=0.3), 3, 9):
+        cloud = frame.cloud
+        assert cloud.labels is not None
+        for thing in frame.things:
+            points = frame.camera.to_table(cloud.points[cloud.labels == thing.label].astype(float))
+            assert (points >= thing.box[0] - 0.02).all() and (points <= thing.box[1] + 0.02).all()
+
+
+def test_camera_of_a_head_moves_slowly() -> None:
+    story = film([PLATE], [Rest(3.0)], path=HeadMotion(seed=1))
+    eyes = np.array([frame.camera.eye for frame in story.frames(5, scale=0.05)])
+    steps = np.linalg.norm(np.diff(eyes, axis=0), axis=1)
+    assert 0 < steps.max() < 0.05 and np.ptp(eyes, axis=0).max() > 0.01
+
+
+def test_walking_camera_looks_at_one_place_from_one_distance() -> None:
+    camera = film([PLATE], [Rest(1.0)]).camera
+    walk = Walk(np.pi / 2, 4.0, sway=None)
+    ahead = camera.pose[:3, 2]
+    middle = camera.eye - ahead * camera.eye[2] / ahead[2]
+    for at in (0.0, 1.0, 2.5, 4.0, 8.0):
+        walked = walk.moved(camera, at)
+        away = np.linalg.norm(walked.eye - middle)
+        assert walked.eye + away * walked.pose[:3, 2] == pytest.approx(middle, abs=1e-9)
+        assert away == pytest.approx(np.linalg.norm(camera.eye - middle))
+    assert walk.moved(camera, 8.0).pose == pytest.approx(camera.pose)
+
+
+def test_laying_film_ends_with_the_laid_table() -> None:
+    table = lay([PLATE, FORK, MUG])
+    story = laying_film(table, seed=1)
+    for thing in table.things:
+        middle = (thing.mesh.vertices.min(axis=0) + thing.mesh.vertices.max(axis=0)) / 2
+        assert story.poses(story.seconds)[thing.name][0][:3, 3] == pytest.approx(middle)
+
+
+@pytest.mark.parametrize(
+    "action", [Move("jug", 0.0, 0.0), TakeAway("jug"), Bring(MUG), Move("mug", np.nan, 0.0), Rest(-1.0)]
+)
+def test_impossible_action_is_refused(action: Move | TakeAway | Bring | Rest) -> None:
+    with pytest.raises(SimulationError, match=r"at 0\.0 s|placed twice"):
+        film([MUG], [action])
