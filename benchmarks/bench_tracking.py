@@ -13,20 +13,28 @@ rows and columns and compares all of them.
 
 The peer detects all things in a frame of the camera that stands still, and assigns them to the tracks by the Hungarian
 method, with a gate of 15 cm; a track that is not seen for two seconds ends. Detection takes longer than a tenth of a
-second, so that it gets every ``--peer-every``-th frame (5, two frames a second); 0 leaves it out. The tracker of the
-Point Cloud Library is not a peer here: it follows one given cloud at a time, and has neither detection nor identity.
+second, so that it gets every ``--peer-every``-th frame (5, two frames a second); 0 leaves it out. The other peer is the
+particle filter of the Point Cloud Library (Debian: libpcl-dev), with an adaptive number of particles and the settings
+of the library's example. It neither finds things nor notices that they go: it begins to follow each thing when our
+tracker does, with the same points, and gets the points above the table in every frame of the camera that stands still.
+``--no-pcl`` leaves it out.
 """
 
 from __future__ import annotations
 
 import argparse
+import sys
+import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import chain
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from peers import tracking_pcl
 from records import command_line, figure, recorded, share
 
 from deixis.perception.clouds.cloud import PointCloud
@@ -35,6 +43,7 @@ from deixis.perception.simulator.films.camera_paths import CAMERA_PATHS, camera_
 from deixis.perception.simulator.films.motion import FilmedFrame
 from deixis.perception.simulator.films.stories import random_film
 from deixis.perception.tracking.settings import TrackingSettings
+from deixis.perception.tracking.thing import Situation
 from deixis.perception.tracking.tracker import Tracker
 
 THINGS = (1, 2, 4, 8, 12)
@@ -43,6 +52,9 @@ FIRST, NEAR, CLOSE = 0.04, 0.05, 0.01
 
 SETTLING = 1.0
 """Time in seconds from which a thing that lies in view must be tracked."""
+
+LOWEST, HIGHEST = 0.004, 0.5
+"""Heights above the table in metres between which the filters of the library get points."""
 
 Tracks = Mapping[str, NDArray[np.float64]]
 """Middles (3,) of the tracks in the frame of the camera, by id."""
@@ -128,17 +140,34 @@ class Association:
         return {name: place for name, (place, _) in self._tracks.items()}
 
 
-def ours(tracker: Tracker) -> Callable[[PointCloud, float], Tracks]:
-    """Return the tracker as a function that returns tracks in the frame of the camera."""
+def tracks_of(now: Situation) -> Tracks:
+    """Return our tracks in the frame of the camera."""
+    if now.frame is None:
+        return {}
+    back = np.linalg.inv(now.frame)
+    return {thing.id: back[:3, :3] @ thing.centre + back[:3, 3] for thing in now.things}
 
-    def after(cloud: PointCloud, at: float) -> Tracks:
-        now = tracker.update(cloud, at)
+
+class LibraryFilters:
+    """The particle filters of the Point Cloud Library, which begin with the things of our tracker."""
+
+    def __init__(self, filters: tracking_pcl.Filters) -> None:
+        self._filters = filters
+        self._names: list[str] = []
+
+    def __call__(self, cloud: PointCloud, now: Situation) -> tuple[Tracks, float]:
+        """Return the tracks after a frame of which our tracker knows ``now``, and the seconds of processor time."""
         if now.frame is None:
-            return {}
+            return {}, 0.0
         back = np.linalg.inv(now.frame)
-        return {thing.id: back[:3, :3] @ thing.centre + back[:3, 3] for thing in now.things}
-
-    return after
+        for thing in now.things:
+            if thing.id in now.came:
+                points = thing.cloud.points @ back[:3, :3].T + back[:3, 3]
+                self._filters.begin(points, back[:3, :3] @ thing.centre + back[:3, 3])
+                self._names.append(thing.id)
+        heights = cloud.points @ now.frame[2, :3] + now.frame[2, 3]
+        places, seconds = self._filters.follow(cloud.points[(heights > LOWEST) & (heights < HIGHEST)])
+        return dict(zip(self._names, places, strict=True)), seconds
 
 
 def main() -> None:
@@ -150,16 +179,21 @@ def main() -> None:
     parser.add_argument("--scale", type=float, default=1.0, help="factor on the rows and columns of the images")
     parser.add_argument("--cameras", nargs="+", choices=CAMERA_PATHS, default=CAMERA_PATHS, help="paths of the camera")
     parser.add_argument("--peer-every", type=int, default=5, help="frames of which the peer gets one; 0: no peer")
-    with recorded(parser) as arguments:
-        short = argparse.Namespace(actions=1, scale=0.25, peer_every=0)
-        _run(arguments.cameras[-1], 1, 0, short, Score(), Score())  # compiles everything before times are measured
-        peer = Score()
+    parser.add_argument("--no-pcl", action="store_true", help="without the Point Cloud Library")
+    with recorded(parser) as arguments, tempfile.TemporaryDirectory() as folder:
+        program = None if arguments.no_pcl else tracking_pcl.build(Path(folder))
+        if program is None and not arguments.no_pcl:
+            print("the Point Cloud Library is not installed (Debian: libpcl-dev): it was not run", file=sys.stderr)
+        arguments.program = program
+        short = argparse.Namespace(actions=1, scale=0.25, peer_every=0, program=None)
+        _run(arguments.cameras[-1], 1, 0, short, Score(), Score(), Score())  # compiles before times are measured
+        peer, library = Score(), Score()
         for camera in arguments.cameras:
             scores: dict[int, Score] = {}
             for number in range(arguments.films):
                 things, seed = THINGS[number % len(THINGS)], arguments.first + number
                 score = scores.setdefault(things, Score())
-                _run(camera, things, seed, arguments, score, peer if camera == "still" else Score())
+                _run(camera, things, seed, arguments, score, peer, library)
                 print(f"{camera}, film {seed}: {things} things: {_line(score)}", flush=True)
             for things, score in sorted(scores.items()):
                 print(f"{camera}, {things:>2} things: {_line(score)}")
@@ -184,20 +218,30 @@ def main() -> None:
                 figure("identity kept by detection and assignment", peer.kept / peer.frames, "share", peer="scipy")
                 times = float(np.mean(peer.seconds)) / float(np.mean(everything.seconds))
                 figure("time of a frame of detection and assignment", times, "times as long", peer="scipy")
+            if camera == "still" and library.frames:
+                print(f"peer, particle filters of the Point Cloud Library: {_line(library)}")
+                close = float((np.array(library.errors) < CLOSE).mean()) if library.errors else 0.0
+                figure("identity kept by the particle filters", library.kept / library.frames, "share", peer="PCL")
+                figure("error of the particle filters below 1 cm, frames of kept things", close, "share", peer="PCL")
+                times = float(np.mean(library.seconds)) / float(np.mean(everything.seconds))
+                figure("time of a frame of the particle filters", times, "times as long", peer="PCL")
 
 
-def _run(camera: str, things: int, seed: int, arguments: argparse.Namespace, score: Score, peer: Score) -> None:
-    """Track the things of one film, seen by a camera, and add what is found to a score; and the peer to its own."""
-    score.begin()
-    peer.begin()
+def _run(
+    camera: str, things: int, seed: int, arguments: argparse.Namespace, score: Score, peer: Score, library: Score
+) -> None:
+    """Track the things of one film, seen by a camera, and add what is found to a score; and the peers to their own."""
+    for each in (score, peer, library):
+        each.begin()
     association = Association()
     film = random_film(things, arguments.actions, seed, sure_pass=True, path=camera_path(camera, seed))
     every = arguments.peer_every if camera == "still" else 0
-    with Tracker(TrackingSettings(stride=2 if arguments.scale > 0.6 else 1)) as tracker:
-        follow = ours(tracker)
+    settings = TrackingSettings(stride=2 if arguments.scale > 0.6 else 1)
+    with Tracker(settings) as tracker, _filters(arguments.program if camera == "still" else None) as filters:
         for frame in film.frames(10.0, seed, scale=arguments.scale):
             started = time.process_time()
-            tracks = follow(frame.cloud, frame.at)
+            now = tracker.update(frame.cloud, frame.at)
+            tracks = tracks_of(now)
             score.seconds.append(time.process_time() - started)
             score.add(frame, tracks)
             if every and frame.number % every == 0:
@@ -205,6 +249,20 @@ def _run(camera: str, things: int, seed: int, arguments: argparse.Namespace, sco
                 tracks = association(frame.cloud, frame.at)
                 peer.seconds.append(time.process_time() - started)
                 peer.add(frame, tracks)
+            if filters is not None:
+                tracks, seconds = filters(frame.cloud, now)
+                library.seconds.append(seconds)
+                library.add(frame, tracks)
+
+
+@contextmanager
+def _filters(program: Path | None) -> Iterator[LibraryFilters | None]:
+    """Yield new particle filters of the library, or None without its program."""
+    if program is None:
+        yield None
+        return
+    with tracking_pcl.Filters(program) as filters:
+        yield LibraryFilters(filters)
 
 
 def _linear_load(camera: str, scores: Mapping[int, Score]) -> None:
