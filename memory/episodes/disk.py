@@ -32,9 +32,8 @@ from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWr
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked
 from deixis.memory.perceptual.codec import seal, unseal
-from deixis.memory.perceptual.handle import wrap_level_errors
-from deixis.memory.perceptual.layout import mirror
-from deixis.scratch import ScratchFolder, remove_stale
+from deixis.memory.perceptual.handle import copied_for_reading, wrap_level_errors
+from deixis.scratch import ScratchFolder
 
 STORE, TALLY = "store-1", "acknowledged"
 """Folder of the database with the version of its format, and file with the number of the last write."""
@@ -126,14 +125,9 @@ class DiskKeys(Keys):
 
     @classmethod
     def _copied(cls, real: Path, reason: str) -> DiskKeys:
-        """Open a copy of a folder that cannot be written, as LevelDB writes in any folder that it opens."""
+        """Open a copy of a folder that cannot be written."""
         with contextlib.ExitStack() as undo, wrap_level_errors(real):
-            lock = ReaderLock.acquire(real)
-            undo.callback(lock.release)
-            remove_stale()
-            scratch = ScratchFolder()
-            undo.callback(scratch.remove)
-            mirror(real, scratch.path)
+            lock, scratch = copied_for_reading(real, undo)
             tally = os.open(scratch.path / TALLY, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
             undo.callback(os.close, tally)
             db = _opened(scratch.path)

@@ -699,20 +699,38 @@ def _opened(folder: Path, real: Path, create: bool) -> Handle:
 
 
 def _opened_for_reading(real: Path, reason: str) -> Handle:
-    """Open a copy of a folder that cannot be written, as LevelDB writes in any folder that it opens.
-
-    Tables are linked, not copied.
-    """
+    """Open a copy of a folder that cannot be written."""
     with contextlib.ExitStack() as undo:
-        lock = ReaderLock.acquire(real)
-        undo.callback(lock.release)
-        remove_stale()
-        scratch = ScratchFolder()
-        undo.callback(scratch.remove)
-        layout.mirror(real, scratch.path)
+        lock, scratch = copied_for_reading(real, undo)
         handle = _opened_in(real, scratch.path, lock, undo)
     handle.only_read(scratch, reason)
     return handle
+
+
+def copied_for_reading(real: Path, undo: contextlib.ExitStack) -> tuple[ReaderLock, ScratchFolder]:
+    """Copy a folder that cannot be written, as LevelDB writes in any folder that it opens.
+
+    Tables are linked, not copied.
+
+    Parameters
+    ----------
+    real
+        Folder of the database.
+    undo
+        Stack that gets the callbacks which release the lock and remove the copy.
+
+    Returns
+    -------
+    tuple
+        Lock of a reader on the folder, and the copy.
+    """
+    lock = ReaderLock.acquire(real)
+    undo.callback(lock.release)
+    remove_stale()
+    scratch = ScratchFolder()
+    undo.callback(scratch.remove)
+    layout.mirror(real, scratch.path)
+    return lock, scratch
 
 
 def _opened_in(real: Path, where: Path, lock: OwnerLock | ReaderLock, undo: contextlib.ExitStack) -> Handle:
