@@ -113,14 +113,14 @@ def on_tables(count: int, first: int) -> None:
             limits.append(bayes_limit(table))
         words, pairs = (np.mean([getattr(one, name) for one in limits]) for name in ("words", "words_and_pairs"))
         error, sure, precision = calibrated(np.concatenate(probability), np.concatenate(hits))
-        what = f"{facts:g} facts per object, {off:.0%} off"
+        what = f"{facts:g} facts per object, {off:.0%} of the facts wrong"
         mean(f"{what}: share named right", right)
         figure(f"{what}: Bayes limit of the words", words, "share")
         figure(f"{what}: calibration error", error, "share")
         figure(f"{what}: precision from 0.95 on", precision, "share")
         partly = "" if all(one.complete for one in limits) else " (not all maps listed)"
         print(
-            f"{facts:g} facts per object, {off:.0%} off: best map {np.mean(right):.3f} "
+            f"{facts:g} facts per object, {off:.0%} of the facts wrong: best map {np.mean(right):.3f} "
             f"(standard error {np.std(right, ddof=1) / np.sqrt(count):.3f}); limit {words:.3f}, with pairs {pairs:.3f}"
             f"{partly}; calibration error {error:.3f}; {sure} of {12 * count} sure, precision {precision:.3f}",
             flush=True,
