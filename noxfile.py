@@ -9,7 +9,7 @@ nox.options.default_venv_backend = "venv"
 @nox.session(python=["3.11", "3.12"])
 def tests(session: nox.Session) -> None:
     """Run the tests in an environment made from the lock; arguments after `--` go to pytest."""
-    session.install("--require-hashes", "-r", "requirements.lock")
+    session.install("--require-hashes", "--no-deps", "-r", "requirements.lock")
     session.install("--no-deps", "--no-build-isolation", "--editable", ".")
     session.run("python", "-m", "deixis.kernels")
     session.run("python", "-m", "pytest", "-n", "auto", "--dist", "loadfile", *session.posargs)
@@ -18,7 +18,7 @@ def tests(session: nox.Session) -> None:
 @nox.session(python=["3.11", "3.12"])
 def types(session: nox.Session) -> None:
     """Check the types with mypy and pyright in an environment made from the lock."""
-    session.install("--require-hashes", "-r", "requirements.lock")
+    session.install("--require-hashes", "--no-deps", "-r", "requirements.lock")
     session.install("--no-deps", "--no-build-isolation", "--editable", ".")
     session.run("mypy")
     session.run("basedpyright", "--pythonpath", f"{session.bin}/python")
