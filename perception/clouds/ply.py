@@ -90,7 +90,7 @@ def read_header(content: Content) -> PlyHeader:
         If the header is malformed; the message has the line.
     """
     encoding = ""
-    elements: list[Element] = []
+    elements: dict[str, Element] = {}
     for number, line, end in content.header_lines():
         keyword, *words = line.split() or ["comment"]
         where = f"{content.name}:{number}"
@@ -99,18 +99,20 @@ def read_header(content: Content) -> PlyHeader:
         if keyword == "format":
             encoding = _encoding(words, encoding, where)
         elif keyword == "element":
-            elements.append(_element(words, elements, encoding, where))
+            added = _element(words, elements, encoding, where)
+            elements[added.name] = added
         elif keyword == "property":
-            elements[-1:] = [_with_property(words, elements, ORDERS[encoding or "ascii"], where)]
+            widened = _with_property(words, elements, ORDERS[encoding or "ascii"], where)
+            elements[widened.name] = widened
         elif keyword == "end_header":
-            if all(element.name != "vertex" for element in elements):
+            if "vertex" not in elements:
                 raise CloudError(f"{where}: the header has no element 'vertex', so there are no points; add it")
-            for element in elements:
+            for element in elements.values():
                 if element.rows and not element.properties:
                     raise CloudError(
                         f"{where}: the element '{shown(element.name)}' has no property; add one, or take it out"
                     )
-            return PlyHeader(encoding, tuple(elements), end)
+            return PlyHeader(encoding, tuple(elements.values()), end)
         elif number > 1 and keyword not in ("comment", "obj_info"):
             raise CloudError(f"{where}: unknown entry '{shown(keyword)}' in a PLY header; take the line out")
     raise AssertionError("header_lines raises at the end of the file")
@@ -122,19 +124,19 @@ def _encoding(words: list[str], before: str, where: str) -> str:
     return words[0]
 
 
-def _element(words: list[str], before: list[Element], encoding: str, where: str) -> Element:
+def _element(words: list[str], before: dict[str, Element], encoding: str, where: str) -> Element:
     if not encoding:
         raise CloudError(
             f"{where}: the format must come before the first element; add a line such as 'format ascii 1.0'"
         )
     if len(words) != 2 or not re.fullmatch(r"[0-9]{1,15}", words[1]):
         raise CloudError(f"{where}: an element must have a name and a number of rows, such as 'element vertex 8'")
-    if any(element.name == words[0] for element in before):
+    if words[0] in before:
         raise CloudError(f"{where}: the element '{shown(words[0])}' is declared twice; rename one")
     return Element(words[0], int(words[1]), ())
 
 
-def _with_property(words: list[str], elements: list[Element], order: str, where: str) -> Element:
+def _with_property(words: list[str], elements: dict[str, Element], order: str, where: str) -> Element:
     """Return the last element with one more property."""
     if not elements:
         raise CloudError(f"{where}: a property must follow an element; put a line 'element …' before it")
@@ -145,7 +147,7 @@ def _with_property(words: list[str], elements: list[Element], order: str, where:
             f" vertex_indices'); the types are {', '.join(sorted(_TYPES))}"
         )
     dtypes = [np.dtype(f"{order}{kind}") for kind in types]
-    last = elements[-1]
+    last = next(reversed(elements.values()))
     if any(column.name == words[-1] for column in last.properties):
         raise CloudError(
             f"{where}: the property '{shown(words[-1])}' of '{shown(last.name)}' is declared twice; rename one"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -67,9 +66,21 @@ def perceived_table() -> Figure:
 
 
 def recognised_table() -> Figure:
-    with tempfile.TemporaryDirectory() as folder, deixis.Session(Path(folder) / "memory") as session:
-        session.learn(deixis.read_script(EXAMPLES / "formal_dinner.layout"), scene_in_a_cloud(7))
-        return session.recognise(scene_in_a_cloud(8)).plot()
+    """Draw stated answers: a sure name, a likely one and an unknown thing in turn, the same on every processor."""
+    from deixis.learning.views import Recognised
+    from deixis.perception.recognition.calibration import SHIPPED
+    from deixis.perception.recognition.recogniser import Candidate, Recognition
+    from deixis.perception.recognition.spread import Width, spreads
+
+    (spread,) = spreads([Width(None, 0)], 1.0)
+
+    def answer(label: str | None, probability: float, unknown: float) -> Recognition:
+        candidate = Candidate("dinner_fork", 1.0, spread, 1.0, "a", 3, probability)
+        return Recognition(label, (candidate,), unknown, SHIPPED, True, ())
+
+    answers = [answer("dinner_fork", 0.9, 0.1), answer(None, 0.6, 0.4), answer(None, 0.2, 0.8)]
+    scene = scene_in_a_cloud(7)
+    return Recognised(scene, {thing.id: answers[k % 3] for k, thing in enumerate(scene.objects)}).plot()
 
 
 def story(path: Path) -> None:
