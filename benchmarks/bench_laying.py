@@ -13,21 +13,35 @@ The peers of the order are the thing that was most often laid at that point of a
 order; both know what is there already, and how many there are of each kind. The person's own groups and habits, known
 exactly, guess one of the things that may come. The peers of the place are the mean place of the kind on the table, and
 its offset from the thing that was laid last.
+
+``--films N`` measures the whole way instead: N films of a person with a camera on her head who lays a table and says
+what she does (``deixis robot run --from laying``). It prints how many things the robot names right at the end, how many
+pairs of things have their true order in its memory, and, for each film, the next things and places that are predicted
+from the other films.
 """
 
 from __future__ import annotations
 
+import itertools
+import tempfile
 import time
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
+from bench_live import matched
 from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 
+from deixis.examples_data import example
+from deixis.ontology.kinds import plain_name
 from deixis.reasoning.activities.activity import Activity, LaidThing, Laying, Step
 from deixis.reasoning.activities.prediction import LayingModel
+from deixis.robot.live.run import live_robot
+from deixis.robot.live.story import StorySettings
+from deixis.workflows.reasoning.activities import sequences_of_experiences
 
 KINDS = ("plate", "fork", "knife", "spoon", "cup", "saucer", "napkin", "glass", "bowl", "candle", "salt", "bread")
 CLOSE = 0.03
@@ -122,8 +136,8 @@ class Counts:
     most: Counter[str] = field(default_factory=Counter)
 
     def __post_init__(self) -> None:
-        for example in self.examples:
-            for number, thing in enumerate(example):
+        for laying in self.examples:
+            for number, thing in enumerate(laying):
                 self.at[number][thing.kind] += 1
                 self.after[example[number - 1].kind if number else None][thing.kind] += 1
             for kind, count in Counter(thing.kind for thing in example).items():
@@ -153,6 +167,77 @@ def places_of_peers(examples: Sequence[Laying], laid: Laying, kind: str) -> dict
     return {"mean place on the table": mean, "offset from the last thing": mean if offset is None else offset}
 
 
+@dataclass(frozen=True)
+class Watched:
+    """A laying as the robot watched it: its things in order, the true order, and the things that it names right."""
+
+    laying: Laying
+    order: tuple[str, ...]
+    right: int
+
+    @property
+    def pairs(self) -> tuple[int, int]:
+        """Number of pairs of things whose order is the true one, and of all true pairs."""
+        place = {thing.kind: number for number, thing in enumerate(self.laying)}
+        wanted = list(itertools.combinations(self.order, 2))
+        return sum(a in place and b in place and place[a] < place[b] for a, b in wanted), len(wanted)
+
+
+def watched(layout: str, seed: int, camera: str) -> Watched:
+    """Return a film as the live robot watches it with a new memory."""
+    settings = StorySettings("laying", str(example(layout)), seed, camera=camera)
+    truth = settings.story().truth
+    assert truth is not None
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        live_robot(Path(folder) / "memory", settings, lambda line: None) as robot,
+    ):
+        robot.wait()
+        robot.remember("table")
+        found, _ = matched(robot, truth)
+        names = {thing.id: thing.name for thing in robot.things()}
+        (sequence,) = sequences_of_experiences(robot.board)
+    right = sum(names.get(id) == plain_name(name) for name, id in found.items())
+    return Watched(sequence.laying, tuple(plain_name(name) for name in truth.laid), right)
+
+
+def print_films(films: Sequence[Watched]) -> None:
+    """Print what was named and ordered right, and what is predicted of each film from the others."""
+    things = sum(len(film.order) for film in films)
+    named = sum(film.right for film in films)
+    ordered, pairs = (sum(numbers) for numbers in zip(*(film.pairs for film in films), strict=True))
+    print(f"{len(films)} films: {named} of {things} things named right, {ordered} of {pairs} pairs in the true order")
+    share("things named right in films", named, things)
+    share("pairs of things in the true order in films", ordered, pairs)
+    right, frequent, asked = 0, 0, 0
+    close, placed = 0, 0
+    for number, film in enumerate(films):
+        others = [other.laying for place, other in enumerate(films) if place != number]
+        if not others:
+            continue
+        model, counts = LayingModel(others), Counts(others)
+        known = {thing.kind for thing in film.laying}
+        true = [kind for kind in film.order if kind in known]
+        for at, kind in enumerate(true):
+            laid = tuple(thing for thing in film.laying if thing.kind in true[:at])
+            things_next = model.predict(laid).things
+            guess = counts.guess(counts.at[at], laid)
+            asked += 1
+            right += bool(things_next) and things_next[0].kind == kind
+            frequent += bool(guess) and max(guess, key=lambda each: guess[each]) == kind
+            place = model.place(kind, laid)
+            seen = next(thing.place for thing in film.laying if thing.kind == kind)
+            if place is not None and seen is not None:
+                placed += 1
+                close += bool(np.linalg.norm(np.array(place.place) - np.array(seen)) < CLOSE)
+    if asked:
+        print(f"next thing: {right} of {asked} right; most frequent next: {frequent} of {asked}")
+        print(f"place of the next thing: {close} of {placed} within 3 cm")
+        share("next thing in films", right, asked)
+        share("next thing in films by the most frequent next", frequent, asked)
+        share("place within 3 cm in films", close, placed)
+
+
 def main() -> None:
     """Print the shares of right predictions, their log loss, and the errors of places, beside the peers."""
     parser = command_line(__file__, __doc__)
@@ -161,7 +246,14 @@ def main() -> None:
     parser.add_argument("--slips", type=float, default=0.05, help="probability that two neighbours are swapped (0.05)")
     parser.add_argument("--told", action="store_true", help="the person also says her order")
     parser.add_argument("--seed", type=int, default=1000)
+    parser.add_argument("--films", type=int, default=0, help="number of films of a person who lays a table")
+    parser.add_argument("--layout", default="tea.layout", help="shipped script of the films")
+    parser.add_argument("--camera", default="sway", help="movement of the camera of the films: still, sway, walk")
     with recorded(parser) as arguments:
+        if arguments.films:
+            seeds = range(arguments.seed, arguments.seed + arguments.films)
+            print_films([watched(arguments.layout, seed, arguments.camera) for seed in seeds])
+            return
         right: Counter[str] = Counter()
         loss: defaultdict[str, list[float]] = defaultdict(list)
         errors: defaultdict[str, list[float]] = defaultdict(list)

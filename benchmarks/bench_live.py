@@ -39,7 +39,7 @@ def matched(robot: LiveRobot, truth: StoryTruth) -> tuple[dict[str, str], int]:
     found: dict[str, str] = {}
     false = 0
     for each in robot.board.now(Pattern(predicate=AT)):
-        middle = np.mean(json.loads(str(each.statement.object)), axis=0)
+        middle = np.reshape(json.loads(str(each.statement.object)), (2, 3)).mean(axis=0)
         away = np.linalg.norm(truth.things.boxes.mean(axis=1) - (onto[:3, :3] @ middle + onto[:3, 3]), axis=1)
         name = truth.things.objects[int(away.argmin())].label or ""
         if away.min() > NEAR or name in found:
@@ -63,7 +63,7 @@ def main() -> None:
         for seed in range(arguments.first_seed, arguments.first_seed + arguments.seeds):
             settings = StorySettings("simulator", layout, seed)
             truth = settings.story().truth
-            assert truth is not None
+            assert truth is not None and truth.forgotten is not None
             began = time.process_time()
             with (
                 tempfile.TemporaryDirectory() as folder,

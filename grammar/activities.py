@@ -31,6 +31,14 @@ _VERBS = re.compile(
     r"add|adds|added|comes?|goes|go|is|are|follows?|take|takes|taken|down|on|onto|to|the table|table|in place)\b",
     re.IGNORECASE,
 )
+_ANNOUNCES = re.compile(
+    rf"^(?:{_FIRST}|{_NEXT}|and|now|and now|here|here comes|here come)\b[,:]?\s*(?:comes?\b|(?:i|we|you|she|he)\s+"
+    r"(?:put|puts|lay|lays|place|places|set|sets|bring|brings|add|adds|take|takes)\b)?",
+    re.IGNORECASE,
+)
+_STATES = re.compile(r"\b(?:is|are|isn['’]t|aren['’]t|was|were)\b|['’]s\b", re.IGNORECASE)
+"""Words of a sentence that states how things are, rather than what is being done."""
+
 _ITEM = re.compile(
     r"^(?:(?P<det>the|a|an|my|your|all|all the|both|both the|(?:the )?(?:one|two|three|four|five|six|\d))\s+)?"
     r"(?P<noun>[a-z][a-z _-]*?)$",
@@ -104,6 +112,47 @@ def _items(part: str, text: str) -> list[ToldItem]:
     if not items:
         raise ActivityTextError(f"the told activity '{text.strip()[:60]}' names no thing in '{part.strip()}'")
     return items
+
+
+def announced_thing(text: str) -> str | None:
+    """Return the thing that a person says she lays next, or has just laid.
+
+    Parameters
+    ----------
+    text
+        One sentence that begins with a word such as *first*, *then*, *now* or *finally*.
+
+    Returns
+    -------
+    str or None
+        Name of the one thing, in the singular; None for a question, several things, or a sentence of another kind.
+
+    Examples
+    --------
+    >>> [announced_thing(text) for text in ("First the dinner plate.", "And now I put the fork on the left.")]
+    ['dinner plate', 'fork']
+    >>> [announced_thing(text) for text in ("The plate is white.", "Then two forks.", "And where is the cup?")]
+    [None, None, None]
+    """
+    from deixis.grammar.english.parse import parse_english
+    from deixis.grammar.english.tree import Mood
+
+    announced = _ANNOUNCES.match(text.strip())
+    if announced is None or _STATES.search(text):
+        return None
+    sentences = parse_english(text.strip()[announced.end() :])
+    if len(sentences) != 1 or sentences[0].words != sentences[0].words_understood:
+        return None
+    (sentence,) = sentences
+    if sentence.clauses:
+        clause, *others = sentence.clauses
+        said = clause.mood is Mood.STATEMENT and clause.positive and all(one.positive for one in clause.predicates)
+        phrase = clause.subject if said and not others else None
+    else:
+        phrase = sentence.fragment
+    if phrase is None or not phrase.head or phrase.negated or phrase.plural or phrase.count not in (None, 1):
+        return None
+    return phrase.head
 
 
 def told_activity(text: str, seen: StepSequence, name: str = "told") -> Activity:

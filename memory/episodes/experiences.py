@@ -119,7 +119,7 @@ def finish_recording(board: Blackboard, name: str, at: float, by: str) -> None:
     EpisodeError
         If there is no such experience, or it has finished.
     """
-    board.finish(_experience(board, name).id, at, by=by)
+    board.finish(experience_named(board, name).id, at, by=by)
 
 
 def experiences(board: Holding) -> tuple[Experience, ...]:
@@ -158,7 +158,7 @@ def episode(board: Holding, name: str) -> tuple[EpisodicFluent, ...]:
     EpisodeError
         If there is no such experience.
     """
-    found = _experience(board, name)
+    found = experience_named(board, name)
     held = board.holding(start=found.start, end=found.finish)
     return tuple(each for each in held if each.statement.predicate not in _MARKERS)
 
@@ -221,7 +221,26 @@ def without_lessons(board: Holding, lessons: Collection[str]) -> tuple[Change, .
     )
 
 
-def _experience(board: Holding, name: str) -> Experience:
+def experience_named(board: Holding, name: str) -> Experience:
+    """Return the experience of a name.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    name
+        Its name.
+
+    Returns
+    -------
+    Experience
+        The experience.
+
+    Raises
+    ------
+    EpisodeError
+        If there is none of this name; the message has the last ones.
+    """
     found = board.holding(Pattern(name, RECORDED))
     if not found:
         known = ", ".join(each.name for each in experiences(board)[-5:]) or "none"

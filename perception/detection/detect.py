@@ -256,7 +256,7 @@ def _on_table(cloud: PointCloud, table: FoundTable, settings: DetectionSettings)
     points, kept, top = table.view.points, table.view.places, table.top.on
     pose = table.view.pose
     few = top[:: max(1, len(top) // settings.plane.refinement_size)]
-    frame = table_frame(table.plane, points[few] if len(top) else points, pose, settings.viewer)
+    frame = table_frame(table.plane, points[few] if len(top) else points, pose, settings)
     viewer = moved(pose.eye[None], frame)[0]
     at, heights, distance = in_table_frame(points, frame, viewer)
     view = _TableView(frame, at, heights, distance, viewer, top)
@@ -324,7 +324,7 @@ def _alone(cloud: PointCloud, view: View, settings: DetectionSettings) -> Detect
     up = next(direction for direction in ups if direction is not None)
     below = Plane(up, float(np.percentile(points @ up, settings.scale.outlier_percent)))
     pose = likeliest_pose(pose, points, below, settings)
-    frame = table_frame(below, points, pose, settings.viewer)
+    frame = table_frame(below, points, pose, settings)
     thing = moved(points, frame)
     labels = np.full(len(cloud), BACKGROUND, np.int32)
     labels[view.places] = 0

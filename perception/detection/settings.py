@@ -22,6 +22,8 @@ import math
 from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
 
+import numpy as np
+
 from deixis.perception.errors import CloudError
 
 
@@ -612,6 +614,10 @@ class DetectionSettings:
         Position of the person whose left and right are meant, in the frame of the cloud; None for the camera.
     up
         Up direction in the frame of the cloud, within 45 degrees, or None if it is unknown.
+    frame
+        Rows of a known transform (4, 4) from the frame of the cloud to that of the table, such as the one of an earlier
+        cloud; origin and axes follow it as far as the plane allows, so that what lies still keeps its place. None for a
+        frame from the view.
     table
         Number of the table to use, from 1 for the one with the most objects on it.
     height
@@ -629,6 +635,7 @@ class DetectionSettings:
     seed: int = 0
     viewer: tuple[float, float, float] | None = None
     up: tuple[float, float, float] | None = None
+    frame: tuple[tuple[float, ...], ...] | None = None
     table: int = 1
     height: float = 0.002
     reach: float = 0.6
@@ -665,6 +672,10 @@ class DetectionSettings:
                 hasattr(vector, "__len__") and len(vector) == 3 and all(map(_is_finite, vector))
             ):
                 raise CloudError(f"detection's {name} must be three finite numbers, got {vector}")
+        if self.frame is not None and not (
+            np.shape(self.frame) == (4, 4) and np.isfinite(np.array(self.frame, dtype=np.float64)).all()
+        ):
+            raise CloudError(f"detection's frame must be four rows of four finite numbers, got {self.frame!r:.80}")
         if self.up is not None and not any(self.up):
             raise CloudError("detection's up must be a direction, got (0, 0, 0)")
         for each in fields(self):

@@ -311,12 +311,13 @@ def directions(points: NDArray[np.float64], eye: NDArray[np.float64]) -> NDArray
 
 
 def table_frame(
-    plane: Plane, on: NDArray[np.float64], pose: CameraPose, viewer: tuple[float, float, float] | None
+    plane: Plane, on: NDArray[np.float64], pose: CameraPose, settings: DetectionSettings
 ) -> NDArray[np.float64]:
     """Return the transform from the frame of the cloud to that of the table.
 
     z is the height above the plane. y points away from the viewer, and x to the right. The origin is on the table, in
-    the middle of the rectangle around its points.
+    the middle of the rectangle around its points. Where a frame is known, x and the origin are its own, moved onto the
+    plane.
 
     Parameters
     ----------
@@ -326,9 +327,9 @@ def table_frame(
         Points on the table, shape (n, 3), in metres.
     pose
         Viewpoint of the points.
-    viewer
-        Place of the viewer; y points from there to the middle of the table. If it is None, y points upwards in the
-        image, or else from the sensor to the middle.
+    settings
+        ``frame``, the known frame, or None; ``viewer``, the place of the viewer: y points from there to the middle of
+        the table. If both are None, y points upwards in the image, or else from the sensor to the middle.
 
     Returns
     -------
@@ -336,14 +337,16 @@ def table_frame(
         Transform of shape (4, 4).
     """
     up = plane.normal
-    away = _across(up, _away(plane, on.mean(axis=0), pose, viewer))
-    right = np.cross(away, up)
-    turn = np.stack([right, away, up])
-    plan = on @ turn[:2].T
-    low, high = np.percentile(plan, (0.5, 99.5), axis=0)
-    origin = np.append((low + high) / 2, plane.offset)
+    known = None if settings.frame is None else np.array(settings.frame)
+    directions = _away(plane, on.mean(axis=0), pose, settings.viewer) if known is None else [known[1, :3]]
+    away = _across(up, directions)
+    turn = np.stack([np.cross(away, up), away, up])
+    if known is None:
+        middle = np.percentile(on @ turn[:2].T, (0.5, 99.5), axis=0).mean(axis=0)
+    else:
+        middle = turn[:2] @ (-known[:3, :3].T @ known[:3, 3])
     frame = np.eye(4)
-    frame[:3, :3], frame[:3, 3] = turn, -origin
+    frame[:3, :3], frame[:3, 3] = turn, -np.append(middle, plane.offset)
     return frame
 
 

@@ -29,6 +29,9 @@ LAYOUT, FAULT = "layout", "fault"
 UNNAMED, NAMELESS = "unnamed", "nameless"
 """Predicates of tables whose layout has no name: the scene, and that a person gave no name for it."""
 
+CALLED, NOT_CALLED = "called", "notCalled"
+"""Predicates of what a person calls a thing that is tracked, and does not call it."""
+
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
@@ -244,6 +247,27 @@ class Diary:
         before = [each for each in self.board.now(Pattern(id, IS_A)) if each.source.origin is Origin.SHOWN]
         shown = self._fluent((id, IS_A, label), at, Source(Origin.SHOWN, by, event))
         self._write(*(_end(each, at) for each in before), Add(shown))
+
+    def names_shown(self, things: Collection[str]) -> dict[str, tuple[str, float]]:
+        """Return the names that persons gave to things of the present scene, each with its certainty.
+
+        Parameters
+        ----------
+        things
+            Ids of the things in the scene.
+
+        Returns
+        -------
+        dict
+            The last name that each thing was given, by its id in the scene.
+        """
+        given = self.board.now(Pattern(predicate=CALLED if self._tracked else IS_A))
+        last = {
+            each.statement.subject: (each.statement.object, each.certainty)
+            for each in sorted(given, key=lambda each: each.start.lower)
+            if each.source.origin is Origin.SHOWN and each.statement.object is not None
+        }
+        return {thing: last[id] for thing in things if (id := self.id_of(thing)) in last}
 
     # ---- conclusions
 

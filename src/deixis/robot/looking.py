@@ -18,13 +18,17 @@ from deixis.learning.views import Known, recognise
 from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import Ontology
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.scene import Scene
+from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
 from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
 UNEXPLAINED_LAYOUT = -2.0
 """Log-likelihood ratio, per thing, that an explanation by a layout must exceed for the layout to be there at all."""
+
+
+MAX_SHOWN = 0.99
+"""Maximum probability of a name that a person gave to a thing of the table that is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,20 +223,22 @@ class TableKnowledge:
             return scene
         return recognise(self.known, scene, clouds).scene
 
-    def look(self, scene: Scene) -> Look:
+    def look(self, scene: Scene, shown: Mapping[str, tuple[str, float]] | None = None) -> Look:
         """Understand a table.
 
         Parameters
         ----------
         scene
             The scene with clouds.
+        shown
+            Names that persons gave to things of the scene, and their certainties, by id.
 
         Returns
         -------
         Look
             The layouts, names and mistakes.
         """
-        seen = self.recognised(scene)
+        seen = _with_names(self.recognised(scene), shown or {})
         found = {}
         for layout in self.layouts:
             if scene.objects:
@@ -245,3 +251,16 @@ class TableKnowledge:
         shares = dict(zip(found, np.exp(values - total).tolist(), strict=True))
         ordered = dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
         return Look(replace(seen), ordered, found)
+
+
+def _with_names(scene: Scene, shown: Mapping[str, tuple[str, float]]) -> Scene:
+    """Return a scene in which things have the names that persons gave them; what they look like has the rest."""
+
+    def named(thing: PerceivedObject) -> PerceivedObject:
+        if thing.id not in shown:
+            return thing
+        name, certainty = shown[thing.id][0], min(shown[thing.id][1], MAX_SHOWN)
+        others = [(other, (1 - certainty) * share) for other, share in thing.candidates if other != name]
+        return replace(thing, label=name, confidence=certainty, candidates=((name, certainty), *others))
+
+    return replace(scene, objects=tuple(map(named, scene.objects)))

@@ -43,6 +43,9 @@ from deixis.workflows.knowledge.episodes import Consolidation, consolidate, name
 from deixis.workflows.knowledge.recall import EXPECTED, IS_A
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from deixis.learning.views import Taught
     from deixis.workflows.knowledge.learn import Learned, Recording
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
@@ -354,9 +357,15 @@ class Robot:
             Layouts, names and mistakes.
         """
         if self._look is None:
-            self._look = self.knowledge().look(self.scene)
+            self._look = self.knowledge().look(self.scene, self._names_shown())
             self._conclude(self._look)
         return self._look
+
+    def _names_shown(self) -> dict[str, tuple[str, float]]:
+        """Return the categories of the things of the scene that persons named, with their certainties."""
+        shown = self.diary.names_shown(self.scene.ids)
+        meant = self.session.category_meant
+        return {thing: (meant(new_category_name(name)), certainty) for thing, (name, certainty) in shown.items()}
 
     def _conclude(self, look: Look) -> None:
         """Write what the things of the table are, and how it is laid."""
@@ -862,13 +871,15 @@ class _Pupil:
         return learned
 
 
-def perceived(cloud: PointCloud) -> Scene:
+def perceived(cloud: PointCloud, frame: NDArray[np.float64] | None = None) -> Scene:
     """Return the things in a cloud; parts of a thing that another thing hides in the middle are one thing.
 
     Parameters
     ----------
     cloud
         The cloud, in metres.
+    frame
+        Known transform (4, 4) from the frame of the cloud to that of the table, or None.
 
     Returns
     -------
@@ -876,7 +887,9 @@ def perceived(cloud: PointCloud) -> Scene:
         The scene in the frame of the table.
     """
     from deixis.perception.clouds.smoothing import smoothed
+    from deixis.perception.detection.settings import DetectionSettings
     from deixis.perception.occlusion import joined_behind_others
     from deixis.workflows.scenes.perceive import perceive
 
-    return joined_behind_others(perceive(smoothed(cloud)))
+    known = None if frame is None else tuple(map(tuple, frame.tolist()))
+    return joined_behind_others(perceive(smoothed(cloud), settings=DetectionSettings(frame=known)))

@@ -10,7 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.grammar.activities import ActivityTextError, read_activities, read_activity, told_activity
+from deixis.grammar.activities import (
+    ActivityTextError,
+    announced_thing,
+    read_activities,
+    read_activity,
+    told_activity,
+)
 from deixis.reasoning.activities.activity import Activity, StepSequence
 from deixis.reasoning.activities.grounding import ground_activity, recognise_activity
 from deixis.reasoning.errors import SettingError
@@ -45,6 +51,30 @@ def test_told_orders_are_read(told: str, groups: list[list[str]] | None) -> None
 def test_what_names_no_things_is_refused(told: str) -> None:
     with pytest.raises((ActivityTextError, SettingError)):
         told_activity(told, laid("plate"))
+
+
+@pytest.mark.parametrize(
+    ("said", "thing"),
+    [
+        ("First the plate.", "plate"),
+        ("Then the salad fork", "salad fork"),
+        ("Now I put the knife down.", "knife"),
+        ("Finally, the napkin goes on the plate.", "napkin"),
+        ("And now, to the right of it, the water glass.", "water glass"),
+        ("The plate.", None),
+        ("Then two forks.", None),
+        ("First the plate, then the fork.", None),
+        ("Now, where is the cup?", None),
+        ("And this is a fork.", None),
+        ("Now the plate is not on the table.", None),
+        ("Now the fork is left of the plate.", None),
+        ("Then we go home.", None),
+        ("now", None),
+        ("", None),
+    ],
+)
+def test_announcements_name_the_one_thing_that_is_laid(said: str, thing: str | None) -> None:
+    assert announced_thing(said) == thing
 
 
 def test_a_told_activity_is_grounded_with_its_faults() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,9 @@ import typer
 from deixis.cli.common import NO, AsJson, MemoryDir, TimeLimit, print_json, print_line, print_lines
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from deixis.memory.episodes.blackboard import Blackboard
     from deixis.reasoning.activities.activity import StepSequence
 
 activity_app = typer.Typer(
@@ -21,12 +25,18 @@ Fluents = Annotated[
     Path | None, typer.Argument(metavar="[FILE]", help="Fluents (.fluents.json); without it, the episodes of --memory.")
 ]
 
+Experience = Annotated[
+    str | None,
+    typer.Option("--experience", metavar="NAME", help="Experience of --memory, instead of all episodes."),
+]
+
 
 @activity_app.command("ground")
 def ground(
     activity: Annotated[str, typer.Argument(metavar="TEXT", help="Such as 'first the plate, then the forks'.")],
     file: Fluents = None,
     time_limit: TimeLimit = 10.0,
+    experience: Experience = None,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
@@ -34,7 +44,7 @@ def ground(
     from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
     from deixis.workflows.reasoning.activities import ground as run
 
-    found = run(activity, _sequence(file, memory), time_limit)
+    found = run(activity, _sequence(file, memory, experience), time_limit)
     if as_json:
         print_json(grounded_to_dict(found))
     else:
@@ -46,13 +56,26 @@ def ground(
 @activity_app.command("learn")
 def learn(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the activity.")],
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Examples (.fluents.json).")],
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[FILE...]", help="Examples (.fluents.json); without them, experiences of --memory."),
+    ] = None,
     known: Known = Path("activities.json"),
+    experiences: Annotated[
+        list[str] | None,
+        typer.Option("--experience", metavar="NAME", help="Experience that is an example; default: all that finished."),
+    ] = None,
+    memory: MemoryDir = None,
 ) -> None:
     """Learn an activity from examples, and add it to a file of activities."""
     from deixis.workflows.reasoning.activities import learn as run
+    from deixis.workflows.reasoning.activities import sequences_of_experiences
 
-    activity = run(name, files, known)
+    if files:
+        activity = run(name, files, known)
+    else:
+        with _episodes(memory) as board:
+            activity = run(name, sequences_of_experiences(board, experiences or ()), known)
     print_line(f"Learned '{name}' from {activity.examples} examples: {len(activity.steps)} steps; in {known}")
 
 
@@ -61,6 +84,7 @@ def recognise(
     file: Fluents = None,
     known: Known = Path("activities.json"),
     time_limit: TimeLimit = 10.0,
+    experience: Experience = None,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
@@ -68,7 +92,7 @@ def recognise(
     from deixis.report.reasoning.activities import recognised_lines, recognised_to_dict
     from deixis.workflows.reasoning.activities import recognise as run
 
-    found = run(_sequence(file, memory), known, time_limit)
+    found = run(_sequence(file, memory, experience), known, time_limit)
     if as_json:
         print_json(recognised_to_dict(found))
     else:
@@ -85,6 +109,7 @@ def predict(
     told: Annotated[
         str | None, typer.Option(metavar="TEXT", help="Order that was said: 'first the plate, then the forks'.")
     ] = None,
+    experience: Experience = None,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
@@ -92,7 +117,7 @@ def predict(
     from deixis.report.reasoning.activities import predicted_lines, predicted_to_dict
     from deixis.workflows.reasoning.activities import predict as run
 
-    found = run(_sequence(file, memory), () if known is None else known, name, told)
+    found = run(_sequence(file, memory, experience), () if known is None else known, name, told)
     if as_json:
         print_json(predicted_to_dict(found))
     else:
@@ -101,17 +126,25 @@ def predict(
         raise typer.Exit(NO)
 
 
-def _sequence(file: Path | None, memory: Path | None) -> StepSequence:
+def _sequence(file: Path | None, memory: Path | None, experience: str | None) -> StepSequence:
     """Return the sequence of a file, or of the episodes of a memory."""
-    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
-    from deixis.memory.errors import MemoryFormatError
-    from deixis.memory.on_demand import default_memory
-    from deixis.workflows.reasoning.activities import sequence_of, sequence_of_episodes
+    from deixis.workflows.reasoning.activities import sequence_of, sequence_of_episodes, sequences_of_experiences
 
     if file is not None:
         return sequence_of(file)
+    with _episodes(memory) as board:
+        return sequence_of_episodes(board) if experience is None else sequences_of_experiences(board, [experience])[0]
+
+
+@contextmanager
+def _episodes(memory: Path | None) -> Iterator[Blackboard]:
+    """Open the episodes of a memory."""
+    from deixis.memory.episodes.blackboard import Blackboard, has_episodes
+    from deixis.memory.errors import MemoryFormatError
+    from deixis.memory.on_demand import default_memory
+
     folder = memory or default_memory()
     if not has_episodes(folder):
         raise MemoryFormatError(f"the memory at {folder} has no episodes; name a file of fluents")
     with Blackboard.open(folder) as board:
-        return sequence_of_episodes(board)
+        yield board

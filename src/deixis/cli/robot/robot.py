@@ -41,13 +41,16 @@ def run(
         typer.Option(
             "--from",
             metavar="SOURCE",
-            help="A folder with clouds, a camera driver (package.module:Class), or 'simulator'.",
+            help="A folder with clouds, a camera driver (package.module:Class), 'simulator' or 'laying'.",
         ),
     ] = "simulator",
     layout: Annotated[
         str | None, typer.Option(metavar="SCRIPT", help="How the simulated table is laid; default: a shipped one.")
     ] = None,
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the simulated story.")] = 0,
+    camera: Annotated[
+        str, typer.Option(metavar="still|sway|walk", help="How the camera of the person moves who lays the table.")
+    ] = "sway",
     rate: Annotated[float, typer.Option(metavar="HZ", min=0.5, max=30, help="Frames a second of the simulator.")] = 4.0,
     intrinsics: Annotated[Path | None, typer.Option(metavar="FILE", help="Camera of depth images (.json).")] = None,
     grows: Annotated[bool, typer.Option("--grows", help="Wait for further clouds in the folder.")] = False,
@@ -58,6 +61,9 @@ def run(
     stay: Annotated[bool, typer.Option("--stay", help="Listen after the story until the input ends.")] = False,
     story: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write key frames and a page with the story.")
+    ] = None,
+    experience: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Record the story as an experience of this name.")
     ] = None,
     processes: Annotated[bool, typer.Option("--processes", help="Run each module in a process of its own.")] = False,
     plain: Annotated[bool, typer.Option("--plain", help="Print lines, without the view of the table.")] = False,
@@ -73,7 +79,7 @@ def run(
     from deixis.robot.live.run import live_robot
     from deixis.robot.live.story import StorySettings
 
-    settings = StorySettings(source, layout, seed, rate, _text(intrinsics), grows, _text(words), live)
+    settings = StorySettings(source, layout, seed, rate, _text(intrinsics), grows, _text(words), live, camera)
     view = not (plain or as_json) and sys.stdout.isatty()
     lines: deque[str] = deque(maxlen=SHOWN_LINES)
 
@@ -90,6 +96,8 @@ def run(
             robot.wait()
             if robot.problem is not None:
                 raise LiveError(f"{robot.problem}; the story has ended")
+            if experience is not None:
+                robot.remember(experience)
             if stay:
                 if not typing.is_alive():
                     typing.start()  # a file or a pipe is read after the story

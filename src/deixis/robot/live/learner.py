@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
 from deixis.errors import DeixisError
+from deixis.grammar.activities import announced_thing
 from deixis.memory.episodes.changes import Add, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
@@ -16,11 +18,11 @@ from deixis.memory.errors import MemoryWriteError
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
-from deixis.robot.diary import FAULT, LAYOUT, NAMELESS, UNNAMED
+from deixis.robot.diary import CALLED, FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
-from deixis.robot.live.senses import CALLED, ENDED, MOMENT, SAID, TABLE, WATCHED, named
+from deixis.robot.live.senses import ENDED, MOMENT, SAID, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
@@ -49,6 +51,9 @@ _NAME = re.compile(
 NOT_SEEN = "I have not seen a table yet."
 """Answer to what is said of a table before the first one lay still."""
 
+MAX_UNSEEN = 20
+"""Maximum number of names that wait until their things have been looked at."""
+
 MAX_SAID = 5000
 """Maximum number of characters of what the robot says."""
 
@@ -74,6 +79,7 @@ class Learner(Module):
         self._asked: Question | None = None
         self._announced: dict[str, Standing] = {}  # what was said about each expected object
         self._named: LayoutQuestion | None = None  # the question for a name that was asked
+        self._unseen: list[EpisodicFluent] = []  # names of things that no scene of the table has yet
         own = (IS_A, LAYOUT, UNNAMED, NAMELESS, CONSOLIDATED, FAULT, EXPECTED, SAME_AS, CONTRADICTED, SAYS, DONE)
         self.writes = tuple(Pattern(predicate=each) for each in (*own, *sorted(described_predicates())))  # type: ignore[misc]
 
@@ -139,7 +145,7 @@ class Learner(Module):
         if statement.predicate == TABLE and statement.object is not None:
             self._look(Path(statement.object), at, board)
         elif statement.predicate == CALLED and statement.object is not None:
-            self._shown(statement.object, statement.subject, fluent, board)
+            self._shown(fluent, board)
         elif statement.predicate == SAID and statement.object is not None:
             self._heard(statement.object, fluent, board)
         elif statement.predicate == ENDED:
@@ -151,6 +157,9 @@ class Learner(Module):
         self.robot.sees(read_scene(file), at)
         self._understand(board, at)
         self._ask_name(at, board)
+        waiting, self._unseen = self._unseen, []
+        for fluent in waiting:
+            self._then(partial(self._shown, fluent, board))
 
     def _understand(self, board: Board, at: float) -> None:
         """Look at the table, which writes what its things are, and say what became of expected objects."""
@@ -206,8 +215,12 @@ class Learner(Module):
             else:
                 self._say(f"I do not see {spoken}: {one.reason}.", at, board)
 
-    def _shown(self, label: str, thing: str, fluent: EpisodicFluent, board: Board) -> None:
-        at = fluent.start.lower
+    def _shown(self, fluent: EpisodicFluent, board: Board) -> None:
+        """Learn a name that a thing was given; if the thing has not been looked at yet, when it is."""
+        thing, label, at = fluent.statement.subject, str(fluent.statement.object), fluent.start.lower
+        if thing not in self.robot.scene.ids and len(self._unseen) < MAX_UNSEEN:
+            self._unseen.append(fluent)
+            return
         try:
             self.robot.shown(label, thing, fluent.source.by, at, fluent.source.event)
         except MemoryWriteError:
@@ -219,7 +232,7 @@ class Learner(Module):
 
     def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
         by, at = fluent.source.by, fluent.start.lower
-        names = named(text)[1] is not None
+        names = named(text)[1] is not None or announced_thing(text) is not None
         answers = re.match(r"\s*(it|call)\b", text, re.IGNORECASE) is not None or not names
         if self._named is not None and answers and self._learned_name(text, by, at, board, fluent.source.event):
             return

@@ -9,9 +9,9 @@ from pathlib import Path
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.episode import EpisodicFluent
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.diary import FAULT, LAYOUT
+from deixis.robot.diary import CALLED, FAULT, LAYOUT, NOT_CALLED
 from deixis.robot.live.learner import SAYS
-from deixis.robot.live.senses import AT, CALLED, NOT_CALLED, NOTICED, POINTED_AT, SAID, TABLE, VIEW
+from deixis.robot.live.senses import AT, NOTICED, POINTED_AT, SAID, TABLE, VIEW
 from deixis.workflows.knowledge.recall import IS_A
 from deixis.workflows.scenes.point import SAME_MOMENT
 

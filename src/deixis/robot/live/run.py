@@ -12,6 +12,7 @@ from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.changes import Add, Finish, Logged
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.experiences import put_episode
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
@@ -150,6 +151,22 @@ class LiveRobot:
                 return False
             time.sleep(0.1)
         return True
+
+    def remember(self, experience: str) -> None:
+        """Record the story, which has ended, as an experience.
+
+        Parameters
+        ----------
+        experience
+            Name of the experience, which no other may have.
+
+        Raises
+        ------
+        EpisodeError
+            If there is an experience of this name.
+        """
+        ended = max((each.start.upper for each in self._now(ENDED)), default=self.board.seconds())
+        put_episode(self.board, experience, (), self.began, ended + MOMENT, by="robot")
 
     def answered(self, seconds: float = 60.0) -> bool:
         """Wait until the robot has dealt with all typed words.

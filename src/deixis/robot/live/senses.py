@@ -2,7 +2,8 @@
 
 Things are tracked from frame to frame. When nothing moves, the table is written as a scene, with the clouds of its
 things, into a folder, so that other modules can look at it. A name that is said while a person points becomes a
-statement about the thing (``t3 called fork``).
+statement about the thing (``t3 called fork``), and so does one that announces what is laid (*first the plate*): it
+names the thing that comes to rest at that time.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -25,12 +26,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
+from deixis.grammar.activities import announced_thing
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Logged, Update
 from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.pointing.aim import Pointing, pointed_at
+from deixis.perception.pointing.aim import SURE, Pointing, pointed_at
 from deixis.perception.pointing.gesture import Gesture, GestureDetector
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import PerceivedObject, Scene
@@ -40,26 +42,28 @@ from deixis.perception.tracking.tracker import Tracker
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import to_ticks
 from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot.diary import CALLED, NOT_CALLED
 from deixis.robot.live.outbox import Outbox
 from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import perceived
 from deixis.workflows.scenes.point import (
+    MIN_CONFIDENCE,
+    MIN_SIZE_FIT,
     SAME_MOMENT,
     PointedLabel,
     SpokenName,
     pointed_label,
+    size_weights,
     spoken_name,
     taught_labels,
 )
 
-AT, TABLE, WATCHED, CALLED, NOT_CALLED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
-    "at", "lookedLike", "watched", "called", "notCalled", "pointedAt", "said", "typed", "noticed", "dropped", "began",
-    "ended",
+AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
+    "at", "lookedLike", "watched", "pointedAt", "said", "typed", "noticed", "dropped", "began", "ended",
 )  # fmt: skip
-"""Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a thing is
-called and is not called, what a person pointed at, said and typed, what the robot noticed, the number of late frames,
-and the ends of the story."""
+"""Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a person
+pointed at, said and typed, what the robot noticed, the number of late frames, and the ends of the story."""
 
 STILL = 0.6
 """Seconds without movement after which the table is written as a scene."""
@@ -69,6 +73,13 @@ WATCH = 1.0
 
 PAUSE = 0.5
 """Seconds without a skeleton after which a gesture has ended."""
+
+BRINGING = 5.0
+"""Maximum time in seconds between words that announce a thing (*first the plate*) and the thing's coming to rest."""
+
+SPREAD = 0.5
+"""Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
+thing."""
 
 MOMENT = 1e-3
 """Shortest time in seconds that a statement holds."""
@@ -204,7 +215,9 @@ class _Writer:
         self._detector = GestureDetector()
         self._watched_at = math.inf  # time of the last skeleton, until its gestures are finished
         self._pointings: deque[Pointing] = deque(maxlen=HELD_GESTURES)
-        self._waiting: list[tuple[Utterance, str | None]] = []  # words, and the fluent of those that were typed
+        self._waiting: list[_Words] = []
+        self._came: dict[str, float] = {}  # time at which each thing came to the table; -inf if it lay there at first
+        self._announced: set[str] = set()  # things that words announced
         self._notes: set[str] = set()
         self._dropped: tuple[int, str | None, float] = (
             0,
@@ -229,7 +242,7 @@ class _Writer:
         utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
         )
-        self._waiting.append((utterance, typed.id))
+        self._waiting.append(_Words(utterance, typed.id))
         if at_once:
             self._hear(math.inf)
         self.flush()
@@ -278,7 +291,7 @@ class _Writer:
             if isinstance(event, Skeleton):
                 self._watch(event)
             else:
-                self._waiting.append((event, None))
+                self._waiting.append(_Words(event))
         self._hear(event.at)
 
     def _take_frame(self, frame: Frame) -> None:
@@ -382,9 +395,13 @@ class _Writer:
 
     def _place(self, thing: TrackedThing, seen: Source) -> Change:
         added = self._add(
-            (self._id(thing.id), AT, json.dumps(thing.box.round(4).tolist())), thing.since, seen, thing.certainty
+            (self._id(thing.id), AT, json.dumps(thing.box.ravel().round(4).tolist())),
+            thing.since,
+            seen,
+            thing.certainty,
         )
         self._places[thing.id] = (added.fluent.id, thing.since)
+        self._came.setdefault(self._id(thing.id), thing.since if self._written is not None else -math.inf)
         return added
 
     def _left(self, thing: TrackedThing, at: float) -> Change:
@@ -413,7 +430,7 @@ class _Writer:
     def _detected(self) -> Scene | None:
         """Return the things of the whole table; None where it is not found."""
         try:
-            found = None if self._cloud is None else perceived(self._cloud)
+            found = None if self._cloud is None else perceived(self._cloud, self._situation.frame)
         except DeixisError:
             return None
         return None if found is None or found.detection is None or found.detection.table is None else found
@@ -496,13 +513,13 @@ class _Writer:
                 self._outbox.add(added)
 
     def _hear(self, now: float) -> None:
-        """Write the words of which the moment, in which people may still point, has passed."""
-        while self._waiting and now > self._waiting[0][0].end + SAME_MOMENT + STILL:
-            utterance, typed = self._waiting.pop(0)
-            failure = f"the utterance at {utterance.at:g} s could not be used"
-            self._attempt(partial(self._write_utterance, _printable(utterance)), failure)
-            if typed is not None:
-                self._outbox.add(Finish(typed, max(self._board.seconds(), self._time(utterance.at))))
+        """Write the words of which the moment has passed, in which people may still point or lay things."""
+        while self._waiting and now > self._waiting[0].until:
+            words = self._waiting.pop(0)
+            failure = f"the utterance at {words.utterance.at:g} s could not be used"
+            self._attempt(partial(self._write_utterance, _printable(words.utterance)), failure)
+            if words.typed is not None:
+                self._outbox.add(Finish(words.typed, max(self._board.seconds(), self._time(words.utterance.at))))
 
     def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and what they name."""
@@ -520,7 +537,14 @@ class _Writer:
                 self._outbox.add(self._add((utterance.speaker, NOTICED, noticed), utterance.at, shown))
 
     def _labels(self, utterance: Utterance) -> Sequence[PointedLabel]:
-        """Return what words name: the thing whose id they have (*t3 is a fork*), or what is pointed at meanwhile."""
+        """Return what words name.
+
+        That is the thing whose id they have (*t3 is a fork*), what is pointed at meanwhile, or what comes to the table
+        meanwhile (*first the plate*).
+        """
+        announced = announced_thing(utterance.text)
+        if announced is not None:
+            return (self._announced_label(utterance, announced),)
         thing, name = named(utterance.text)
         if name is not None and (thing is not None or not self._things.objects):
             label = PointedLabel(utterance, name.name, name.positive, thing, utterance.confidence)
@@ -532,6 +556,30 @@ class _Writer:
         if not self._things.objects:
             return ()
         return taught_labels([pointed_label(utterance, tuple(self._pointings), self._things)], self._things)[0]
+
+    def _announced_label(self, utterance: Utterance, name: str) -> PointedLabel:
+        """Return what was announced with the thing that came to rest nearest in time, or why none is taught."""
+        label = PointedLabel(utterance, name, probability=utterance.confidence)
+        if utterance.confidence < MIN_CONFIDENCE:
+            return replace(label, refused=f"recognised with a confidence of {utterance.confidence:.2f} only")
+        away = {
+            thing: max(utterance.at - at, at - utterance.end, 0.0)
+            for thing, at in self._came.items()
+            if thing in self._things.ids and thing not in self._announced
+        }
+        near = [thing for thing, seconds in away.items() if seconds <= BRINGING]
+        if not near:
+            return replace(label, refused=f"nothing came to the table within {BRINGING:g} s of the words")
+        sizes = size_weights(name, self._things)
+        weights = {thing: sizes[thing] * math.exp(-away[thing] / SPREAD) for thing in near}
+        thing = max(near, key=weights.__getitem__)
+        share = weights[thing] / sum(weights.values())
+        if sizes[thing] <= MIN_SIZE_FIT:
+            return replace(label, refused=f"{thing} came, but does not have the size of a {name}")
+        if share < SURE:
+            return replace(label, refused=f"several things came: {', '.join(sorted(near))}")
+        self._announced.add(thing)
+        return replace(label, target=thing, probability=share * utterance.confidence)
 
     # ---- writing
 
@@ -566,6 +614,19 @@ class _Writer:
                 source=source,
             )
         )
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """Words that wait until their moment has passed, and the fluent of those that were typed."""
+
+    utterance: Utterance
+    typed: str | None = None
+    until: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        moment = SAME_MOMENT + STILL if announced_thing(self.utterance.text) is None else BRINGING
+        object.__setattr__(self, "until", self.utterance.end + moment)
 
 
 def _states(situation: Situation) -> tuple[tuple[str, float, str], ...]:

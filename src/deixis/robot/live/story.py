@@ -42,6 +42,15 @@ TALK = 1.5
 BREAK = 5.0
 """Time in seconds between the two customers, in which the robot does not look."""
 
+SIMULATED = ("simulator", "laying")
+"""Simulated stories: a table for two customers, and a table laid by a person with a camera on her head."""
+
+REACH = 0.4
+"""Seconds from the words that announce a thing to the movement of the hand."""
+
+SWAPPED = 0.15
+"""Probability that a simulated person exchanges a thing with the next one in her order."""
+
 
 @dataclass(frozen=True, eq=False)
 class StoryTruth:
@@ -54,12 +63,15 @@ class StoryTruth:
     camera
         The camera with its pose in that frame.
     forgotten
-        Name of the thing that is missing at the end.
+        Name of the thing that is missing at the end, or None.
+    laid
+        Names of the things in the order in which a person laid them while the robot looked.
     """
 
     things: Scene
     camera: Camera
-    forgotten: str
+    forgotten: str | None = None
+    laid: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +110,7 @@ class StorySettings:
     Parameters
     ----------
     source
-        ``simulator``, a folder with clouds, or a camera driver as ``package.module:Class``.
+        ``simulator``, ``laying``, a folder with clouds, or a camera driver as ``package.module:Class``.
     layout
         Script of the simulated table.
     seed
@@ -113,6 +125,8 @@ class StorySettings:
         File of words in addition to those of the story, such as those of a speech recogniser (``.said.jsonl``).
     live
         True to play the simulated story or the recording at its own speed, as a camera does.
+    camera
+        Path of the camera in the story ``laying``: ``still``, ``sway`` or ``walk``.
     """
 
     source: str
@@ -123,6 +137,7 @@ class StorySettings:
     grows: bool = False
     words: str | None = None
     live: bool = False
+    camera: str = "sway"
 
     def story(self) -> Story:
         """Return the story.
@@ -146,12 +161,16 @@ class StorySettings:
         from deixis.grammar.utterances import read_utterances
         from deixis.perception.tracking.stream import LatestFrames
 
-        driver = self.source != "simulator" and not Path(self.source).exists() and ":" in self.source
-        if self.source == "simulator":
+        driver = self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
+        if self.source in SIMULATED:
             from deixis.examples_data import example
             from deixis.workflows.layouts.read import as_script
 
-            found = simulated_story(as_script(self.layout or str(example("tea.layout"))), self.seed, self.rate)
+            script = as_script(self.layout or str(example("tea.layout")))
+            if self.source == "laying":
+                found = laying_story(script, self.seed, self.rate, self.camera)
+            else:
+                found = simulated_story(script, self.seed, self.rate)
         elif driver:
             found = Story(made(self.source, CloudSource).frames())  # type: ignore[type-abstract]
         else:
@@ -310,6 +329,69 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
                 number += 1
 
     return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons), truth)
+
+
+def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str = "sway") -> Story:
+    """Return a story in which a person with a camera on her head lays a table and says what she does.
+
+    She begins with what lies under other things, and announces each thing (*first the plate*, *then the cup*). Her
+    order differs from table to table by exchanges of neighbours.
+
+    Parameters
+    ----------
+    script
+        How the table is laid.
+    seed
+        Seed of the things, the order and the movement of the head.
+    rate
+        Frames a second.
+    camera
+        Path of the camera, a name of :data:`~deixis.perception.simulator.films.camera_paths.CAMERA_PATHS`.
+
+    Returns
+    -------
+    Story
+        The story. Its frames are computed one by one.
+
+    Raises
+    ------
+    SimulationError
+        If no table can be laid as the script says, or there is no such path.
+
+    Examples
+    --------
+    >>> from deixis.workflows.layouts.read import as_script
+    >>> story = laying_story(as_script("plate left of cup"))
+    >>> [words.text for words in story.words]
+    ['First the plate.', 'Finally the cup.']
+    """
+    from deixis.ontology.kinds import plain_name
+    from deixis.perception.simulator.cameras.camera import chair_camera
+    from deixis.perception.simulator.films.camera_paths import camera_path
+    from deixis.perception.simulator.films.motion import Bring, Rest, Stage
+    from deixis.perception.simulator.laying import top_under, truth_scene
+    from deixis.workflows.layouts.lay_table import lay_script
+
+    rng = np.random.default_rng(seed)
+    table = lay_script(script, seed=seed).table
+    order = sorted(range(len(table.things)), key=lambda k: round(float(table.things[k].box[0, 2]), 3))
+    for k in np.flatnonzero(rng.random(len(order) - 1) < SWAPPED).tolist():
+        lower, upper = (table.things[order[k]], table.things[order[k + 1]])
+        if not _bears(lower, (upper,)):
+            order[k : k + 2] = order[k + 1], order[k]
+
+    stage, words = Stage((), seed), []
+    stage.carry_out(Rest(TALK))
+    for place, k in enumerate(order):
+        name = plain_name(table.things[k].name).replace("_", " ")
+        opening = "First" if place == 0 else "Finally" if place == len(order) - 1 else "Then"
+        words.append(Utterance(f"{opening} the {name}.", stage.at, stage.at + REACH, "teacher"))
+        stage.carry_out(Rest(REACH))
+        stage.carry_out(Bring(table.things[k]))
+        stage.carry_out(Rest(TALK))
+    top, eye = top_under(table.things), chair_camera(table)
+    truth = StoryTruth(truth_scene(table), eye, laid=tuple(table.things[k].name for k in order))
+    return Story(stage.film(top, eye, camera_path(camera, seed)).frames(rate, seed), tuple(words), (), truth)
 
 
 def _bears(thing: LaidThing, things: Iterable[LaidThing]) -> bool:

@@ -71,6 +71,44 @@ def sequence_of_episodes(board: Blackboard, start: float | None = None, end: flo
     return StepSequence.of(fluents)
 
 
+def sequences_of_experiences(board: Blackboard, names: Sequence[str] = ()) -> tuple[StepSequence, ...]:
+    """Return the sequences in which things came in experiences.
+
+    Parameters
+    ----------
+    board
+        The blackboard.
+    names
+        Names of experiences; by default all whose recording has finished.
+
+    Returns
+    -------
+    tuple of StepSequence
+        A sequence for each experience, in the given order or in that of their starts.
+
+    Raises
+    ------
+    EpisodeError
+        If there is no experience of a name.
+    NothingFoundError
+        If no experience has finished, or nothing came in one of them.
+    """
+    from deixis.memory.episodes.experiences import experience_named, experiences
+
+    chosen = [experience_named(board, name) for name in names]
+    chosen = chosen or [each for each in experiences(board) if each.finish is not None]
+    if not chosen:
+        raise NothingFoundError(
+            "the memory has no finished experience; record one with 'deixis robot run --experience'"
+        )
+    sequences = []
+    for each in chosen:
+        sequences.append(sequence_of_episodes(board, each.start, each.finish))
+        if not sequences[-1].steps:
+            raise NothingFoundError(f"nothing came to the table in the experience '{each.name}'; leave it out")
+    return tuple(sequences)
+
+
 def ground(
     activity_text: str | Activity, source: str | Path | StepSequence, time_limit: float = 10.0
 ) -> ActivityGrounding:

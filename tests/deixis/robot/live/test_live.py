@@ -76,7 +76,11 @@ def test_robot_learns_what_it_is_told(ran: Ran) -> None:
 def test_robot_finds_the_forgotten_thing(ran: Ran) -> None:
     assert heard(ran, "teacher: What is wrong?")
     assert heard(ran, "robot: This is 'pair'", "the plate is missing")
-    assert [(thing.id, thing.name) for thing in ran.things] == [("t3", "fork")]
+
+
+def test_a_name_that_the_layout_contradicts_is_in_doubt(ran: Ran) -> None:
+    assert heard(ran, "robot: I see: t3 is a bowl.")  # the layout has a fork there
+    assert [(thing.id, thing.name) for thing in ran.things] == [("t3", None)]
 
 
 def test_typed_words_and_ids_are_heard(ran: Ran) -> None:
