@@ -139,8 +139,8 @@ class Counts:
         for laying in self.examples:
             for number, thing in enumerate(laying):
                 self.at[number][thing.kind] += 1
-                self.after[example[number - 1].kind if number else None][thing.kind] += 1
-            for kind, count in Counter(thing.kind for thing in example).items():
+                self.after[laying[number - 1].kind if number else None][thing.kind] += 1
+            for kind, count in Counter(thing.kind for thing in laying).items():
                 self.most[kind] = max(self.most[kind], count)
 
     def guess(self, counts: Counter[str], laid: Laying) -> dict[str, float]:
