@@ -28,7 +28,7 @@ from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS, STATED_SIDES
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

@@ -25,7 +25,7 @@ from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
-from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.exact import exact, maps_within, warm
 from deixis.reasoning.grounding.matching.problem import Problem

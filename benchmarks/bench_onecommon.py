@@ -19,7 +19,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
 
 

@@ -40,11 +40,11 @@ from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check
 from deixis.reasoning.comparison.turning import Turned, is_aim, turned_roles
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
 from deixis.reasoning.grounding.engine import Engine
-from deixis.reasoning.grounding.evidence.colours import other_colours
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
-from deixis.reasoning.grounding.evidence.labels import Label, naming
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.reasoning.grounding.evidence.unary import OUTLIERS
+from deixis.reasoning.grounding.evidence.properties.colours import other_colours
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.unary import OUTLIERS
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.members import assignment_of, broken_of_members

@@ -20,7 +20,7 @@ from deixis.reasoning.grounding.alternatives import (
 from deixis.reasoning.grounding.answer import FactOutcome, FrameOfFact, Grounding, Outcome, Pivotal, Standing
 from deixis.reasoning.grounding.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.pair_features import HEADINGS
+from deixis.reasoning.grounding.evidence.words.pair_features import HEADINGS
 from deixis.reasoning.grounding.matching.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.members import with_members

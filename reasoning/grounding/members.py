@@ -17,7 +17,7 @@ from deixis.ontology.lessons.types import Alternative
 from deixis.reasoning.grounding.alternatives import MIN_LISTED_PROBABILITY
 from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Member, Outcome
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 

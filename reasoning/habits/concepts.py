@@ -12,7 +12,7 @@ from deixis.ontology.inflection import plural
 from deixis.ontology.kinds import spaced
 from deixis.ontology.lexicon.groups import Groups
 from deixis.ontology.tbox import Ontology
-from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 LARGE, SMALL = 0.4, 0.12
 """Usual length in metres from which on a thing is large, and below which it is small."""

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from deixis.ontology.tbox import Ontology
     from deixis.perception.scene import Scene
     from deixis.reasoning.description_logic.object_view import ObjectView
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 COMPLETION_SHARE = 0.5
 """Share of a query's time limit in which the implications of layouts are computed."""
@@ -118,7 +118,7 @@ class KnowledgeStore(Closing):
         MemoryBusyError
             If another process has the memory open.
         """
-        from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+        from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 
         if self._meaning is None:
             self._meaning = self._in_force() if self.exists() else SHIPPED
@@ -128,7 +128,7 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.rdf.graphs import ModelSet
         from deixis.ontology.models.relation_triples import models_from_triples
         from deixis.ontology.models.sizes import SIZE_PROPERTIES, sizes_from_triples
-        from deixis.reasoning.grounding.evidence.meaning import Meaning, shipped_models
+        from deixis.reasoning.grounding.evidence.words.meaning import Meaning, shipped_models
 
         words = models_from_triples(self.memory().models(ModelSet.WORDS))
         sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES, SIZE_PROPERTIES))

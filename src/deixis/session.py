@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.description_logic.object_view import ObjectView
     from deixis.reasoning.grounding.answer import Grounding
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.dialogue import Ask
     from deixis.workflows.knowledge.learn import Learned, Recording

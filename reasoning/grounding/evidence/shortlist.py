@@ -29,10 +29,10 @@ from deixis.ontology.relation import Reading
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import SPREAD, Surroundings
 from deixis.reasoning.geometry.rectangle import cross_relations
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
-from deixis.reasoning.grounding.evidence.facts import SaidFacts, compared_facts, literal_degree
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, LITERAL_PRIOR
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, Meaning, shipped_models
+from deixis.reasoning.grounding.evidence.facts.facts import SaidFacts, compared_facts, literal_degree
+from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, LITERAL_PRIOR
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, Meaning, shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]

@@ -345,7 +345,7 @@ def called_by(word: str, room: Room, colours: Colours) -> NDArray[np.bool_] | No
     ndarray or None
         Mask of shape (n,), or None.
     """
-    from deixis.reasoning.grounding.evidence.colours import colour_evidence
+    from deixis.reasoning.grounding.evidence.properties.colours import colour_evidence
 
     term = colours.of_word(word)
     if term is None or np.isnan(room.colours).all():
@@ -365,7 +365,7 @@ def _ranked(prop: Property, room: Room, candidates: Indices, rivals: Rivals) -> 
 
 
 def _colour(prototype: tuple[int, int, int], room: Room, candidates: Indices, rivals: Rivals) -> Features:
-    from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+    from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
     lab = room.lab[candidates]
     wanted = lab_of_srgb(np.array(prototype, dtype=np.float64))

@@ -225,7 +225,7 @@ class Room:
     @cached_property
     def lab(self) -> Array:
         """Colours in CIELAB, shape (n, 3); NaN if unknown."""
-        from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+        from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
         return lab_of_srgb(self.colours)
 

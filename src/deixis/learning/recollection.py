@@ -222,7 +222,7 @@ def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
         Thing and confidence by object.
     """
     from deixis.learning.scene_evidence import scene_labels
-    from deixis.reasoning.grounding.evidence.labels import naming
+    from deixis.reasoning.grounding.evidence.properties.labels import naming
 
     fitted = naming(description, list(scene_labels(scene).values()), kinds).fitted
     alone = fitted & (fitted.sum(axis=1) == 1)[:, None] & (fitted.sum(axis=0) == 1)[None, :]

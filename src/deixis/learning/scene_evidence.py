@@ -16,12 +16,12 @@ from deixis.ontology.tbox import Ontology
 from deixis.ontology.vocabulary import DX
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
+from deixis.reasoning.grounding.evidence.claims.places import supporting_box
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from, thing_evidence
-from deixis.reasoning.grounding.evidence.labels import Label, naming
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
-from deixis.reasoning.grounding.evidence.places import supporting_box
-from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR
-from deixis.reasoning.grounding.shortlisted import evidence_of_shortlist
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.unary import LABEL_ERROR
+from deixis.reasoning.grounding.evidence.shortlisted import evidence_of_shortlist
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 
 ODD_SCALE = 10.0
 """Ratio of seen to usual lengths from which the unit of a scene is doubted; units differ by 10 or more."""

@@ -20,9 +20,9 @@ from deixis.ontology.lessons.write import scene_text_iri
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.sizes import Sizes
 from deixis.ontology.triples import content_key
-from deixis.reasoning.grounding.evidence.labels import category_of, classes
-from deixis.reasoning.grounding.evidence.sizes import usual_size
-from deixis.reasoning.grounding.evidence.unary import log_sizes
+from deixis.reasoning.grounding.evidence.properties.labels import category_of, classes
+from deixis.reasoning.grounding.evidence.properties.sizes import usual_size
+from deixis.reasoning.grounding.evidence.properties.unary import log_sizes
 from deixis.reasoning.grounding.fitting.size_statistics import BUCKET, SCALE, Distribution, steps
 from deixis.reasoning.grounding.fitting.sizes import SizePrior, pool, size_of, usual_prior
 

@@ -16,7 +16,7 @@ from deixis.ontology.models.relations import RelationModel, RelationModels
 from deixis.ontology.triples import content_key
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.fitting.fit import FitSettings, FitStatistics, RelationFit, fit_relations, take_out
 from deixis.reasoning.grounding.fitting.likelihood import SaidPairs, said_pairs
 from deixis.version import VERSION

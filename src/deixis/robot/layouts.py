@@ -25,8 +25,8 @@ from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.evidence.candidates import candidate_ratios
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.properties.candidates import candidate_ratios
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 Array = NDArray[np.float64]
 

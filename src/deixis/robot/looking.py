@@ -20,7 +20,7 @@ from deixis.ontology.tbox import Ontology
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
 UNEXPLAINED_LAYOUT = -2.0

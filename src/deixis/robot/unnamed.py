@@ -22,7 +22,7 @@ from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import NOTHING, explain
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 from deixis.view_store import UNKNOWN
 

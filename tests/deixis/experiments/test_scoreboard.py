@@ -30,7 +30,7 @@ from deixis.experiments.scoreboard.statistics import holm, interval, paired_p
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 TINY = ScoreboardPlan(

@@ -16,7 +16,7 @@ from deixis.ontology.models.relation_triples import models_from_triples
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import NothingFoundError
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.fitting.fit import FEW_SCENES
 from deixis.session import Session
 from deixis.workflows.layouts.read import read_script

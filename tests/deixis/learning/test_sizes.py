@@ -14,7 +14,7 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.grounding.evidence.labels import category_of
+from deixis.reasoning.grounding.evidence.properties.labels import category_of
 
 ONTOLOGY = default_ontology()
 PLATE, FORK = (kind.iri for word in ("dinner plate", "fork") if (kind := ONTOLOGY.kinds.of_word(word)))

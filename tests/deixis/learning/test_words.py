@@ -17,7 +17,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.workflows.layouts.read import read_script
 
 ONTOLOGY = default_ontology()

@@ -46,7 +46,7 @@ def imagined_table() -> Figure:
 def relation_field() -> Figure:
     from deixis.ontology.tbox import default_ontology
     from deixis.plots.relation import relation_figure
-    from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
     return relation_figure(default_ontology().relations["left"], shipped_models(), steps=61)
 

@@ -27,7 +27,7 @@ from deixis.reasoning.comparison.likeness import (
 from deixis.reasoning.comparison.retrieval import assignment_bound, quick_bound, rank_layouts, rank_scenes
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
-from deixis.reasoning.grounding.evidence.labels import category_of
+from deixis.reasoning.grounding.evidence.properties.labels import category_of
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 ONTOLOGY = default_ontology()

@@ -252,7 +252,7 @@ def test_the_names_of_the_pairs_are_worked_out_once(
     graph_of: MakeGraph, full_script: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import deixis.reasoning.geometry.rectangle as rectangle
-    import deixis.reasoning.grounding.evidence.facts as facts
+    import deixis.reasoning.grounding.evidence.facts.facts as facts
 
     related, counts = rectangle.scene_relations, []
 

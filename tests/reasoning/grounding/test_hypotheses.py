@@ -23,7 +23,7 @@ from deixis.reasoning.grounding import hypotheses
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, evidence_from, no_unary_evidence
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.hypotheses import (
     ANOTHER_PRIOR,

@@ -25,7 +25,7 @@ from deixis.reasoning.grounding.answer import Standing
 from deixis.reasoning.grounding.engine import Alignment
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED
 from deixis.reasoning.grounding.ground import SENSITIVITY_NOT_ASKED, ground
 from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.matching.coincidences import discounted

@@ -18,7 +18,7 @@ from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint

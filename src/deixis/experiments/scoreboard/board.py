@@ -18,7 +18,7 @@ from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnsw
 from deixis.experiments.scoreboard.statistics import Interval, holm, interval, paired_p
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.symmetry import interchangeable
 

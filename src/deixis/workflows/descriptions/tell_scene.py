@@ -18,8 +18,8 @@ from deixis.grammar.reading import StatedFact
 from deixis.ontology.claims import Claim
 from deixis.ontology.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
-from deixis.reasoning.grounding.evidence.aims import stated_direction
-from deixis.reasoning.grounding.evidence.colours import colour_terms
+from deixis.reasoning.grounding.evidence.claims.aims import stated_direction
+from deixis.reasoning.grounding.evidence.properties.colours import colour_terms
 from deixis.reasoning.grounding.reference.expressions import (
     Attributes,
     Description,

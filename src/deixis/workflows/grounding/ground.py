@@ -36,7 +36,7 @@ from deixis.reasoning.errors import LimitError, OutOfTimeError, SettingError, re
 from deixis.reasoning.grounding.answer import Grounding
 from deixis.reasoning.grounding.engines import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.memory_budget import (
     DEFAULT_MEMORY_LIMIT,

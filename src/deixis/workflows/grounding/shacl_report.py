@@ -16,9 +16,9 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
 from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.evidence import HELD_FROM
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:

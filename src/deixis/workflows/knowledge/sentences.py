@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.read import Provenance
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.ontology.tbox import Ontology
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 
 def plain(text: str) -> str:

@@ -13,8 +13,13 @@ from numpy.typing import NDArray
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.facts import FactEvidence, fact_tables
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, LITERAL_PRIOR, MAX_JUDGED_OBJECTS, literal_share
+from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, fact_tables
+from deixis.reasoning.grounding.evidence.facts.literalness import (
+    LITERAL,
+    LITERAL_PRIOR,
+    MAX_JUDGED_OBJECTS,
+    literal_share,
+)
 from deixis.reasoning.grounding.matching.problem import Problem
 
 R = default_ontology().relations

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import deixis
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.candidates import CANDIDATE_OUTLIERS, candidate_ratios
+from deixis.reasoning.grounding.evidence.properties.candidates import CANDIDATE_OUTLIERS, candidate_ratios
 
 ONTOLOGY = default_ontology()
 KINDS = ONTOLOGY.kinds

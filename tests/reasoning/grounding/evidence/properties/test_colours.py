@@ -16,10 +16,10 @@ from deixis.ontology.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.evidence.colours import OUTLIERS, colour_evidence, lab_of_srgb, other_colours
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.properties.colours import OUTLIERS, colour_evidence, lab_of_srgb, other_colours
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 ONTOLOGY = default_ontology()
 COLOURS = ONTOLOGY.colours

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.optimize import linear_sum_assignment
 
-from deixis.reasoning.grounding.evidence.labels import spare_rows
+from deixis.reasoning.grounding.evidence.properties.labels import spare_rows
 
 
 def largest(pairs: np.ndarray) -> int:

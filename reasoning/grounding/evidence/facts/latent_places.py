@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from deixis.reasoning.geometry.pairs import PairGeometry, Surroundings
 from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import cross_relations
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees
-from deixis.reasoning.grounding.evidence.facts import SIDE, SaidFacts
+from deixis.reasoning.grounding.evidence.facts.facts import SIDE, SaidFacts
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
 from deixis.reasoning.grounding.matching.problem import MAX_PLACES, MIN_PLACES, PLACES_PER_THING
 
 

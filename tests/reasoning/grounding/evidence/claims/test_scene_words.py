@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.reasoning.errors import LimitError
-from deixis.reasoning.grounding.evidence.scene_words import MAX_THINGS, scene_words
+from deixis.reasoning.grounding.evidence.claims.scene_words import MAX_THINGS, scene_words
 
 ROW = np.array([[[x, 0.0, 0.0], [x + 0.1, 0.1, h]] for x, h in ((0.0, 0.1), (0.3, 0.3), (0.6, 0.1))])
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.sizes import (
+from deixis.reasoning.grounding.evidence.properties.sizes import (
     IMAGE_SPREAD,
     SizeMixture,
     beside_each_other,

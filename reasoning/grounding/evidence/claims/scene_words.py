@@ -12,9 +12,9 @@ from deixis.ontology.models.relations import FAMILIES, GRADED_FAMILIES, Relation
 from deixis.reasoning.errors import LimitError
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.poses import Poses
-from deixis.reasoning.grounding.evidence.claims import between_degrees
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.claims.claims import between_degrees
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 Array = NDArray[np.float64]
 

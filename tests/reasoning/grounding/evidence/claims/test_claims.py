@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from deixis.grammar.english.reader import read_english
 from deixis.ontology.claims import Claim
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.claims import MAX_THINGS, ClaimTables, claim_tables, ordinal_degrees
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
+from deixis.reasoning.grounding.evidence.claims.claims import MAX_THINGS, ClaimTables, claim_tables, ordinal_degrees
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, shipped_models
 from deixis.workflows.grounding.ground import GroundingRequest, ground
 
 R = default_ontology().relations

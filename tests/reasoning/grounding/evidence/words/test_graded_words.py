@@ -9,8 +9,8 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import relation_degree
-from deixis.reasoning.grounding.evidence.meaning import CHANCE, shipped_models
+from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.meaning import CHANCE, shipped_models
 from deixis.reasoning.grounding.fitting.fit import chance_degree, random_scenes
 from deixis.workflows.grounding.ground import ground
 

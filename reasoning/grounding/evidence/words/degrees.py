@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel, RelationModels, Term
 from deixis.ontology.relation import Reading, Relation
 from deixis.reasoning.geometry.pairs import PairGeometry
-from deixis.reasoning.grounding.evidence.meaning import own_frame_model
-from deixis.reasoning.grounding.evidence.pair_features import UNKNOWN_AIM, View, own_frame, view
+from deixis.reasoning.grounding.evidence.words.meaning import own_frame_model
+from deixis.reasoning.grounding.evidence.words.pair_features import UNKNOWN_AIM, View, own_frame, view
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def word_degree(pairs: PairGeometry, word: str, models: RelationModels) -> Array
     --------
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
-    >>> from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    >>> from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
     >>> fork, plate = [[0.0, 0.0], [0.02, 0.2]], [[0.05, -0.02], [0.32, 0.25]]
     >>> pairs = pair_geometry(np.array([fork, plate]))
     >>> [word_degree(pairs, word, shipped_models())[0, 1].round(2).item() for word in ("left", "bottom_left", "right")]
@@ -170,7 +170,7 @@ def frame_shares(pairs: PairGeometry, word: str, models: RelationModels) -> Arra
     >>> import numpy as np
     >>> from deixis.reasoning.geometry.pairs import pair_geometry
     >>> from deixis.reasoning.geometry.poses import Poses
-    >>> from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    >>> from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
     >>> boxes = np.array([[[0.0, 2.0], [1.0, 3.0]], [[0.0, 0.0], [1.0, 1.0]]])
     >>> chair = Poses.of_boxes(boxes, fronts=np.array([[np.nan, np.nan], [0.0, 1.0]]))
     >>> frame_shares(pair_geometry(boxes, chair), "in_front", shipped_models())[0, 1].round(2).item()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME
+from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME
 
 Array = NDArray[np.float64]
 

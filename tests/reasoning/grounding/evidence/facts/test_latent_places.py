@@ -10,10 +10,10 @@ import pytest
 from deixis.experiments.generated_tables import generate
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.evidence import latent_places as module
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
-from deixis.reasoning.grounding.evidence.facts import FactEvidence
-from deixis.reasoning.grounding.evidence.latent_places import place_boxes, place_ratios
+from deixis.reasoning.grounding.evidence.facts import latent_places as module
+from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence
+from deixis.reasoning.grounding.evidence.facts.latent_places import place_boxes, place_ratios
 from deixis.reasoning.grounding.matching.belief_propagation import beliefs_with_places
 from deixis.reasoning.grounding.matching.problem import MIN_PLACES, UNMATCHED
 

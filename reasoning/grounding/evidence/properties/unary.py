@@ -20,8 +20,8 @@ from deixis.ontology.sizes import Sizes
 from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import require_boxes
-from deixis.reasoning.grounding.evidence.labels import Label, naming
-from deixis.reasoning.grounding.evidence.sizes import (
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.sizes import (
     SizeMixture,
     beside_each_other,
     from_above,
@@ -312,9 +312,10 @@ def label_ratios(
     A right label of an object is a word that fits it, or with probability ``BROADER_WORD`` a broader word for it. A
     right label of any other thing is a word for one of the known kinds, all equally likely, or one of ``OTHER_WORDS``
     words for other kinds. A wrong label is a word of the description in half of the cases, and any word otherwise.
-    Naming follows :func:`deixis.reasoning.grounding.evidence.labels.naming`. Where a word labels more things than
-    objects that it fits, such things are frequent in this scene: the probability of the word for a thing that is not
-    mentioned is the mean of its prior, which counts as ``WORLD_COUNT`` things, and of the things counted in the scene.
+    Naming follows :func:`deixis.reasoning.grounding.evidence.properties.labels.naming`. Where a word labels more things
+    than objects that it fits, such things are frequent in this scene: the probability of the word for a thing that is
+    not mentioned is the mean of its prior, which counts as ``WORLD_COUNT`` things, and of the things counted in the
+    scene.
 
     Examples
     --------

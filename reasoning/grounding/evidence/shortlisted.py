@@ -21,8 +21,8 @@ from deixis.reasoning.grounding.evidence.evidence import (
     absence,
     without_facts,
 )
-from deixis.reasoning.grounding.evidence.meaning import Meaning
 from deixis.reasoning.grounding.evidence.shortlist import shortlist
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.reasoning.grounding.matching.posterior import FACTOR_CELLS
 from deixis.reasoning.grounding.memory_budget import bytes_of_things, different_facts, required_gigabytes
 

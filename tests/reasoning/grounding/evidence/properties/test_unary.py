@@ -12,9 +12,8 @@ from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.evidence.unary import (
+from deixis.reasoning.grounding.evidence.properties.labels import Label
+from deixis.reasoning.grounding.evidence.properties.unary import (
     OUTLIERS,
     UnaryWeights,
     label_ratios,
@@ -22,6 +21,7 @@ from deixis.reasoning.grounding.evidence.unary import (
     size_evidence,
     too_high,
 )
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.reasoning.grounding.fitting.sizes import learn_size, pooled_prior
 
 ONTOLOGY = default_ontology()

@@ -17,10 +17,10 @@ from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
-from deixis.reasoning.grounding.evidence.degrees import relation_evidence
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
-from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables, hedged
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.facts.facts import crisp_tables, fact_tables, hedged
+from deixis.reasoning.grounding.evidence.words.degrees import relation_evidence
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem
 
 R = default_ontology().relations
@@ -164,7 +164,7 @@ def test_tables_made_block_by_block_are_those_of_the_whole_scene(monkeypatch: py
     denied = [Fact(f.subject, f.relations, f.object, positive=False) for f in list(laid.description().facts())[:5]]
     said = RelationGraph.from_facts(R, laid.description().nodes, [*laid.description().facts(), *denied])
     whole = fact_tables(said, laid.boxes, literal=0.3).tables
-    monkeypatch.setattr("deixis.reasoning.grounding.evidence.facts.SIDE", 7)
+    monkeypatch.setattr("deixis.reasoning.grounding.evidence.facts.facts.SIDE", 7)
     monkeypatch.setattr("deixis.reasoning.geometry.pairs.ROW_CELLS", 50)
     monkeypatch.setattr("deixis.reasoning.geometry.rectangle.ROW_CELLS", 50)
     np.testing.assert_allclose(fact_tables(said, laid.boxes, literal=0.3).tables, whole, atol=1e-5)

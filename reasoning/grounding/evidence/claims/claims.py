@@ -25,11 +25,11 @@ from deixis.ontology.models.relations import RelationModels
 from deixis.ontology.relation import Relations
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.poses import Poses
-from deixis.reasoning.grounding.evidence.aims import AIMING, aim_degrees
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees
-from deixis.reasoning.grounding.evidence.facts import hedged
-from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME, OUTLIERS
-from deixis.reasoning.grounding.evidence.places import lean_in_things, lean_on_surface, place_degree
+from deixis.reasoning.grounding.evidence.claims.aims import AIMING, aim_degrees
+from deixis.reasoning.grounding.evidence.claims.places import lean_in_things, lean_on_surface, place_degree
+from deixis.reasoning.grounding.evidence.facts.facts import hedged
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
+from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME, OUTLIERS
 
 Array = NDArray[np.float64]
 

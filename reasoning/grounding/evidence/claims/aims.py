@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.geometry.poses import Poses, bearings
-from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME
-from deixis.reasoning.grounding.evidence.places import TOWARDS
+from deixis.reasoning.grounding.evidence.claims.places import TOWARDS
+from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME
 
 Array = NDArray[np.float64]
 

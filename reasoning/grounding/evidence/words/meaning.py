@@ -27,8 +27,8 @@ from deixis.ontology.models.relations import (
     Trend,
 )
 from deixis.ontology.models.sizes import SizeModel
-from deixis.reasoning.grounding.evidence.pair_features import UNKNOWN_AIM
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.words.pair_features import UNKNOWN_AIM
 
 BORDER, EXTREME = float(np.log(0.5)), float(np.log(0.05))
 OUTLIERS = 0.01

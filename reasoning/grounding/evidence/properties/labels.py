@@ -5,7 +5,7 @@ label's kind. A narrower label also names broader objects: a dinner fork is a fo
 a bowl. Exact names take precedence: where one thing has the label *fork*, a dinner fork beside it is not the only fork
 of a script; where a script has a dinner fork, a thing with that label is not another fork of the script. Broader
 objects get only what exact names leave over, on both sides: of two dinner forks, one can be the fork. The evidence of a
-name is computed by :func:`deixis.reasoning.grounding.evidence.unary.label_ratios`.
+name is computed by :func:`deixis.reasoning.grounding.evidence.properties.unary.label_ratios`.
 
 The maximum matching is scipy's. With networkx (Hopcroft-Karp and a search along alternating paths) it takes 2, 10 and
 20 times as long for 12, 100 and 500 rows, and the import takes 0.14 s more.

@@ -9,7 +9,7 @@ chance:
   as fitting at any distance: a thing far to the left is still left, and people only mention it less often;
 - a literal fact is stated of any pair, near or far, as readily as the pair's exact relation fits: 1 where it is the
   word, ``IMPLIED`` where it only implies the word, else 0; by chance one relation in ten fits. The share of literal
-  facts is estimated from the whole description (:mod:`deixis.reasoning.grounding.evidence.literalness`);
+  facts is estimated from the whole description (:mod:`deixis.reasoning.grounding.evidence.facts.literalness`);
 - a hedge of weight w: the fact holds with probability w, else it is ignored: log(w exp(l) + 1 - w), where l is the
   evidence of the fact. Below one half (*rarely*) the opposite is stated, with weight 1 - w;
 - ``optional``: the fact holds every second time: w is halved.
@@ -34,9 +34,9 @@ from deixis.reasoning.errors import OutOfTimeError, SettingError
 from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry, Surroundings
 from deixis.reasoning.geometry.poses import Poses
 from deixis.reasoning.geometry.rectangle import box_relations, require_boxes
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio, saying_degree
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, literal_share
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, shipped_models
+from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, literal_share
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, log_likelihood_ratio, saying_degree
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem, empty_tables
 
 Array = NDArray[np.float64]

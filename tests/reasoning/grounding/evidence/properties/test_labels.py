@@ -10,7 +10,7 @@ import pytest
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
 
 MakeGraph = Callable[..., RelationGraph]
 KINDS: Kinds = default_ontology().kinds

@@ -15,7 +15,7 @@ from deixis.ontology.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.evidence.degrees import (
+from deixis.reasoning.grounding.evidence.words.degrees import (
     degree_of_view,
     log_likelihood_ratio,
     relation_degree,
@@ -23,8 +23,8 @@ from deixis.reasoning.grounding.evidence.degrees import (
     saying_degree,
     word_degree,
 )
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.reasoning.grounding.evidence.pair_features import view
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.pair_features import view
 from deixis.reasoning.grounding.fitting.fit import chance_degree, random_scenes
 
 RELATIONS = default_ontology().relations

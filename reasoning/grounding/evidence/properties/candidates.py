@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.graph import RelationGraph
 from deixis.ontology.kinds import Kinds
-from deixis.reasoning.grounding.evidence.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
 
 NONE_PRIOR = 0.5
 """Prior probability that a thing has no taught name, as recognisers assume; the taught names share the rest equally."""
