@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
     from deixis.reasoning.activities.prediction import Prediction
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
     from deixis.workflows.descriptions.refer import refer
@@ -111,7 +111,7 @@ _HOMES = {
     "Check": "deixis.workflows.grounding.check",
     "DeixisError": "deixis.errors",
     "Fact": "deixis.ontology.facts",
-    "Grounding": "deixis.reasoning.grounding.answer",
+    "Grounding": "deixis.reasoning.grounding.answers.answer",
     "Imagination": "deixis.workflows.layouts.imagine",
     "Inference": "deixis.workflows.layouts.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",

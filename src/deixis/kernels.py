@@ -55,7 +55,7 @@ def compile_grounding(engine: str) -> None:
     from deixis.reasoning.entailment.conflict import find_conflict
     from deixis.reasoning.entailment.implications import Implications
     from deixis.reasoning.geometry.pairs import Surroundings
-    from deixis.reasoning.grounding.engines import engine_named
+    from deixis.reasoning.grounding.engines.registry import engine_named
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
     from deixis.reasoning.grounding.ground import ground
     from deixis.reasoning.grounding.matching import exact, ladders

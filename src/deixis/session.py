@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
     from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.description_logic.object_view import ObjectView
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.dialogue import Ask

@@ -18,7 +18,7 @@ from deixis.ontology.lessons.types import ANONYMOUS, LayoutConcept, Lesson, Matc
 from deixis.ontology.relation import Relations
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.reasoning.grounding.options import is_decided
 
 MAX_PAIRS = 2000

@@ -19,11 +19,11 @@ from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.answer import Grounding, Outcome
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding, Outcome
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DECIDED
 
 MakeGraph = Callable[..., RelationGraph]

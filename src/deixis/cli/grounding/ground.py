@@ -32,7 +32,7 @@ from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
     from deixis.reasoning.attributes.attribute import Attribute
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.grounding.dialogue import Ask
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.experiments.scoreboard.cases import Case
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
 from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED, Meaning

@@ -26,9 +26,9 @@ from deixis.reasoning.comparison.claims import violated
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.workflows.layouts.read import as_scene, as_script, is_script_file
 

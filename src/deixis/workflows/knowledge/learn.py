@@ -13,7 +13,7 @@ from deixis.knowledge_store import KnowledgeStore
 from deixis.ontology.lessons.types import ANONYMOUS
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
 from deixis.view_store import ViewStore, views_of_matches

@@ -10,7 +10,7 @@ import pytest
 
 import deixis
 from deixis.perception.scene import Heading, OrientedBox
-from deixis.reasoning.grounding.answer import Outcome
+from deixis.reasoning.grounding.answers.answer import Outcome
 from deixis.reasoning.grounding.reference.answer import Frame
 
 AROUND = [[0.0, 0.0, 0.5], [0.0, 1.2, 0.5], [0.0, -1.2, 0.5], [1.2, 0.0, 0.5]]

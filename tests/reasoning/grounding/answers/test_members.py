@@ -2,7 +2,7 @@ import pytest
 
 import deixis
 from deixis.grammar.english.reader import read_english
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.report.json_answers import grounding_to_dict
 
 TRAY: dict[str, object] = {"id": "tray", "label": "tray", "min": [0.0, 0.0, 0.0], "max": [0.4, 0.3, 0.02]}

@@ -3,8 +3,8 @@
 Both compare weighted graphs: the description has an edge for every fact, the scene one for every pair with a positive
 entry in the fact's table (divided by the largest entry). Facts of several kinds give several such pairs of graphs,
 whose updates are added. Of the unary evidence, both use only the matches that are ruled out. The iteration ends at the
-deadline. :class:`deixis.reasoning.grounding.map_engines.BaselineEngine` makes engines of them with the Hungarian
-method.
+deadline. :class:`deixis.reasoning.grounding.engines.map_engines.BaselineEngine` makes engines of them with the
+Hungarian method.
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from deixis.ontology.lessons.types import Alternative
-from deixis.reasoning.grounding.answer import LeftOut
-from deixis.reasoning.grounding.engine import Alignment
+from deixis.reasoning.grounding.answers.answer import LeftOut
+from deixis.reasoning.grounding.engines.engine import Alignment
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 

@@ -10,9 +10,9 @@ on that order, call :func:`deixis.reasoning.grounding.ground.ground`.
 from __future__ import annotations
 
 from deixis.errors import UnknownTermError
-from deixis.reasoning.grounding.engine import Engine
+from deixis.reasoning.grounding.engines.engine import Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.hypotheses import STATED_SIDES, Side
+from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES, Side
 from deixis.reasoning.grounding.options import EngineName, Select
 
 
@@ -32,7 +32,7 @@ def engine_named(
         Criterion of the paper's engine for choosing among sub-graphs.
     sides
         Sides from which a description may be spoken; used by engines with a posterior
-        (:func:`deixis.reasoning.grounding.hypotheses.weigh`).
+        (:func:`deixis.reasoning.grounding.hypotheses.hypotheses.weigh`).
     seen
         Evidence as seen from each of the sides, in their order; None to turn the scene instead.
 
@@ -46,11 +46,11 @@ def engine_named(
     UnknownTermError
         There is no engine of this name.
     """
-    from deixis.reasoning.grounding.map_engines import BaselineEngine, ExactEngine, ScalableEngine
-    from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity
+    from deixis.reasoning.grounding.engines.baselines import blondel_similarity, heymans_singh_similarity
+    from deixis.reasoning.grounding.engines.map_engines import BaselineEngine, ExactEngine, ScalableEngine
 
     if name == EngineName.SIMILARITY:
-        from deixis.reasoning.grounding.similarity_engine import SimilarityEngine
+        from deixis.reasoning.grounding.engines.similarity_engine import SimilarityEngine
 
         return SimilarityEngine(select)
     if name == EngineName.EXACT:

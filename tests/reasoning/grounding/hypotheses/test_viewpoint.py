@@ -19,12 +19,12 @@ from deixis.grammar.layout.parser import parse_script, read_layout
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
+from deixis.reasoning.grounding.hypotheses.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint
 
 Boxes = NDArray[np.float64]
-FORMAL = read_layout(str(Path(__file__).parents[3] / "examples" / "formal_dinner.layout")).graph()
+FORMAL = read_layout(str(Path(__file__).parents[4] / "examples" / "formal_dinner.layout")).graph()
 QUARTER = math.pi / 2
 
 

@@ -10,17 +10,17 @@ import pytest
 from groundings import R, answer, evidence
 from numpy.typing import NDArray
 
-import deixis.reasoning.grounding.similarity_engine as similarity_engine
+import deixis.reasoning.grounding.engines.similarity_engine as similarity_engine
 from deixis.deadline import Deadline
 from deixis.errors import UnknownTermError
 from deixis.experiments.place_settings import formal_setting
 from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
+from deixis.reasoning.grounding.engines.similarity_engine import CUT_SHORT
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.options import Select
-from deixis.reasoning.grounding.similarity_engine import CUT_SHORT
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from deixis.reasoning.grounding.engines.similarity import assign, graph_similarity
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.similarity import assign, graph_similarity
 
 Matrix = NDArray[np.float64]
 

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.similarity import (
+from deixis.reasoning.grounding.engines.similarity import (
     graph_similarity,
 )
+from deixis.reasoning.grounding.evidence.evidence import Evidence
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding.hypotheses import Verdict
+    from deixis.reasoning.grounding.hypotheses.hypotheses import Verdict
     from deixis.reasoning.grounding.matching.posterior import Posterior
 
 

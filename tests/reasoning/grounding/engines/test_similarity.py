@@ -15,8 +15,8 @@ from timing import processor_time_below
 
 from deixis.deadline import Deadline
 from deixis.ontology.graph import PaperGraph, RelationGraph
-from deixis.reasoning.grounding import similarity
-from deixis.reasoning.grounding.similarity import node_similarity
+from deixis.reasoning.grounding.engines import similarity
+from deixis.reasoning.grounding.engines.similarity import node_similarity
 
 MakeGraph = Callable[..., RelationGraph]
 Matrix = NDArray[np.float64]

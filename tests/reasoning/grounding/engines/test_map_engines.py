@@ -21,13 +21,13 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
-from deixis.reasoning.grounding.answer import Standing
-from deixis.reasoning.grounding.engine import Alignment
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Standing
+from deixis.reasoning.grounding.engines.engine import Alignment
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED
 from deixis.reasoning.grounding.ground import SENSITIVITY_NOT_ASKED, ground
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.matching.coincidences import discounted
 from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.posterior import Posterior
@@ -300,7 +300,7 @@ def test_many_objects_are_answered_soon_after_a_short_time_limit() -> None:
 
 
 def test_a_thousand_alike_do_not_list_each_other() -> None:
-    from deixis.reasoning.grounding.alternatives import MAX_LISTED_GROUP
+    from deixis.reasoning.grounding.answers.alternatives import MAX_LISTED_GROUP
 
     boxes = np.tile(np.array([[0.0, 0.0], [0.1, 0.1]]), (MAX_LISTED_GROUP + 2, 1, 1))
     names = [f"a{i}" for i in range(MAX_LISTED_GROUP + 2)]

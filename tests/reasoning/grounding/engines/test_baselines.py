@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from matching_problems import problems
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.matching.baselines import blondel_similarity, heymans_singh_similarity
+from deixis.reasoning.grounding.engines.baselines import blondel_similarity, heymans_singh_similarity
+from deixis.reasoning.grounding.engines.similarity import assign
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.similarity import assign
 
 
 def blondel(problem: Problem) -> NDArray[np.int64]:

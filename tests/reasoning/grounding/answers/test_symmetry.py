@@ -13,7 +13,7 @@ from timing import processor_time_below
 
 from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.symmetry import _Automorphisms, _edges, _stable, interchangeable
+from deixis.reasoning.grounding.answers.symmetry import _Automorphisms, _edges, _stable, interchangeable
 
 MakeGraph = Callable[..., RelationGraph]
 R = default_ontology().relations

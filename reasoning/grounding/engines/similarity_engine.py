@@ -15,11 +15,8 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.ontology.graph import PaperGraph, RelationGraph
-from deixis.reasoning.grounding.engine import Alignment
-from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.options import Select
-from deixis.reasoning.grounding.similarity import (
+from deixis.reasoning.grounding.engines.engine import Alignment
+from deixis.reasoning.grounding.engines.similarity import (
     ITERATIONS,
     SimilarityMatrices,
     assign,
@@ -27,6 +24,9 @@ from deixis.reasoning.grounding.similarity import (
     node_similarity,
     with_same_word,
 )
+from deixis.reasoning.grounding.evidence.evidence import Evidence
+from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.options import Select
 
 MAX_SUBGRAPHS = 5000
 """Maximum number of sub-graphs that are all tried; where there are more, a heuristic chooses one."""

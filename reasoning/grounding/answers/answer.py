@@ -17,9 +17,9 @@ from deixis.reasoning.grounding.reference.answer import Frame
 if TYPE_CHECKING:
     import networkx as nx
 
-    from deixis.reasoning.grounding.hypotheses import Side
+    from deixis.reasoning.grounding.hypotheses.hypotheses import Side
+    from deixis.reasoning.grounding.hypotheses.viewpoint import Viewpoint
     from deixis.reasoning.grounding.questions.inquiry import Exchange
-    from deixis.reasoning.grounding.viewpoint import Viewpoint
 
 
 class Standing(StrEnum):

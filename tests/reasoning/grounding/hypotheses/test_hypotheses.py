@@ -19,13 +19,13 @@ from deixis.ontology.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding import hypotheses
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, evidence_from, no_unary_evidence
 from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.hypotheses import (
+from deixis.reasoning.grounding.hypotheses import hypotheses
+from deixis.reasoning.grounding.hypotheses.hypotheses import (
     ANOTHER_PRIOR,
     AS_IT_STANDS,
     CHANCE_EXCESS,

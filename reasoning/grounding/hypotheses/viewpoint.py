@@ -3,8 +3,8 @@
 A *viewpoint* is the angle by which the scene must be turned, and whether it must be mirrored, so that left is what the
 speaker calls left. The matching problem is built again for each viewpoint; its log evidence is the logarithm of the sum
 over all maps of the exponential of their values, as far as maps can be listed. The posterior is the evidence, raised to
-the power of facts (:mod:`deixis.reasoning.grounding.hypotheses`), times a prior: uniform over the circle, and mirrored
-with probability ``MIRROR_PRIOR``, because speakers seldom stand behind a mirror.
+the power of facts (:mod:`deixis.reasoning.grounding.hypotheses.hypotheses`), times a prior: uniform over the circle,
+and mirrored with probability ``MIRROR_PRIOR``, because speakers seldom stand behind a mirror.
 
 Quarter turns are exact. For any other angle, centres are turned exactly. The extents are estimated on the assumption
 that things lie parallel to the speaker's axes: the enclosing box of a w by h rectangle that is turned by t has
@@ -12,8 +12,8 @@ W + H = (w + h)(|cos t| + |sin t|) and W - H = (w - h)(|cos t| - |sin t|). Appro
 round things, whose box does not change. At an eighth of a turn the box of a long thing is square, too, and cannot be
 distinguished from that of a round one.
 
-The probability of a match is a sum over sides (:mod:`deixis.reasoning.grounding.hypotheses`): a match that depends on a
-side is at most as probable as the side.
+The probability of a match is a sum over sides (:mod:`deixis.reasoning.grounding.hypotheses.hypotheses`): a match that
+depends on a side is at most as probable as the side.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.geometry.rectangle import require_boxes
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding.hypotheses import FACTS_POWER
+from deixis.reasoning.grounding.hypotheses.hypotheses import FACTS_POWER
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]

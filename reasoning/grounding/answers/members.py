@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.lessons.types import Alternative
-from deixis.reasoning.grounding.alternatives import MIN_LISTED_PROBABILITY
-from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Member, Outcome
+from deixis.reasoning.grounding.answers.alternatives import MIN_LISTED_PROBABILITY
+from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, Member, Outcome
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
