@@ -35,9 +35,9 @@ from deixis.reasoning.grounding.evidence.properties.labels import classes
 from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights, size_evidence
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.fitting.fit import FitSettings
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 HALVES_SEED = 2016
 SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts per object, share off

@@ -306,7 +306,7 @@ class Comparison:
         Likeness
             Similarity, matches, and whether it is proved.
         """
-        from deixis.reasoning.grounding.matching.exact import exact
+        from deixis.reasoning.grounding.matching.search.exact import exact
 
         problem = self.problem(layout, scene)
         best = exact(problem, deadline)

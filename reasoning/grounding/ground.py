@@ -25,7 +25,7 @@ from deixis.reasoning.grounding.answers.symmetry import interchangeable
 from deixis.reasoning.grounding.engines.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.evidence.words.pair_features import HEADINGS
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.reference.answer import Frame

@@ -58,7 +58,8 @@ def compile_grounding(engine: str) -> None:
     from deixis.reasoning.grounding.engines.registry import engine_named
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
     from deixis.reasoning.grounding.ground import ground
-    from deixis.reasoning.grounding.matching import exact, ladders
+    from deixis.reasoning.grounding.matching.posterior import ladders
+    from deixis.reasoning.grounding.matching.search import exact
     from deixis.reasoning.kernel import load_compiled
     from deixis.workflows.layouts.read import as_scene
 

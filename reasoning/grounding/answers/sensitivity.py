@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.coincidences import discounted
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import exact_posterior
+from deixis.reasoning.grounding.matching.posterior.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 MAX_OBJECTS = 30
 """Maximum number of objects of a problem that is solved again without each fact."""

@@ -17,7 +17,7 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence
 
 if TYPE_CHECKING:
     from deixis.reasoning.grounding.hypotheses.hypotheses import Verdict
-    from deixis.reasoning.grounding.matching.posterior import Posterior
+    from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,10 +20,10 @@ from deixis.reasoning.grounding.engines.similarity import assign
 from deixis.reasoning.grounding.engines.similarity_engine import CUT_SHORT, paper_similarity
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole
 from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES, Side, side_text, weigh
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.matching.scalable import scalable
+from deixis.reasoning.grounding.matching.search.exact import exact
+from deixis.reasoning.grounding.matching.search.scalable import scalable
 
 PROOF_SHARE, SEARCH_SHARE = 0.5, 0.8
 """Shares of the time for a search with a proof, and for a search without one; the rest is for the probabilities."""

@@ -2,7 +2,8 @@
 
 Labels, sizes and colours select the candidates of each object. Each fact is compared with the pairs of its objects'
 candidates only, which are its block. Messages between facts, objects and things (belief propagation; see
-:mod:`deixis.reasoning.grounding.matching.belief_propagation`) then give approximate probabilities of the candidates.
+:mod:`deixis.reasoning.grounding.matching.search.belief_propagation`) then give approximate probabilities of the
+candidates.
 
 1. Facts are processed in the order of the size of their blocks, the smallest first. Between groups of facts, candidates
    that have become almost impossible are dropped, so that later blocks are smaller: an object of which only its

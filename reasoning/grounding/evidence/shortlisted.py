@@ -23,7 +23,7 @@ from deixis.reasoning.grounding.evidence.evidence import (
 )
 from deixis.reasoning.grounding.evidence.shortlist import shortlist
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
-from deixis.reasoning.grounding.matching.posterior import FACTOR_CELLS
+from deixis.reasoning.grounding.matching.posterior.posterior import FACTOR_CELLS
 from deixis.reasoning.grounding.memory_budget import bytes_of_things, different_facts, required_gigabytes
 
 BLOCKS_SHARE = 0.5

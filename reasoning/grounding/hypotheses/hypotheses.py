@@ -40,11 +40,15 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.grounding.evidence.evidence import Evidence, Whole, without_facts
-from deixis.reasoning.grounding.matching.coincidences import discounted
-from deixis.reasoning.grounding.matching.permanents import entropy_without_facts, log_prior, log_sum_without_facts
-from deixis.reasoning.grounding.matching.posterior import BOUND_CELLS, Posterior, log_sum_bound, posterior
+from deixis.reasoning.grounding.matching.posterior.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior.permanents import (
+    entropy_without_facts,
+    log_prior,
+    log_sum_without_facts,
+)
+from deixis.reasoning.grounding.matching.posterior.posterior import BOUND_CELLS, Posterior, log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.matching.scalable import scalable
+from deixis.reasoning.grounding.matching.search.scalable import scalable
 
 FACTS_POWER, CHANCE_SHARE, KINDS_POWER = 0.75, 0.31, 1.4
 """Fitted powers of the evidence; see the formulas above."""
@@ -390,7 +394,7 @@ def _by_labels(evidence: Evidence) -> tuple[NDArray[np.int64], Posterior]:
 
     The prior odds that an object of another scene is absent here are 1.
     """
-    from deixis.reasoning.grounding.matching.exact import exact
+    from deixis.reasoning.grounding.matching.search.exact import exact
 
     is_labelled = evidence.allowed & (evidence.labels > 0)
     rows, unmatched = np.flatnonzero(is_labelled.any(axis=1)), np.full(len(is_labelled), UNMATCHED)

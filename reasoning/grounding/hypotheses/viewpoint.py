@@ -203,13 +203,13 @@ class _AngleSearch:
         ]
 
     def _best(self, one: _Angle, problem: Problem, deadline: Deadline) -> _AngleEvidence:
-        from deixis.reasoning.grounding.matching.exact import exact
+        from deixis.reasoning.grounding.matching.search.exact import exact
 
         best = exact(problem, deadline)
         return _AngleEvidence(one, best.value, best.assignment, best.proved)
 
     def _listed(self, one: _AngleEvidence, problem: Problem) -> _AngleEvidence:
-        from deixis.reasoning.grounding.matching.exact import maps_within
+        from deixis.reasoning.grounding.matching.search.exact import maps_within
 
         if self.deadline.passed:
             return replace(one, complete=False)

@@ -16,7 +16,7 @@ from deixis.ontology.relation import Reading
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
-from deixis.reasoning.grounding.matching.exact import exact
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 ABSENT = {"red_wine_glass", "white_wine_glass", "champagne_glass"}
 

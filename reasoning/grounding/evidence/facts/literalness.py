@@ -111,8 +111,8 @@ def _connected(ends: NDArray[np.int64], order: Order) -> Order:
 
 def _best_value(problem: Problem, deadline: Deadline) -> float:
     """Return the value of the best map; for many objects, an estimate by a short search."""
-    from deixis.reasoning.grounding.matching.exact import exact
-    from deixis.reasoning.grounding.matching.scalable import scalable
+    from deixis.reasoning.grounding.matching.search.exact import exact
+    from deixis.reasoning.grounding.matching.search.scalable import scalable
 
     if len(problem.absent) <= MAX_PROVED_OBJECTS:
         return exact(problem, deadline).value

@@ -28,10 +28,10 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evid
 from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED
 from deixis.reasoning.grounding.ground import SENSITIVITY_NOT_ASKED, ground
 from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
-from deixis.reasoning.grounding.matching.coincidences import discounted
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.matching.posterior.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 MakeGraph = Callable[..., RelationGraph]
 MakeBoxes = Callable[..., NDArray[np.float64]]

@@ -19,7 +19,7 @@ from deixis.reasoning.grounding.evidence.facts import literalness
 from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.evidence.shortlist import Shortlist, _Messages, _Weighing, shortlist
 from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED, Meaning
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 
 RELATIONS = default_ontology().relations
 

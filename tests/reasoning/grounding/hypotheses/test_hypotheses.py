@@ -38,8 +38,8 @@ from deixis.reasoning.grounding.hypotheses.hypotheses import (
     Verdict,
     weigh,
 )
-from deixis.reasoning.grounding.matching.coincidences import discounted
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.matching.posterior.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 MakeGraph = Callable[..., RelationGraph]

@@ -20,8 +20,8 @@ from deixis.ontology.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.hypotheses.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint
-from deixis.reasoning.grounding.matching.exact import exact
 from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 Boxes = NDArray[np.float64]
 FORMAL = read_layout(str(Path(__file__).parents[4] / "examples" / "formal_dinner.layout")).graph()

@@ -14,8 +14,8 @@ from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evid
 from deixis.reasoning.grounding.evidence.facts import latent_places as module
 from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence
 from deixis.reasoning.grounding.evidence.facts.latent_places import place_boxes, place_ratios
-from deixis.reasoning.grounding.matching.belief_propagation import beliefs_with_places
 from deixis.reasoning.grounding.matching.problem import MIN_PLACES, UNMATCHED
+from deixis.reasoning.grounding.matching.search.belief_propagation import beliefs_with_places
 
 
 def evidence_of(objects: int, seed: int, facts: float = 5.0, missing: int = 0) -> tuple[Evidence, np.ndarray]:

@@ -17,9 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.belief_propagation import propagate
-from deixis.reasoning.grounding.matching.local_search import NOISE_TABLE_SIZE, anneal, climb, combine, keep, reassign
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, to_assignment, to_labels
+from deixis.reasoning.grounding.matching.search.belief_propagation import propagate
+from deixis.reasoning.grounding.matching.search.local_search import (
+    NOISE_TABLE_SIZE,
+    anneal,
+    climb,
+    combine,
+    keep,
+    reassign,
+)
 
 FIRST_TEMPERATURE, REHEATED_TEMPERATURE, LAST_TEMPERATURE = (
     0.25,

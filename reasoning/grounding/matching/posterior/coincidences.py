@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]

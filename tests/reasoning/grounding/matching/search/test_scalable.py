@@ -13,8 +13,6 @@ from matching_problems import every_map, problems
 from timing import processor_time_below
 
 from deixis.deadline import Clock, Deadline
-from deixis.reasoning.grounding.matching import scalable as module
-from deixis.reasoning.grounding.matching.local_search import climb
 from deixis.reasoning.grounding.matching.problem import (
     MatchingError,
     Problem,
@@ -22,7 +20,9 @@ from deixis.reasoning.grounding.matching.problem import (
     to_assignment,
     to_labels,
 )
-from deixis.reasoning.grounding.matching.scalable import scalable
+from deixis.reasoning.grounding.matching.search import scalable as module
+from deixis.reasoning.grounding.matching.search.local_search import climb
+from deixis.reasoning.grounding.matching.search.scalable import scalable
 
 
 @settings(max_examples=60, deadline=None)

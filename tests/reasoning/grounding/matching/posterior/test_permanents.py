@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.reasoning.grounding.matching import permanents
-from deixis.reasoning.grounding.matching.permanents import log_prior, log_sum_without_facts
+from deixis.reasoning.grounding.matching.posterior import permanents
+from deixis.reasoning.grounding.matching.posterior.permanents import log_prior, log_sum_without_facts
 from deixis.reasoning.grounding.matching.problem import Problem
 
 

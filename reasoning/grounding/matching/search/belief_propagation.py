@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix

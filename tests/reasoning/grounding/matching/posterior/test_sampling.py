@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import problems
 
+from deixis.reasoning.grounding.matching.posterior.sampling import begin, cool, guide_by, new_chains, sample
 from deixis.reasoning.grounding.matching.problem import Problem, to_assignment
-from deixis.reasoning.grounding.matching.sampling import begin, cool, guide_by, new_chains, sample
 
 
 def beliefs(problem: Problem, seed: int) -> np.ndarray:

@@ -10,8 +10,8 @@ from matching_problems import every_map, problems, reordered
 from timing import processor_time_below
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.exact import exact, loose_bound, maps_within, warm
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
+from deixis.reasoning.grounding.matching.search.exact import exact, loose_bound, maps_within, warm
 
 
 def blank(n1: int, n2: int, absent: float = -1.0) -> Problem:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.branch_and_bound import (
+from deixis.reasoning.grounding.matching.problem import Compiled, MatchingError, Problem, to_assignment
+from deixis.reasoning.grounding.matching.search.branch_and_bound import (
     BUDGET,
     DONE,
     FULL,
@@ -21,8 +22,7 @@ from deixis.reasoning.grounding.matching.branch_and_bound import (
     search,
     tighten,
 )
-from deixis.reasoning.grounding.matching.problem import Compiled, MatchingError, Problem, to_assignment
-from deixis.reasoning.grounding.matching.scalable import search_from
+from deixis.reasoning.grounding.matching.search.scalable import search_from
 
 SLACK = 1e-7
 """Difference in nats below which values count as equal."""
@@ -91,7 +91,7 @@ def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int 
     -----
     Branch and bound is due to A. H. Land and A. G. Doig, "An automatic method of solving discrete programming
     problems", Econometrica 28, 1960; the bounds are those of
-    :mod:`deixis.reasoning.grounding.matching.branch_and_bound`.
+    :mod:`deixis.reasoning.grounding.matching.search.branch_and_bound`.
 
     Examples
     --------

@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given, settings
 from matching_problems import problems
 
-from deixis.reasoning.grounding.matching.coincidences import (
+from deixis.reasoning.grounding.matching.posterior.coincidences import (
     CERTAINLY_PRESENT,
     PRIOR_ABSENT,
     SHIPPED_WEIGHTS,
     coincidences,
     discounted,
 )
-from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
 

@@ -9,10 +9,10 @@ from matching_problems import problems
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
-from deixis.reasoning.grounding.matching import scalable as module
-from deixis.reasoning.grounding.matching.belief_propagation import LEVELS, MIN_LEVELS, propagate
 from deixis.reasoning.grounding.matching.problem import Problem, to_assignment
-from deixis.reasoning.grounding.matching.scalable import mean_range, scalable
+from deixis.reasoning.grounding.matching.search import scalable as module
+from deixis.reasoning.grounding.matching.search.belief_propagation import LEVELS, MIN_LEVELS, propagate
+from deixis.reasoning.grounding.matching.search.scalable import mean_range, scalable
 
 
 @settings(max_examples=60, deadline=None)

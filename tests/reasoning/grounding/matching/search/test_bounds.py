@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from matching_problems import every_map, problems
 from scipy.optimize import linear_sum_assignment
 
-from deixis.reasoning.grounding.matching.assignment import solve_assignment
-from deixis.reasoning.grounding.matching.branch_and_bound import new_stack, node_at, tighten
 from deixis.reasoning.grounding.matching.problem import Problem, compile_problem
+from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
+from deixis.reasoning.grounding.matching.search.branch_and_bound import new_stack, node_at, tighten
 
 
 @settings(max_examples=100, deadline=None)

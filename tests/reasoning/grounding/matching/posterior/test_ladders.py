@@ -13,10 +13,10 @@ from matching_problems import every_map, problems
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
-from deixis.reasoning.grounding.matching import ladders as module
-from deixis.reasoning.grounding.matching.exchangeable import exchangeable
-from deixis.reasoning.grounding.matching.ladders import log_evidence, sampled_marginals
-from deixis.reasoning.grounding.matching.posterior import exact_posterior
+from deixis.reasoning.grounding.matching.posterior import ladders as module
+from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior.ladders import log_evidence, sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.posterior import exact_posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import is_decided
 

@@ -12,10 +12,10 @@ from matching_problems import every_map, problems
 from timing import processor_time_below
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching import ladders
-from deixis.reasoning.grounding.matching import posterior as module
-from deixis.reasoning.grounding.matching.exchangeable import exchangeable
-from deixis.reasoning.grounding.matching.posterior import log_sum_bound, posterior
+from deixis.reasoning.grounding.matching.posterior import ladders
+from deixis.reasoning.grounding.matching.posterior import posterior as module
+from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior.posterior import log_sum_bound, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, MatchingError, Problem
 from deixis.reasoning.grounding.options import is_decided
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.matching.branch_and_bound import new_stack, node_at, tighten
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.grounding.matching.search.branch_and_bound import new_stack, node_at, tighten
 from deixis.reasoning.kernel import njit
 
 PASSES = 30  # of messages

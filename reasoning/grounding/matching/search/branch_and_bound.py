@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.matching.assignment import solve_assignment
 from deixis.reasoning.grounding.matching.problem import Compiled
+from deixis.reasoning.grounding.matching.search.assignment import solve_assignment
 from deixis.reasoning.kernel import njit
 
 

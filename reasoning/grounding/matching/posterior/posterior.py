@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.belief_propagation import belief_seconds
-from deixis.reasoning.grounding.matching.enumeration import add_up, factors
-from deixis.reasoning.grounding.matching.exchangeable import averaged, exchangeable
-from deixis.reasoning.grounding.matching.ladders import believed_marginals, sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.enumeration import add_up, factors
+from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged, exchangeable
+from deixis.reasoning.grounding.matching.posterior.ladders import believed_marginals, sampled_marginals
 from deixis.reasoning.grounding.matching.problem import MatchingError, Problem, to_assignment, to_labels
-from deixis.reasoning.grounding.matching.scalable import search_from
+from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds
+from deixis.reasoning.grounding.matching.search.scalable import search_from
 
 Marginals = NDArray[np.float64]
 

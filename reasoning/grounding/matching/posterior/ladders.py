@@ -20,10 +20,8 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from deixis.deadline import Deadline
-from deixis.reasoning.grounding.matching.belief_propagation import beliefs_with_places
-from deixis.reasoning.grounding.matching.exchangeable import averaged
-from deixis.reasoning.grounding.matching.problem import Compiled, Problem
-from deixis.reasoning.grounding.matching.sampling import (
+from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged
+from deixis.reasoning.grounding.matching.posterior.sampling import (
     Chains,
     Guide,
     begin,
@@ -32,6 +30,8 @@ from deixis.reasoning.grounding.matching.sampling import (
     new_chains,
     sample,
 )
+from deixis.reasoning.grounding.matching.problem import Compiled, Problem
+from deixis.reasoning.grounding.matching.search.belief_propagation import beliefs_with_places
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matching_problems import every_map, problems
 
-from deixis.reasoning.grounding.matching.local_search import exchange, keep
 from deixis.reasoning.grounding.matching.problem import Problem, compile_problem, to_labels
+from deixis.reasoning.grounding.matching.search.local_search import exchange, keep
 
 
 @settings(max_examples=80, deadline=None)
