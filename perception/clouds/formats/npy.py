@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.columns import as_bytes, labels_of, single
 from deixis.perception.clouds.content import Content
+from deixis.perception.clouds.tables.columns import as_bytes, labels_of, single
 from deixis.perception.errors import CloudError
 
 MAGIC = npy_format.MAGIC_PREFIX

@@ -13,9 +13,9 @@ import numpy as np
 
 from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.columns import as_bytes, single
 from deixis.perception.clouds.content import Content
-from deixis.perception.clouds.number_table import read_table
+from deixis.perception.clouds.tables.columns import as_bytes, single
+from deixis.perception.clouds.tables.number_table import read_table
 from deixis.perception.errors import CloudError
 
 WIDTHS = (3, 4, 6)
@@ -40,7 +40,7 @@ def read_xyz(content: Content) -> PointCloud:
     CloudError
         If the file is malformed or has no point; the message has the line.
     """
-    from deixis.perception.clouds.table_kernels import row_start
+    from deixis.perception.clouds.tables.table_kernels import row_start
 
     blank = content.data.copy()
     for separator in _SEPARATORS:

@@ -1,8 +1,8 @@
 """Read PLY, the Stanford polygon format, as clouds and as meshes: ascii, and binary in either byte order.
 
 The format: G. Turk, "The PLY Polygon File Format" (1994). The readers keep the columns of the element ``vertex`` that
-:mod:`deixis.perception.clouds.columns` knows, and the list of corners of the element ``face``; they skip everything
-else. A file that is read as a cloud is checked to its end too.
+:mod:`deixis.perception.clouds.tables.columns` knows, and the list of corners of the element ``face``; they skip
+everything else. A file that is read as a cloud is checked to its end too.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.columns import KNOWN, POINT, Columns, cloud_of_columns, declared
 from deixis.perception.clouds.content import Content
 from deixis.perception.clouds.mesh import Mesh, fans
-from deixis.perception.clouds.number_table import read_table
+from deixis.perception.clouds.tables.columns import KNOWN, POINT, Columns, cloud_of_columns, declared
+from deixis.perception.clouds.tables.number_table import read_table
 from deixis.perception.errors import CloudError
 
 ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -246,7 +246,7 @@ def binary_table(content: Content, at: int, element: Element, wanted: Set[str]) 
 
 
 def _binary_lists(content: Content, at: int, element: Element, wanted: Set[str]) -> ElementTable:
-    from deixis.perception.clouds.table_kernels import BAD_LENGTH, SKIPPED, TOO_SHORT, walk_rows
+    from deixis.perception.clouds.tables.table_kernels import BAD_LENGTH, SKIPPED, TOO_SHORT, walk_rows
 
     properties = element.properties
     chosen = [place for place, column in enumerate(properties) if column.name in wanted]

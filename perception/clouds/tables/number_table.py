@@ -71,7 +71,7 @@ def read_table(
         If the file is too short for that many values (before anything is allocated), a line has too few or too many
         values, or a value is not a number.
     """
-    from deixis.perception.clouds.table_kernels import DONE, KEPT, LISTED, SKIPPED, count_rows, parse_rows
+    from deixis.perception.clouds.tables.table_kernels import DONE, KEPT, LISTED, SKIPPED, count_rows, parse_rows
 
     room = (len(content) - at + 1) // 2  # a value takes at least a digit and a blank
     declared = rows is not None
@@ -121,7 +121,7 @@ def _error(
     content: Content, status: int, at: int, row: int, rows: int, column: int, width: int, declared: bool
 ) -> CloudError:
     """Return the error for a status of the kernel."""
-    from deixis.perception.clouds.table_kernels import BAD_LENGTH, TOO_FEW, TOO_MANY
+    from deixis.perception.clouds.tables.table_kernels import BAD_LENGTH, TOO_FEW, TOO_MANY
 
     where = f"{content.name}:{content.line_of(at)}"
     values = f"{width} values {'that the header declares' if declared else 'of the first line'}"

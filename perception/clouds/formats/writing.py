@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.pcd import ENCODINGS as PCD_ENCODINGS
+from deixis.perception.clouds.formats.pcd import ENCODINGS as PCD_ENCODINGS
 from deixis.perception.errors import CloudError
 
 PLY_ENCODINGS = ("ascii", "binary")
@@ -123,7 +123,7 @@ def _body(table: NDArray[np.void], encoding: str) -> Iterator[bytes]:
 
 
 def _compressed(table: NDArray[np.void]) -> Iterator[bytes]:
-    from deixis.perception.clouds.lzf import compress
+    from deixis.perception.clouds.formats.lzf import compress
 
     plain = b"".join(table[name].tobytes() for name in table.dtype.names or ())
     if len(plain) >= 2**32:

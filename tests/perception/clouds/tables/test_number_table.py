@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from deixis.perception.clouds.content import Content
-from deixis.perception.clouds.number_table import read_table
+from deixis.perception.clouds.tables.number_table import read_table
 from deixis.perception.errors import CloudError
 
 FORMATS = ("{!r}", "{:.9g}", "{:e}", "{:.20f}", "{:.25e}", "{:+}", "{:.0f}")

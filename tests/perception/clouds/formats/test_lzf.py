@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.perception.clouds.lzf import MAX_EXPANSION, compress, decompress
+from deixis.perception.clouds.formats.lzf import MAX_EXPANSION, compress, decompress
 
 
 def unpacked(packed: bytes, size: int) -> tuple[bytes, int, int]:

@@ -2,7 +2,7 @@
 
 The format: https://pointclouds.org/documentation/tutorials/pcd_file_format.html. A header of lines ``KEYWORD values``
 ends with ``DATA``. Compressed data consists of two 32-bit sizes, packed and plain, followed by the LZF-compressed
-fields (:mod:`deixis.perception.clouds.lzf`), one field after another. All binary numbers are little-endian. The
+fields (:mod:`deixis.perception.clouds.formats.lzf`), one field after another. All binary numbers are little-endian. The
 position in VIEWPOINT becomes the origin of the cloud; its orientation is not used, because points and origin share a
 frame.
 """
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from deixis.perception.checks import shown
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.clouds.columns import KNOWN, cloud_of_columns, declared
 from deixis.perception.clouds.content import Content
-from deixis.perception.clouds.number_table import read_table
+from deixis.perception.clouds.tables.columns import KNOWN, cloud_of_columns, declared
+from deixis.perception.clouds.tables.number_table import read_table
 from deixis.perception.errors import CloudError
 
 ENCODINGS = ("ascii", "binary", "binary_compressed")
@@ -295,7 +295,7 @@ def _compressed(content: Content, header: PcdHeader) -> _Columns:
 
 def _unpacked(content: Content, header: PcdHeader) -> NDArray[np.uint8]:
     """Return the plain bytes; sizes are compared with header and file before anything is allocated."""
-    from deixis.perception.clouds.lzf import MAX_EXPANSION, decompress
+    from deixis.perception.clouds.formats.lzf import MAX_EXPANSION, decompress
 
     begin = header.end + 8
     if begin > len(content):
