@@ -25,7 +25,7 @@ from deixis.deadline import Deadline
 from deixis.experiments.cross_validation import folds
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import FOLDER, Photograph, photographs
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.engines.map_engines import ExactEngine

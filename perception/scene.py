@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
-from deixis.ontology.colours import Rgb
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relations
+from deixis.ontology.things.colours import Rgb
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError, SceneError
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding

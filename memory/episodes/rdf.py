@@ -18,7 +18,7 @@ from urllib.parse import quote
 import pyoxigraph as ox
 
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
-from deixis.ontology.triples import category_iri
+from deixis.ontology.rdf.triples import category_iri
 from deixis.reasoning.temporal.fluent import Statement
 
 EP = "https://w3id.org/deixis/episodes#"

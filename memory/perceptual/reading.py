@@ -31,7 +31,7 @@ from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
 from deixis.memory.perceptual.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.records import CategoryRecord, Json, View, check_name
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 
 MAX_LISTED = 5
 """Maximum number of categories that a message lists."""

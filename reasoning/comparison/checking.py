@@ -32,10 +32,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Colour, Colours
-from deixis.ontology.graph import RelationGraph, dispensable
-from deixis.ontology.kinds import Kinds, with_article
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph, dispensable
+from deixis.ontology.things.colours import Colour, Colours
+from deixis.ontology.things.kinds import Kinds, with_article
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims, violated
 from deixis.reasoning.comparison.turning import Turned, is_aim, turned_roles
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, Outcome

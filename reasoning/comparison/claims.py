@@ -17,9 +17,9 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
+from deixis.ontology.graph.claims import PLACES, SUPERLATIVES, Claim
 from deixis.ontology.models.relations import RelationModels
-from deixis.ontology.relation import Relations
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses, bearings
 from deixis.reasoning.grounding.evidence.claims.aims import (
     AIMING,

@@ -35,13 +35,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.allen import Allen, allen_mask
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
-from deixis.ontology.relation import Reading, Relation, Relations
-from deixis.ontology.sizes import Sizes
+from deixis.ontology.relations.allen import Allen, allen_mask
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.kinds import Kinds
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.geometry.rectangle import SceneRelations
 from deixis.reasoning.grounding.evidence.properties.labels import category_of, classes
 from deixis.reasoning.grounding.evidence.properties.unary import log_sizes, looks_in_image

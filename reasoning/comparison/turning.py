@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.reasoning.comparison.claims import ClaimOutcome
 from deixis.reasoning.geometry.poses import TOOL_STRETCH, Poses, bearings
 from deixis.reasoning.grounding.answers.answer import FactOutcome

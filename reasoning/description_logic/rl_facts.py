@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from deixis.ontology.triple_index import TermIndex
+from deixis.ontology.rdf.triple_index import TermIndex
 
 Fact = tuple[int, int, int]
 Atom = tuple[int, int, int]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from deixis.reasoning.errors import OutOfMemoryError, SettingError
 
 if TYPE_CHECKING:
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
 
 DEFAULT_MEMORY_LIMIT = 2.0
 """Default memory limit of a grounding in units of 10^9 bytes, without the program itself."""

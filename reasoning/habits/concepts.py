@@ -9,9 +9,9 @@ from enum import StrEnum
 import numpy as np
 
 from deixis.ontology.inflection import plural
-from deixis.ontology.kinds import spaced
 from deixis.ontology.lexicon.groups import Groups
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.kinds import spaced
 from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 LARGE, SMALL = 0.4, 0.12

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.learning.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
     from deixis.ontology.lessons.types import LayoutConcept, Match
-    from deixis.ontology.relation import Relation
+    from deixis.ontology.relations.relation import Relation
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
@@ -110,7 +110,7 @@ _HOMES = {
     "Prediction": "deixis.reasoning.activities.prediction",
     "Check": "deixis.workflows.grounding.check",
     "DeixisError": "deixis.errors",
-    "Fact": "deixis.ontology.facts",
+    "Fact": "deixis.ontology.graph.facts",
     "Grounding": "deixis.reasoning.grounding.answers.answer",
     "Imagination": "deixis.workflows.layouts.imagine",
     "Inference": "deixis.workflows.layouts.infer",
@@ -126,7 +126,7 @@ _HOMES = {
     "Recognised": "deixis.learning.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
-    "Relation": "deixis.ontology.relation",
+    "Relation": "deixis.ontology.relations.relation",
     "Retrieval": "deixis.workflows.grounding.retrieve",
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",

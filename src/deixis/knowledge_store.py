@@ -430,8 +430,8 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.exchange import TURTLE_GRAPHS
         from deixis.memory.semantic.rdf.graphs import GraphName
         from deixis.memory.semantic.rdf.package import packaged
-        from deixis.ontology.triples import with_blank_nodes
-        from deixis.ontology.vocabulary import BASE
+        from deixis.ontology.rdf.triples import with_blank_nodes
+        from deixis.ontology.rdf.vocabulary import BASE
         from deixis.reasoning.description_logic.object_view import ObjectView
 
         if self.exists():

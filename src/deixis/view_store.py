@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.errors import SceneError
 
 if TYPE_CHECKING:

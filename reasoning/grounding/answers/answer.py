@@ -9,9 +9,9 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer, count
-from deixis.ontology.graph import Fact
+from deixis.ontology.graph.graph import Fact
 from deixis.ontology.lessons.types import Alternative, Match
-from deixis.ontology.relation import Relation
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.grounding.reference.answer import Frame
 
 if TYPE_CHECKING:

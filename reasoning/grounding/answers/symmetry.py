@@ -15,7 +15,7 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 
 BUDGET = 3_000_000
 """Maximum number of nodes that colour refinements visit, over a whole description."""
@@ -43,7 +43,7 @@ def interchangeable(graph: RelationGraph, colours: Sequence[Hashable]) -> list[t
 
     Examples
     --------
-    >>> from deixis.ontology.graph import Fact
+    >>> from deixis.ontology.graph.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> left = (default_ontology().relations["left"],)
     >>> facts = [Fact("salad_fork", left, "plate"), Fact("dinner_fork", left, "plate")]

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import PaperGraph, RelationGraph
-from deixis.ontology.relation import Relation
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
@@ -52,7 +52,7 @@ def with_same_word(graph: RelationGraph, most: int, consistent: bool | None = No
 
     Examples
     --------
-    >>> from deixis.ontology.graph import Fact
+    >>> from deixis.ontology.graph.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> facts = [Fact("a", (r["left"],), "b"), Fact("b", (r["top_left"],), "c")]

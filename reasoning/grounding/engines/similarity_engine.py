@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
 from deixis.reasoning.grounding.engines.engine import Alignment
 from deixis.reasoning.grounding.engines.similarity import (
     ITERATIONS,

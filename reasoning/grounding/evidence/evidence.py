@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Colours
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
-from deixis.ontology.relation import Reading, Relation
-from deixis.ontology.sizes import Sizes
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation
+from deixis.ontology.things.colours import Colours
+from deixis.ontology.things.kinds import Kinds
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned

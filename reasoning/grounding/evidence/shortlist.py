@@ -25,8 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import SPREAD, Surroundings
 from deixis.reasoning.geometry.rectangle import cross_relations

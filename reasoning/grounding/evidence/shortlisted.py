@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.errors import OutOfMemoryError
 from deixis.reasoning.geometry.rectangle import require_boxes, scene_relations
 from deixis.reasoning.grounding.evidence.evidence import (

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.relations import FAMILIES, MODEL_OF_WORD, SAYING, RelationModel
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry

@@ -219,7 +219,7 @@ def weigh(
 
     Examples
     --------
-    >>> from deixis.ontology.graph import Fact, RelationGraph
+    >>> from deixis.ontology.graph.graph import Fact, RelationGraph
     >>> from deixis.ontology.tbox import default_ontology
     >>> from deixis.reasoning.geometry.rectangle import scene_relations
     >>> from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.colours import Colours
+from deixis.ontology.things.colours import Colours
 from deixis.reasoning.grounding.reference.likelihood import Score, add_gradients
 from deixis.reasoning.grounding.reference.model import DOUBTS, UNCALIBRATED, Model, calibrated
 from deixis.reasoning.grounding.reference.nouns import NOUN_FEATURES, NUMBER_FEATURES

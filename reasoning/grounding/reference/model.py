@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.colours import Colours
+from deixis.ontology.things.colours import Colours
 from deixis.reasoning.grounding.reference.likelihood import (
     Score,
     constant,

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.colours import Colours
+from deixis.ontology.things.colours import Colours
 from deixis.reasoning.grounding.reference.query import Person, Property
 from deixis.reasoning.grounding.reference.room import Room
 

@@ -23,7 +23,7 @@ from scipy.optimize import linear_sum_assignment
 
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene

@@ -16,13 +16,13 @@ import pyoxigraph as ox
 
 from deixis.learning.experience import COMPARED, TOLERANCE, Experience, Tally
 from deixis.learning.tables import TaughtTable
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.lessons.shapes import layout_shapes
 from deixis.ontology.lessons.types import LayoutConcept, Role
 from deixis.ontology.lessons.write import layout_triples
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.perception.scene import PerceivedObject
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations

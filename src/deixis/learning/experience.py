@@ -12,7 +12,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Relations
+from deixis.ontology.relations.relation import Relations
 from deixis.perception.scene import PerceivedObject
 from deixis.reasoning.geometry.rectangle import box_relations
 

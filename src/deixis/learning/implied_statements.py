@@ -23,9 +23,9 @@ from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.ontology.lessons.read import layouts
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.lessons.write import fact_iri, layout_iri, role_iri
-from deixis.ontology.relation import Relations
-from deixis.ontology.triples import iri, learned_iri, typed
-from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
+from deixis.ontology.rdf.triples import iri, learned_iri, typed
+from deixis.ontology.rdf.vocabulary import BASE, DX, PROV, W3C
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.implications import Implications
 

@@ -21,9 +21,9 @@ from deixis.learning.implied_statements import changed_layouts, of_all_layouts
 from deixis.memory.semantic.rdf.after import After, Node
 from deixis.memory.semantic.rdf.change import Change, reconcluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
-from deixis.ontology.relation import Reading, Relations
-from deixis.ontology.triples import GENID, iri, learned_iri, text, with_blank_nodes
-from deixis.ontology.vocabulary import PROV, W3C
+from deixis.ontology.rdf.triples import GENID, iri, learned_iri, text, with_blank_nodes
+from deixis.ontology.rdf.vocabulary import PROV, W3C
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.reasoning.description_logic.reasoners import Classification, classify
 from deixis.reasoning.description_logic.subsumption import (
     BEYOND,

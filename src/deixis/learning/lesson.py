@@ -15,7 +15,7 @@ from deixis.grammar.layout.format import format_script
 from deixis.grammar.layout.language import language_of
 from deixis.grammar.script import Script
 from deixis.ontology.lessons.types import ANONYMOUS, LayoutConcept, Lesson, Match, Role, SeenRelation
-from deixis.ontology.relation import Relations
+from deixis.ontology.relations.relation import Relations
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding

@@ -12,18 +12,18 @@ import pyoxigraph as ox
 from deixis.errors import DeixisError
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.rdf.ledger import place
-from deixis.ontology.kinds import Kinds
 from deixis.ontology.lessons.read import LessonRecord, layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, WordLesson
 from deixis.ontology.lessons.write import layout_iri
-from deixis.ontology.relation import Relations
+from deixis.ontology.rdf.triples import iri, last_part, text
+from deixis.ontology.rdf.vocabulary import DX, W3C
+from deixis.ontology.relations.relation import Relations
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.triples import iri, last_part, text
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.things.kinds import Kinds
 
 if TYPE_CHECKING:
     from deixis.memory.semantic.store import SemanticMemory
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
     from deixis.perception.scene import Scene
 
 

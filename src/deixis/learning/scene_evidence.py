@@ -9,11 +9,11 @@ import numpy as np
 
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.ontology.claims import Claim
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.things.kinds import Kinds
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.entailment.conflict import Conflict
 from deixis.reasoning.grounding.evidence.claims.places import supporting_box

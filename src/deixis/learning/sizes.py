@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from deixis.learning.recollection import Remembered
-from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.lessons.write import scene_text_iri
 from deixis.ontology.models.sizes import SizeModel
-from deixis.ontology.sizes import Sizes
-from deixis.ontology.triples import content_key
+from deixis.ontology.rdf.triples import content_key
+from deixis.ontology.things.kinds import Kinds, plain_name
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.grounding.evidence.properties.labels import category_of, classes
 from deixis.reasoning.grounding.evidence.properties.sizes import usual_size
 from deixis.reasoning.grounding.evidence.properties.unary import log_sizes

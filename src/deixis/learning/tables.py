@@ -18,10 +18,10 @@ from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.ontology.lessons.read import layouts, lesson_records
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.lessons.write import layout_iri
-from deixis.ontology.relation import Relations
+from deixis.ontology.rdf.triples import iri, text
+from deixis.ontology.rdf.vocabulary import W3C
+from deixis.ontology.relations.relation import Relations
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.triples import iri, text
-from deixis.ontology.vocabulary import W3C
 from deixis.perception.scene import Scene
 
 if TYPE_CHECKING:

@@ -42,9 +42,9 @@ from deixis.ontology.lessons.write import asserted_triples, episode_triples, lea
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import RelationModel
 from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
+from deixis.ontology.rdf.triples import iri, text
+from deixis.ontology.rdf.vocabulary import PROV
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.triples import iri, text
-from deixis.ontology.vocabulary import PROV
 from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
 from deixis.scratch import scratch_folder

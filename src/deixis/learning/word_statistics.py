@@ -18,7 +18,7 @@ from deixis.learning.words import LearnedWords
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import STATISTICS, ModelSet, models_graph
 from deixis.ontology.models.relation_triples import models_from_triples
-from deixis.ontology.triples import iri, text
+from deixis.ontology.rdf.triples import iri, text
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.fitting.fit import DegreeSum, FitStatistics
 

@@ -13,7 +13,7 @@ from deixis.learning.lesson import Occasion, layout_concept, layout_name
 from deixis.learning.recollection import Recollection, Remembered, labelled
 from deixis.ontology.lessons.types import WordLesson, next_lesson_id
 from deixis.ontology.models.relations import RelationModel, RelationModels
-from deixis.ontology.triples import content_key
+from deixis.ontology.rdf.triples import content_key
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.evidence.words.meaning import shipped_models

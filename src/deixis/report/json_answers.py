@@ -6,9 +6,9 @@ import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.export import claim_to_dict, fact_to_dict, graph_to_dict
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.export import claim_to_dict, fact_to_dict, graph_to_dict
+from deixis.ontology.graph.facts import Fact
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script

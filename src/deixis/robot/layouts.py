@@ -17,9 +17,9 @@ from deixis.grammar.script import Script
 from deixis.learning.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
 from deixis.learning.lesson import layout_name
 from deixis.learning.scene_evidence import graph_evidence, named_by_candidates
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph, dispensable
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph, dispensable
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence

@@ -15,8 +15,8 @@ import numpy as np
 
 from deixis.learning.experience import Experience
 from deixis.learning.views import Known, recognise
-from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain

@@ -24,7 +24,7 @@ from deixis.memory.episodes.changes import Change
 from deixis.memory.episodes.episode import event_of
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain

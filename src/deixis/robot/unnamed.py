@@ -16,7 +16,7 @@ from deixis.grammar.layout.format import layout_script
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
 from deixis.learning.experience import COMPARED, TOLERANCE, Experience
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.lessons.types import LayoutConcept, Role
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene

@@ -11,8 +11,8 @@ from deixis.examples_data import example
 from deixis.experiments.generated_tables import neighbours
 from deixis.experiments.place_settings import formal_setting
 from deixis.learning.scene_evidence import evidence_of
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning

@@ -14,9 +14,9 @@ from deixis.learning.concept import concept_of
 from deixis.learning.experience import Tally
 from deixis.learning.lesson import layout_concept
 from deixis.learning.tables import TaughtTable
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.rdf.triples import turtle
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.triples import turtle
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.workflows.layouts.read import read_script
 

@@ -12,8 +12,8 @@ from deixis.learning.inferred_graph import ENGINES
 from deixis.memory.semantic.rdf.change import concluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
-from deixis.ontology.triples import with_blank_nodes
-from deixis.ontology.vocabulary import PROV
+from deixis.ontology.rdf.triples import with_blank_nodes
+from deixis.ontology.rdf.vocabulary import PROV
 from deixis.reasoning.description_logic.materialisation import Materialisation
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 from deixis.session import Session

@@ -18,7 +18,7 @@ from deixis.learning.lesson import layout_concept, layout_name
 from deixis.memory.on_demand import default_memory
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.graphs import GraphName
-from deixis.ontology.triples import with_blank_nodes
+from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.description_logic.reasoners import classify
 from deixis.reasoning.errors import InconsistencyError

@@ -10,7 +10,7 @@ import pytest
 
 from deixis.learning.recollection import Recollection, Remembered, Who
 from deixis.learning.sizes import FEWEST, Counts, SizeStatistics, size_views
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
 from deixis.ontology.tbox import Ontology, default_ontology
 from deixis.perception.scene import PerceivedObject, Scene

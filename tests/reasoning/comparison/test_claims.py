@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims
 from deixis.reasoning.geometry.poses import Poses

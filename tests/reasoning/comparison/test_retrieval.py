@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.likeness import (

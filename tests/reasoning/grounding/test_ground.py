@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.answers.answer import Grounding, Outcome

@@ -9,7 +9,7 @@ from groundings import R, pairs
 from numpy.typing import NDArray
 
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answers.answer import Grounding

@@ -27,9 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.relations import SAYING, RelationModels
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.relations.relation import Relation, Relations
 from deixis.reasoning.errors import OutOfTimeError, SettingError
 from deixis.reasoning.geometry.pairs import PairBlocks, PairGeometry, Surroundings
 from deixis.reasoning.geometry.poses import Poses

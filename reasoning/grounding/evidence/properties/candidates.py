@@ -13,8 +13,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.things.kinds import Kinds
 from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
 
 NONE_PRIOR = 0.5

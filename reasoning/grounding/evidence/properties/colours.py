@@ -1,9 +1,9 @@
 """Evidence of colours: the likelihood of a thing's colour given the described colour, against chance.
 
-A colour term is a normal density in CIELAB (:mod:`deixis.ontology.colours`); the basic terms are those of Berlin and
-Kay (*Basic Color Terms*, 1969). Chance is a mixture of the basic terms, and of the narrower ones that are described, by
-their shares in the scene, with equal prior shares: *red* is strong evidence for the only red thing, and none where all
-things are red.
+A colour term is a normal density in CIELAB (:mod:`deixis.ontology.things.colours`); the basic terms are those of Berlin
+and Kay (*Basic Color Terms*, 1969). Chance is a mixture of the basic terms, and of the narrower ones that are
+described, by their shares in the scene, with equal prior shares: *red* is strong evidence for the only red thing, and
+none where all things are red.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.colours import Colour, Colours
+from deixis.ontology.things.colours import Colour, Colours
 
 Array = NDArray[np.float64]
 

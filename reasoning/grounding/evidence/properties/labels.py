@@ -20,11 +20,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.inflection import singulars
-from deixis.ontology.kinds import Kinds, plain_name
 from deixis.ontology.lexicon.adjectives import adjectives
-from deixis.ontology.triples import category_iri
+from deixis.ontology.rdf.triples import category_iri
+from deixis.ontology.things.kinds import Kinds, plain_name
 
 
 def spare_rows(pairs: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.models.sizes import SizeModel
-from deixis.ontology.sizes import SizeRange, Sizes
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.rdf.vocabulary import DX
+from deixis.ontology.things.sizes import SizeRange, Sizes
 
 Array = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds, plain_name
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
-from deixis.ontology.sizes import Sizes
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.rdf.vocabulary import DX
+from deixis.ontology.things.kinds import Kinds, plain_name
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import require_boxes
 from deixis.reasoning.grounding.evidence.properties.labels import Label, naming

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel, RelationModels, Term
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.reasoning.geometry.pairs import PairGeometry
 from deixis.reasoning.grounding.evidence.words.meaning import own_frame_model
 from deixis.reasoning.grounding.evidence.words.pair_features import UNKNOWN_AIM, View, own_frame, view

@@ -36,7 +36,7 @@ def relation(
 ) -> None:
     """Print the meaning of a relation word: both literal readings, and the graded model, learned or shipped."""
     from deixis.errors import UnknownTermError
-    from deixis.ontology.relation import nearest, plain_phrase
+    from deixis.ontology.relations.relation import nearest, plain_phrase
     from deixis.ontology.tbox import default_ontology
     from deixis.report.descriptions.relation import relation_lines, relation_to_dict
 

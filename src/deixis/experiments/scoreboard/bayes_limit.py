@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, nearest, neighbours
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.matching.problem import Problem

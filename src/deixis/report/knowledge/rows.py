@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.learning.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
     from deixis.perception.scene import Scene
     from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.workflows.grounding.check import Check

@@ -27,7 +27,7 @@ from deixis.learning.scene_evidence import (
     unit_notes,
     viewpoint_notes,
 )
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict

@@ -19,8 +19,8 @@ from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuesti
 from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
 from deixis.ontology.inflection import singular
-from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.errors import SettingError
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from deixis.memory.episodes.changes import Change, Delete, Update
 from deixis.memory.episodes.episode import EVENT, EpisodicFluent, Origin
 from deixis.memory.episodes.experiences import without_lessons
 from deixis.memory.journal import Part, write_together
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.fluent import Statement

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.claims import Claim
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.comparison.claims import ClaimOutcome, check_claims
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import scene_relations

@@ -17,8 +17,8 @@ from timing import processor_time_below
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import generate
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.answers.answer import Standing

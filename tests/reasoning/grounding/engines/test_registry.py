@@ -14,7 +14,7 @@ import deixis.reasoning.grounding.engines.similarity_engine as similarity_engine
 from deixis.deadline import Deadline
 from deixis.errors import UnknownTermError
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.engines.similarity_engine import CUT_SHORT

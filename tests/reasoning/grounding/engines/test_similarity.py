@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from timing import processor_time_below
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
 from deixis.reasoning.grounding.engines import similarity
 from deixis.reasoning.grounding.engines.similarity import node_similarity
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import check_grad
 
 from deixis.errors import GraphError
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.models.relations import SAYING, RelationModels, Trend
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError

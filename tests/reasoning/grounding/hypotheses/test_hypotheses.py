@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.geometry.turning import turned

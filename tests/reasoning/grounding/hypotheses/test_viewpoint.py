@@ -16,7 +16,7 @@ from deixis.deadline import Deadline
 from deixis.errors import GraphError
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.layout.parser import parse_script, read_layout
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.hypotheses.viewpoint import COARSE_ANGLES, Viewpoints, recover_viewpoint

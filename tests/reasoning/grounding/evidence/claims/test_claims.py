@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.grammar.english.reader import read_english
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.claims.claims import MAX_THINGS, ClaimTables, claim_tables, ordinal_degrees
 from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, shipped_models

@@ -12,7 +12,7 @@ from laid_boxes import tables
 from numpy.typing import NDArray
 
 from deixis.experiments.generated_tables import generate
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry

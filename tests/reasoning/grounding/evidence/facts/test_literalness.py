@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.experiments.generated_tables import GeneratedTable, generate
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, fact_tables
 from deixis.reasoning.grounding.evidence.facts.literalness import (

@@ -11,9 +11,9 @@ from matplotlib.colors import XKCD_COLORS
 from numpy.typing import NDArray
 from scipy.stats import multivariate_normal
 
-from deixis.ontology.colours import rgb_of_hex
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.colours import rgb_of_hex
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.kinds import Kinds
 from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
 
 MakeGraph = Callable[..., RelationGraph]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.vocabulary import DX
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from

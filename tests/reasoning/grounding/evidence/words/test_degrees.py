@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.errors import GraphError
 from deixis.ontology.models.relations import FAMILIES, SAYING, RelationModel, RelationModels, Term
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import box_relations

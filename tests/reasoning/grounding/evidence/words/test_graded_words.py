@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.grounding.evidence.words.degrees import relation_degree

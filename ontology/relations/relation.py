@@ -11,14 +11,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from deixis.errors import OntologyError, UnknownTermError
-from deixis.ontology.allen import SYMBOLS, Allen, allen_mask
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.vocabulary import DX, W3C
+from deixis.ontology.relations.allen import SYMBOLS, Allen, allen_mask
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from deixis.ontology.triple_index import TripleIndex
+    from deixis.ontology.rdf.triple_index import TripleIndex
 
 
 class Reading(StrEnum):

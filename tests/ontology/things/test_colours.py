@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from matplotlib.colors import XKCD_COLORS
 
 from deixis.errors import OntologyError
-from deixis.ontology.colours import Colour, Rgb, hex_of_rgb, rgb_of_hex
 from deixis.ontology.tbox import default_ontology, load_ontology
+from deixis.ontology.things.colours import Colour, Rgb, hex_of_rgb, rgb_of_hex
 from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 ONTOLOGY = default_ontology()

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from rdflib import RDF, RDFS, Graph, Literal, URIRef
 
 from deixis.errors import GraphError
-from deixis.ontology.export import fact_to_dict, graph_to_dict, graph_to_dot, graph_to_turtle
-from deixis.ontology.graph import Fact, RelationGraph, Source
+from deixis.ontology.graph.export import fact_to_dict, graph_to_dict, graph_to_dot, graph_to_turtle
+from deixis.ontology.graph.graph import Fact, RelationGraph, Source
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.vocabulary import DX
 
 R = default_ontology().relations
 STATEMENT = URIRef(DX.RELATION_STATEMENT)

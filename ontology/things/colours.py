@@ -10,13 +10,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from deixis.errors import OntologyError
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from deixis.ontology.triple_index import TripleIndex
+    from deixis.ontology.rdf.triple_index import TripleIndex
 
 Rgb = tuple[int, int, int]
 """Red, green and blue in sRGB, each from 0 to 255."""

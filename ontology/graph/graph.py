@@ -1,7 +1,7 @@
 """The relation graph, which scripts and scenes are both turned into, and which grounding compares.
 
 A :class:`RelationGraph` is a weighted directed multigraph over objects. Its edges are numpy arrays; a
-:class:`~deixis.ontology.facts.Fact` is one edge as an object. :class:`PaperGraph` is Definition 1 of the paper: a
+:class:`~deixis.ontology.graph.facts.Fact` is one edge as an object. :class:`PaperGraph` is Definition 1 of the paper: a
 directed graph with one label per edge.
 """
 
@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.facts import OPTIONAL_WEIGHT, Fact, Source, dispensable
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.graph.facts import OPTIONAL_WEIGHT, Fact, Source, dispensable
+from deixis.ontology.relations.relation import Reading, Relations
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -33,7 +33,7 @@ class RelationGraph:
 
     Examples
     --------
-    >>> from deixis.ontology.facts import Fact
+    >>> from deixis.ontology.graph.facts import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> relations = default_ontology().relations
     >>> facts = [Fact("fork", (relations["left"],), "plate"), Fact("napkin", (relations["on"],), "plate")]

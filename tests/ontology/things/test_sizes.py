@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from deixis.errors import OntologyError
-from deixis.ontology.kinds import Kind
-from deixis.ontology.sizes import Extent, Outline, Sizes
+from deixis.ontology.rdf.vocabulary import BASE, DX
 from deixis.ontology.tbox import default_ontology, load_ontology
-from deixis.ontology.vocabulary import BASE, DX
+from deixis.ontology.things.kinds import Kind
+from deixis.ontology.things.sizes import Extent, Outline, Sizes
 
 ONTOLOGY = default_ontology()
 KINDS, SIZES = ONTOLOGY.kinds, ONTOLOGY.sizes

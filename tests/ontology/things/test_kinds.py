@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.ontology.kinds import Kind, Kinds
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.things.kinds import Kind, Kinds
 
 KINDS = default_ontology().kinds
 

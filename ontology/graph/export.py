@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from deixis.ontology.claims import PLACES, Claim
-from deixis.ontology.facts import Fact
-from deixis.ontology.vocabulary import BASE, DX
+from deixis.ontology.graph.claims import PLACES, Claim
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.rdf.vocabulary import BASE, DX
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from deixis.ontology.graph import RelationGraph
-    from deixis.ontology.relation import Relation
+    from deixis.ontology.graph.graph import RelationGraph
+    from deixis.ontology.relations.relation import Relation
 
 
 def fact_to_dict(fact: Fact) -> dict[str, Any]:

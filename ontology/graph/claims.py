@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 PLACES = frozenset({"corner", "edge", "end", "side", "part", "middle"})
 """Claims about a place in a region: of the surface, or of the thing that is the argument."""
@@ -32,7 +32,7 @@ class Claim:
     ``relation`` is the term (``between``, ``corner``, ``colour``, ``leftmost``, ``row``, ``distance``), ``subjects``
     the objects that it is about (several for a row), ``arguments`` the other objects, ``value`` a word (``red``,
     ``far left``, ``3``) and ``metres`` a distance. The other fields are those of a
-    :class:`~deixis.ontology.facts.Fact`.
+    :class:`~deixis.ontology.graph.facts.Fact`.
 
     >>> print(Claim("between", ("bottle",), ("glass", "jug")))
     between(bottle, glass, jug)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from deixis.ontology.relation import Relation
+from deixis.ontology.relations.relation import Relation
 
 
 @dataclass(frozen=True, slots=True, order=True)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.errors import DeixisError, GraphError
-from deixis.ontology.graph import Fact, RelationGraph, Source
+from deixis.ontology.graph.graph import Fact, RelationGraph, Source
 from deixis.ontology.tbox import default_ontology
 
 R = default_ontology().relations

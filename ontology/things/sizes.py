@@ -8,10 +8,10 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Protocol
 
 from deixis.errors import OntologyError
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.vocabulary import DX, W3C
 
 if TYPE_CHECKING:
-    from deixis.ontology.triple_index import TripleIndex
+    from deixis.ontology.rdf.triple_index import TripleIndex
 
 
 ABOUT_AS_LARGE = 1.6

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from deixis.errors import DeixisError, OntologyError, UnknownTermError
-from deixis.ontology.allen import ALL_ALLEN, SYMBOLS, Allen, allen_mask, mask_array, members
-from deixis.ontology.relation import Reading, Relation, Relations, nearest, plain_phrase
+from deixis.ontology.relations.allen import ALL_ALLEN, SYMBOLS, Allen, allen_mask, mask_array, members
+from deixis.ontology.relations.relation import Reading, Relation, Relations, nearest, plain_phrase
 from deixis.ontology.tbox import default_ontology
 
 R = default_ontology().relations

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deixis.errors import OntologyError
-from deixis.ontology.triple_index import TermIndex, TripleIndex
+from deixis.ontology.rdf.triple_index import TermIndex, TripleIndex
 
 numbers = st.integers(0, 3)
 TURTLE = """
