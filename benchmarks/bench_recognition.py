@@ -28,8 +28,8 @@ from scipy.spatial.distance import pdist
 
 from deixis.examples_data import example
 from deixis.grammar.layout.parser import parse_script
-from deixis.learning import views as recognising
-from deixis.learning.views import known_by
+from deixis.learning.views import views as recognising
+from deixis.learning.views.views import known_by
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.form import PARTS, form_parts
 from deixis.perception.features.registry import DESCRIBERS, describer_named

@@ -44,7 +44,7 @@ class LayoutConcept:
     Examples
     --------
     >>> import deixis
-    >>> from deixis.learning.lesson import layout_concept
+    >>> from deixis.learning.lessons.lesson import layout_concept
     >>> layout = layout_concept(deixis.read_script(text="layout tea; cup on saucer; spoon right of cup"), "tea-1")
     >>> layout.name, [role.name for role in layout.roles]
     ('tea', ['cup', 'saucer', 'spoon'])

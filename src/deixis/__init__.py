@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.layout.format import format_script
     from deixis.grammar.script import Script
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.ontology.graph.facts import Fact
     from deixis.ontology.lessons.types import LayoutConcept, Match
@@ -123,7 +123,7 @@ _HOMES = {
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "Recall": "deixis.workflows.knowledge.recall",
-    "Recognised": "deixis.learning.views",
+    "Recognised": "deixis.learning.views.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
     "Relation": "deixis.ontology.relations.relation",

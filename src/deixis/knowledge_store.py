@@ -17,8 +17,8 @@ from deixis.reasoning.errors import NothingFoundError
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.learning.recollection import Recollection
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.lessons.recollection import Recollection
+    from deixis.learning.models.words import LearnedWords
     from deixis.memory.journal import Commit, JointWrite
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
@@ -142,7 +142,7 @@ class KnowledgeStore(Closing):
         Recollection
             The lessons with their scenes; empty without a memory.
         """
-        from deixis.learning.recollection import Recollection
+        from deixis.learning.lessons.recollection import Recollection
         from deixis.learning.update import remembered
 
         return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
@@ -206,8 +206,8 @@ class KnowledgeStore(Closing):
         SettingError
             If ``strength`` is not above 0.
         """
+        from deixis.learning.models.words import new_lessons
         from deixis.learning.update import keep_words
-        from deixis.learning.words import new_lessons
 
         taken = self.memory().knows if self.exists() else lambda view_id: False
         lessons, left_out = new_lessons(examples, self.recollection(), taken)
@@ -345,7 +345,7 @@ class KnowledgeStore(Closing):
         UnknownTermError
             If there is neither.
         """
-        from deixis.learning.recollection import find_layout
+        from deixis.learning.lessons.recollection import find_layout
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
@@ -362,7 +362,7 @@ class KnowledgeStore(Closing):
         int
             The number, without reading the lessons; 0 for the id of a lesson.
         """
-        from deixis.learning.recollection import lessons_named
+        from deixis.learning.lessons.recollection import lessons_named
 
         return len(lessons_named(self.memory(), name))
 

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from deixis.grammar.script import Script
-    from deixis.learning.concept import CountedConcept
-    from deixis.learning.recollection import Recollection
-    from deixis.learning.tables import TaughtTable
-    from deixis.learning.views import Recognised, Taught
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.layouts.concept import CountedConcept
+    from deixis.learning.layouts.tables import TaughtTable
+    from deixis.learning.lessons.recollection import Recollection
+    from deixis.learning.models.words import LearnedWords
+    from deixis.learning.views.views import Recognised, Taught
     from deixis.memory.journal import Part
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
@@ -733,7 +733,7 @@ class Session(Closing):
         tuple of TaughtTable
             The tables in the order learned, each with the things that are known by now; empty without a memory.
         """
-        from deixis.learning.tables import taught_tables
+        from deixis.learning.layouts.tables import taught_tables
 
         if not self.knowledge_store.exists():
             return ()
@@ -773,7 +773,7 @@ class Session(Closing):
         UnknownTermError
             If there is neither.
         """
-        from deixis.learning.concept import CountedConcept, concept_of
+        from deixis.learning.layouts.concept import CountedConcept, concept_of
 
         last, tables = self.layout(name), self.tables(name)
         if not tables:

@@ -137,7 +137,7 @@ def point_algebra() -> TableCalculus:
 
 
 def interval_algebra() -> TableCalculus:
-    """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in ontology.relations.allen.
+    """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in relations.allen.
 
     Returns
     -------

@@ -17,12 +17,12 @@ from urllib.parse import quote, unquote
 import pyoxigraph as ox
 
 from deixis.deadline import Deadline
-from deixis.learning.implied_statements import completion
-from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
-from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
-from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
-from deixis.learning.word_statistics import replacing, stored_words
-from deixis.learning.words import LearnedWords, fit, informed, without
+from deixis.learning.inference.implied_statements import completion
+from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows, following
+from deixis.learning.lessons.recollection import Recollection, Remembered, recollect, remembered_lesson
+from deixis.learning.models.sizes import Counts, Row, SizeStatistics, SizeView, size_views
+from deixis.learning.models.word_statistics import replacing, stored_words
+from deixis.learning.models.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
 from deixis.memory.journal import Commit, JointWrite
 from deixis.memory.perceptual.records import View

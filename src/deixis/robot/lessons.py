@@ -12,7 +12,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from deixis.learning.tables import TaughtTable
+from deixis.learning.layouts.tables import TaughtTable
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
 

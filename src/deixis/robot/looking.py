@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from deixis.learning.experience import Experience
-from deixis.learning.views import Known, recognise
+from deixis.learning.layouts.experience import Experience
+from deixis.learning.views.views import Known, recognise
 from deixis.ontology.tbox import Ontology
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud

@@ -17,8 +17,8 @@ from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
 from deixis.grammar.script import Script
-from deixis.learning.experience import Experience
-from deixis.learning.teachings import GROUNDING
+from deixis.learning.layouts.experience import Experience
+from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
 from deixis.memory.episodes.changes import Change
 from deixis.memory.episodes.episode import event_of
@@ -43,7 +43,7 @@ from deixis.workflows.knowledge.episodes import Consolidation, consolidate, name
 from deixis.workflows.knowledge.recall import EXPECTED, IS_A
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Taught
+    from deixis.learning.views.views import Taught
     from deixis.workflows.knowledge.learn import Learned, Recording
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 

@@ -15,7 +15,7 @@ import numpy as np
 from deixis.grammar.layout.format import layout_script
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
-from deixis.learning.experience import COMPARED, TOLERANCE, Experience
+from deixis.learning.layouts.experience import COMPARED, TOLERANCE, Experience
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.lessons.types import LayoutConcept, Role
 from deixis.ontology.tbox import Ontology

@@ -10,7 +10,7 @@ import deixis
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import neighbours
 from deixis.experiments.place_settings import formal_setting
-from deixis.learning.scene_evidence import evidence_of
+from deixis.learning.lessons.scene_evidence import evidence_of
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.relations.relation import Reading
 from deixis.perception.scene import Scene

@@ -67,7 +67,7 @@ def perceived_table() -> Figure:
 
 def recognised_table() -> Figure:
     """Draw stated answers: a sure name, a likely one and an unknown thing in turn, the same on every processor."""
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.perception.recognition.calibration import SHIPPED
     from deixis.perception.recognition.recogniser import Candidate, Recognition
     from deixis.perception.recognition.spread import Width, spreads

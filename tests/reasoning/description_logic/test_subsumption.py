@@ -7,7 +7,7 @@ import random
 import pyoxigraph as ox
 import pytest
 
-from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, origin
+from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows, origin
 from deixis.memory.semantic.rdf.after import After
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.rdf.package import packaged_quads

@@ -16,7 +16,7 @@ from deixis.cli.common import (
 from deixis.cli.completion import complete_layouts
 
 if TYPE_CHECKING:
-    from deixis.learning.concept import CountedConcept
+    from deixis.learning.layouts.concept import CountedConcept
 
 
 class LayoutFormat(StrEnum):

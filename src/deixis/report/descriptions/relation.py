@@ -10,7 +10,7 @@ from deixis.ontology.relations.allen import SYMBOLS
 from deixis.ontology.relations.relation import Relation, Relations
 
 if TYPE_CHECKING:
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.models.words import LearnedWords
     from deixis.workflows.descriptions.learn_reference import LearnedReference
 
 

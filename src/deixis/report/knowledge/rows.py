@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.ontology.graph.facts import Fact
     from deixis.perception.scene import Scene

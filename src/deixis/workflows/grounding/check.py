@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.scene_evidence import (
+from deixis.learning.lessons.scene_evidence import (
     conflict_notes,
     graph_evidence,
     scene_labels,
@@ -127,7 +127,7 @@ def check(
     >>> [one.role for one in found.table.roles if one.verdict == "missing"]
     ['water_glass']
     """
-    from deixis.learning.lesson import layout_concept
+    from deixis.learning.lessons.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table
 
     if not isinstance(layout, str | Path | Script):

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.learning.attributes import attribute_ratios
-from deixis.learning.scene_evidence import (
+from deixis.learning.lessons.scene_evidence import (
     conflict_notes,
     graph_evidence,
     shortlisted_evidence,

@@ -22,7 +22,7 @@ from deixis.reasoning.grounding.evidence.properties.labels import category_of
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 if TYPE_CHECKING:
-    from deixis.learning.recollection import Recollection
+    from deixis.learning.lessons.recollection import Recollection
     from deixis.ontology.lessons.types import LayoutConcept
 
 MIN_LABEL_CONFIDENCE = 0.5

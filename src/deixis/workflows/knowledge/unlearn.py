@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
+from deixis.learning.views.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
 from deixis.memory.episodes.blackboard import open_episodes
 from deixis.memory.episodes.changes import Change, Delete, Update
 from deixis.memory.episodes.episode import EVENT, EpisodicFluent, Origin
@@ -434,7 +434,7 @@ def _write(
     episodes: Part | None,
 ) -> None:
     """Write what is left of the teachings of views, remove the lessons, and change the episodes."""
-    from deixis.learning.views import batch_without
+    from deixis.learning.views.views import batch_without
     from deixis.memory.semantic.rdf.links import Link
 
     gone = [view for view, turns in after.items() if not turns]

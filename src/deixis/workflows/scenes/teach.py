@@ -13,7 +13,7 @@ from deixis.workflows.layouts.read import as_scene
 from deixis.workflows.scenes.views_of_lessons import keep_view
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Taught
+    from deixis.learning.views.views import Taught
     from deixis.memory.journal import Part
 
 

@@ -18,7 +18,7 @@ import deixis as deixis_package
 from deixis.deadline import Deadline
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import generate
-from deixis.learning.scene_evidence import evidence_of
+from deixis.learning.lessons.scene_evidence import evidence_of
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.geometry.turning import turned
 from deixis.reasoning.grounding.answers.answer import Grounding

@@ -14,7 +14,7 @@ import numpy as np
 import pyoxigraph as ox
 from numpy.typing import NDArray
 
-from deixis.learning.words import LearnedWords
+from deixis.learning.models.words import LearnedWords
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import STATISTICS, ModelSet, models_graph
 from deixis.ontology.models.relation_triples import models_from_triples

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from deixis.learning.views import (
+from deixis.learning.views.views import (
     COLOUR,
     COMPARED,
     FORM,
@@ -165,7 +165,7 @@ def test_many_views_mapped_from_a_file_give_the_same_answers(tmp_path: Path, mon
     with LevelMemory.open(tmp_path / "perceptual", create=True) as memory:
         keep_views(memory, [view(kind, seed) for kind, seed in THINGS])
         held = recogniser_of(memory, TABLE)
-        monkeypatch.setattr("deixis.learning.views.MAPPED", len(THINGS))
+        monkeypatch.setattr("deixis.learning.views.views.MAPPED", len(THINGS))
         mapped = recogniser_of(memory, TABLE)
     for one, other in zip(held.recogniser.categories, mapped.recogniser.categories, strict=True):
         assert one.views.descriptors.flags.owndata and not other.views.descriptors.flags.owndata

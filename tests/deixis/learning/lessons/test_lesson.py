@@ -14,7 +14,7 @@ from deixis.errors import UnknownTermError
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.layout.format import layout_script
-from deixis.learning.lesson import layout_concept, layout_name
+from deixis.learning.lessons.lesson import layout_concept, layout_name
 from deixis.memory.on_demand import default_memory
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.graphs import GraphName

@@ -9,8 +9,8 @@ from datetime import UTC, datetime
 
 from deixis.grammar.layout.format import layout_script
 from deixis.grammar.script import Script
-from deixis.learning.lesson import Occasion, layout_concept, layout_name
-from deixis.learning.recollection import Recollection, Remembered, labelled
+from deixis.learning.lessons.lesson import Occasion, layout_concept, layout_name
+from deixis.learning.lessons.recollection import Recollection, Remembered, labelled
 from deixis.ontology.lessons.types import WordLesson, next_lesson_id
 from deixis.ontology.models.relations import RelationModel, RelationModels
 from deixis.ontology.rdf.triples import content_key

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from deixis.errors import DeixisError
-from deixis.learning.experience import Experience
-from deixis.learning.teachings import boxes_key
+from deixis.learning.layouts.experience import Experience
+from deixis.learning.views.teachings import boxes_key
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.ontology.lessons.read import layouts, lesson_records
 from deixis.ontology.lessons.types import LayoutConcept

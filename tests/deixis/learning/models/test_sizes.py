@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import pyoxigraph as ox
 import pytest
 
-from deixis.learning.recollection import Recollection, Remembered, Who
-from deixis.learning.sizes import FEWEST, Counts, SizeStatistics, size_views
+from deixis.learning.lessons.recollection import Recollection, Remembered, Who
+from deixis.learning.models.sizes import FEWEST, Counts, SizeStatistics, size_views
 from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
 from deixis.ontology.tbox import Ontology, default_ontology

@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 import pyoxigraph as ox
 
-from deixis.learning.experience import COMPARED, TOLERANCE, Experience, Tally
-from deixis.learning.tables import TaughtTable
+from deixis.learning.layouts.experience import COMPARED, TOLERANCE, Experience, Tally
+from deixis.learning.layouts.tables import TaughtTable
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph

@@ -221,7 +221,7 @@ def labelled(description: RelationGraph, scene: Scene, kinds: Kinds) -> Who:
     Who
         Thing and confidence by object.
     """
-    from deixis.learning.scene_evidence import scene_labels
+    from deixis.learning.lessons.scene_evidence import scene_labels
     from deixis.reasoning.grounding.evidence.properties.labels import naming
 
     fitted = naming(description, list(scene_labels(scene).values()), kinds).fitted

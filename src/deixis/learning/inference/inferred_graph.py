@@ -1,8 +1,8 @@
 """Content of the inferred graph: what follows from learned and asserted triples without being stated.
 
 These are the broader classes of each class, the broader classes of each thing, the wide relations of pairs that follow
-from exact ones, and what each layout implies (:mod:`deixis.learning.implied_statements`). After a change only some
-triples are looked at again: those about the classes in the change and the classes above and below them, about the
+from exact ones, and what each layout implies (:mod:`deixis.learning.inference.implied_statements`). After a change only
+some triples are looked at again: those about the classes in the change and the classes above and below them, about the
 things whose kinds change, about the pairs that the change relates, and about the layouts in it. Nothing else can
 change. Lessons use a part of OWL in which subsumption needs no reasoner
 (:mod:`deixis.reasoning.description_logic.subsumption`). In a memory with other axioms HermiT classifies everything, as
@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import pyoxigraph as ox
 
-from deixis.learning.implied_statements import changed_layouts, of_all_layouts
+from deixis.learning.inference.implied_statements import changed_layouts, of_all_layouts
 from deixis.memory.semantic.rdf.after import After, Node
 from deixis.memory.semantic.rdf.change import Change, reconcluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.answers import Answer, count
-from deixis.learning.teachings import GROUNDING, Teaching, Teachings, teachings_of, written
+from deixis.learning.views.teachings import GROUNDING, Teaching, Teachings, teachings_of, written
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.perceptual.calibrated import read_calibrations, write_calibrations
 from deixis.memory.perceptual.level import LevelMemory

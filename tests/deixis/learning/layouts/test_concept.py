@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.grammar.layout.format import format_script, layout_script
-from deixis.learning.concept import concept_of
-from deixis.learning.experience import Tally
-from deixis.learning.lesson import layout_concept
-from deixis.learning.tables import TaughtTable
+from deixis.learning.layouts.concept import concept_of
+from deixis.learning.layouts.experience import Tally
+from deixis.learning.layouts.tables import TaughtTable
+from deixis.learning.lessons.lesson import layout_concept
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.rdf.triples import turtle
 from deixis.ontology.tbox import default_ontology

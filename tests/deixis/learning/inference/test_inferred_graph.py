@@ -8,7 +8,7 @@ import pyoxigraph as ox
 import pytest
 
 from deixis.examples_data import example
-from deixis.learning.inferred_graph import ENGINES
+from deixis.learning.inference.inferred_graph import ENGINES
 from deixis.memory.semantic.rdf.change import concluding
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory

@@ -10,9 +10,9 @@ import pyoxigraph as ox
 import pytest
 
 from deixis.examples_data import example
-from deixis.learning import implied_statements
-from deixis.learning.implied_statements import implied_triples
-from deixis.learning.lesson import layout_concept
+from deixis.learning.inference import implied_statements
+from deixis.learning.inference.implied_statements import implied_triples
+from deixis.learning.lessons.lesson import layout_concept
 from deixis.learning.update import stale
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.semantic.rdf.change import concluding

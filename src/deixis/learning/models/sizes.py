@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from deixis.learning.recollection import Remembered
+from deixis.learning.lessons.recollection import Remembered
 from deixis.ontology.lessons.write import scene_text_iri
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.rdf.triples import content_key

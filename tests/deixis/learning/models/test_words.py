@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from deixis.learning.recollection import Recollection, Remembered, Who, labelled, recollect
-from deixis.learning.words import fit, informed, new_lessons
+from deixis.learning.lessons.recollection import Recollection, Remembered, Who, labelled, recollect
+from deixis.learning.models.words import fit, informed, new_lessons
 from deixis.ontology.lessons.write import asserted_triples, episode_triples
 from deixis.ontology.models.relations import Term
 from deixis.ontology.tbox import default_ontology
