@@ -60,7 +60,7 @@ import os, shutil, signal, sys
 import deixis
 from deixis.examples_data import example
 from deixis.learning import update as learning
-from deixis.memory.episodes.disk import DiskKeys
+from deixis.memory.episodes.store.disk import DiskKeys
 from deixis.memory.perceptual import exchange, handle
 from deixis.memory.semantic.rdf import ledger
 from deixis.robot.robot import Robot

@@ -637,8 +637,8 @@ class Session(Closing):
         >>> import tempfile
         >>> from datetime import UTC, datetime
         >>> from deixis.memory.episodes.blackboard import Blackboard
-        >>> from deixis.memory.episodes.changes import Add
-        >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+        >>> from deixis.memory.episodes.fluents.changes import Add
+        >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
         >>> seen, noon = Source(Origin.SEEN, "tracker"), datetime(2026, 5, 1, 12, tzinfo=UTC)
         >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
         >>> with tempfile.TemporaryDirectory() as folder, Session(folder) as session:

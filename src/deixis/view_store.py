@@ -330,7 +330,7 @@ def view_of_thing(
     """
     from deixis.learning.views.teachings import boxes_key
     from deixis.learning.views.views import view_of
-    from deixis.memory.episodes.episode import EVENT
+    from deixis.memory.episodes.fluents.episode import EVENT
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
     metadata: dict[str, object] = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}

@@ -20,8 +20,8 @@ from deixis.grammar.script import Script
 from deixis.learning.layouts.experience import Experience
 from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
-from deixis.memory.episodes.changes import Change
-from deixis.memory.episodes.episode import event_of
+from deixis.memory.episodes.fluents.changes import Change
+from deixis.memory.episodes.fluents.episode import event_of
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
 from deixis.ontology.things.kinds import plain_name

@@ -23,9 +23,9 @@ from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.views.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
 from deixis.memory.episodes.blackboard import open_episodes
-from deixis.memory.episodes.changes import Change, Delete, Update
-from deixis.memory.episodes.episode import EVENT, EpisodicFluent, Origin
 from deixis.memory.episodes.experiences import without_lessons
+from deixis.memory.episodes.fluents.changes import Change, Delete, Update
+from deixis.memory.episodes.fluents.episode import EVENT, EpisodicFluent, Origin
 from deixis.memory.journal import Part, write_together
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 import deixis
 from deixis.learning.update import stale
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError, UnknownLessonError
 from deixis.memory.journal import MARKS
 from deixis.memory.perceptual.handle import Handle

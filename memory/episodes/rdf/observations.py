@@ -1,6 +1,6 @@
 """Fluents as RDF: SOSA observations with times, certainty and provenance, and statements as plain triples.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
 >>> print(statement_triple(cup.statement))
 <https://w3id.org/deixis/episodes/thing/cup> <https://w3id.org/deixis/onto#on> <https://w3id.org/deixis/episodes/thing/table>
@@ -17,7 +17,7 @@ from urllib.parse import quote
 
 import pyoxigraph as ox
 
-from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
 from deixis.ontology.rdf.triples import category_iri
 from deixis.reasoning.temporal.fluent import Statement
 

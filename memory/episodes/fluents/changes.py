@@ -1,6 +1,6 @@
 """Changes of the blackboard, and the log entries that record them.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
 >>> str(Finish("f1", 5.0).applied(cup).fluent)
 'f1: on(cup, table) from [2, 2] to [5, 5]'
@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from deixis.memory.episodes.episode import EpisodicFluent, Source, at
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Source, at
 from deixis.memory.errors import EpisodeError, UnknownFluentError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.errors import FluentError

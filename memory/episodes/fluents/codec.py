@@ -1,6 +1,6 @@
 """Encode fluents, changes and log entries, and decode them.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> cup = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
 >>> decode_fluent(encode_fluent(cup)) == cup
 True
@@ -12,8 +12,8 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Kind, Logged, Update
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, at
+from deixis.memory.episodes.fluents.changes import Add, Change, Delete, Finish, Kind, Logged, Update
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, at
 from deixis.reasoning.temporal.bounds import UNKNOWN, Bounds
 from deixis.reasoning.temporal.fluent import Fluent, Pattern, Statement
 

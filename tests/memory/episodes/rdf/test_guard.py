@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent, episodic
-from deixis.memory.episodes.guard import SHIPPED, shipped_guard
-from deixis.memory.episodes.rdf import fluent_triples, statement_triple
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, episodic
+from deixis.memory.episodes.rdf.guard import SHIPPED, shipped_guard
+from deixis.memory.episodes.rdf.observations import fluent_triples, statement_triple
 from deixis.memory.errors import RejectedWriteError, ShapesError
 from deixis.memory.semantic.validation.shacl import violations
 

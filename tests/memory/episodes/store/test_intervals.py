@@ -7,8 +7,8 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.memory.episodes.intervals import endings_meeting, fork, interval_keys
-from deixis.memory.episodes.keys import TransientKeys
+from deixis.memory.episodes.store.intervals import endings_meeting, fork, interval_keys
+from deixis.memory.episodes.store.keys import TransientKeys
 
 ENDS = st.one_of(st.integers(-40, 40).map(lambda n: n / 1e6), st.just(4e9), st.just(-4e9))
 

@@ -16,8 +16,8 @@ import pyoxigraph as ox
 
 from deixis.answers import count
 from deixis.errors import OntologyError
-from deixis.memory.episodes.episode import EpisodicFluent
-from deixis.memory.episodes.rdf import (
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
+from deixis.memory.episodes.rdf.observations import (
     TYPE,
     Values,
     fluent_iri,

@@ -13,7 +13,7 @@ from episodic_fluents import on
 from killing import forks_of
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Finish
+from deixis.memory.episodes.fluents.changes import Add, Finish
 from deixis.memory.errors import DamagedMemoryError, EpisodeError, MemoryBusyError, MemoryFormatError
 from deixis.memory.verify import verify
 from deixis.reasoning.temporal.fluent import Pattern
@@ -83,8 +83,8 @@ def test_verify_finds_a_fluent_that_differs_from_the_log(tmp_path: Path) -> None
 WRITER = """
 import os
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 
 def work(folder, seed):
     board = Blackboard.open(folder, create=True)
@@ -115,7 +115,7 @@ def test_kills_lose_no_acknowledged_write(tmp_path: Path) -> None:
 FILLER = """
 import resource, sys
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 
 board = Blackboard.open(sys.argv[1], create=True)

@@ -27,7 +27,7 @@ from typing import Any
 import plyvel
 
 from deixis.memory import owner as disk
-from deixis.memory.episodes.keys import Keys
+from deixis.memory.episodes.store.keys import Keys
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from deixis.memory.episodes.keys import Keys
+from deixis.memory.episodes.store.keys import Keys
 from deixis.reasoning.temporal.bounds import TICKS
 
 BITS = 53
