@@ -47,7 +47,7 @@ from deixis.memory.errors import EpisodeError, MemoryWriteError, UnknownFluentEr
 from deixis.memory.folder import EPISODES, inspect
 from deixis.memory.journal import JournalEntry, Part, clear_journal, has_committed, read_journal, write_journal
 from deixis.memory.owner import Closing, ThreadLock
-from deixis.memory.perceptual.handle import wrap_level_errors
+from deixis.memory.perceptual.database.handle import wrap_level_errors
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 

@@ -17,7 +17,7 @@ from deixis.perception.errors import SceneError
 
 if TYPE_CHECKING:
     from deixis.learning.views.views import KeptName, Known, Taught
-    from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.memory.perceptual.database.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
@@ -241,7 +241,7 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 
 def _settled(memory: LevelMemory) -> dict[tuple[str, str], dict[str, str]]:
     from deixis.learning.views.teachings import Teaching
-    from deixis.memory.perceptual import keys
+    from deixis.memory.perceptual.database import keys
 
     stored, found = memory.teachings(), []
     for view in memory.headers():

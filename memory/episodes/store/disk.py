@@ -31,8 +31,8 @@ from deixis.memory.episodes.store.keys import Keys
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.folder import one_line
 from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked
-from deixis.memory.perceptual.codec import seal, unseal
-from deixis.memory.perceptual.handle import copied_for_reading, wrap_level_errors
+from deixis.memory.perceptual.database.codec import seal, unseal
+from deixis.memory.perceptual.database.handle import copied_for_reading, wrap_level_errors
 from deixis.scratch import ScratchFolder
 
 STORE, TALLY = "store-1", "acknowledged"

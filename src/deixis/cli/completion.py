@@ -93,7 +93,7 @@ def categories_in(memory: Path) -> set[str]:
 
     import plyvel
 
-    from deixis.memory.perceptual import keys, layout
+    from deixis.memory.perceptual.database import keys, layout
 
     with TemporaryDirectory(prefix="deixis-") as scratch:
         layout.mirror(memory.resolve() / layout.FOLDER, Path(scratch))

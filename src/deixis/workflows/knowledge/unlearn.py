@@ -375,7 +375,7 @@ def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str])
 
 def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teachings]:
     """Return all teachings of all views."""
-    from deixis.memory.perceptual import keys
+    from deixis.memory.perceptual.database import keys
     from deixis.memory.semantic.rdf.links import all_links
 
     stored, lessons = memory.teachings(), memory.lessons_of_views()

@@ -19,7 +19,7 @@ from deixis.view_store import ViewStore
 
 if TYPE_CHECKING:
     from deixis.learning.views.views import Taught
-    from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.memory.perceptual.database.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson

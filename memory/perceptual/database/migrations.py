@@ -14,8 +14,8 @@ import numpy as np
 import plyvel
 from numpy.typing import NDArray
 
-from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import checksum, parse_about, seal, write_about
+from deixis.memory.perceptual.database import keys
+from deixis.memory.perceptual.database.codec import checksum, parse_about, seal, write_about
 
 _ODD, _ALL = 0x9E3779B97F4A7C15, (1 << 64) - 1
 _NH_BLOCK = 1024  # words of 64 bits

@@ -32,8 +32,8 @@ from deixis.memory.journal import (
     write_journal,
 )
 from deixis.memory.owner import LOCK_FILE, OwnerLock, ReaderLock, forked
-from deixis.memory.perceptual import keys, layout
-from deixis.memory.perceptual.codec import (
+from deixis.memory.perceptual.database import keys, layout
+from deixis.memory.perceptual.database.codec import (
     StoreCounts,
     ViewHeader,
     read_counts,

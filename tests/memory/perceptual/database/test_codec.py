@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays_of
 from safetensors.numpy import load, save
 
-from deixis.memory.perceptual.codec import checksum, pack, seal, unpack, unseal
+from deixis.memory.perceptual.database.codec import checksum, pack, seal, unpack, unseal
 from deixis.memory.perceptual.records import DTYPES
 
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
 
 names = st.text(min_size=1) | st.text(alphabet="\0\x01a\xff\U0010ffff", min_size=1, max_size=5)
 times = st.integers(-(1 << 63), (1 << 63) - 1) | st.integers(-2, 2)

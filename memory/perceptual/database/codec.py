@@ -24,7 +24,7 @@ from safetensors.numpy import load, save
 from xxhash import xxh3_64_digest, xxh3_64_intdigest
 
 from deixis.memory.errors import DamagedMemoryError
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
 from deixis.memory.perceptual.records import (
     CategoryRecord,
     JsonObject,
@@ -423,7 +423,7 @@ class StoreCounts(NamedTuple):
 
 
 def write_counts(counts: StoreCounts) -> bytes:
-    """Return the value of the key :data:`deixis.memory.perceptual.keys.COUNT`.
+    """Return the value of the key :data:`deixis.memory.perceptual.database.keys.COUNT`.
 
     Parameters
     ----------

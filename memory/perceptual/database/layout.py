@@ -13,7 +13,7 @@ over several stores (see :mod:`deixis.memory.journal`), and two files that revea
   the seal is missing: then LevelDB may repair its files.
 
 To change the format: raise :data:`VERSION`, and add the step from the version before to
-:data:`deixis.memory.perceptual.migrations.MIGRATIONS`. A step reads the old database and fills a new one.
+:data:`deixis.memory.perceptual.database.migrations.MIGRATIONS`. A step reads the old database and fills a new one.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError
 from deixis.memory.journal import JOURNAL
 from deixis.memory.owner import LOCK_FILE
-from deixis.memory.perceptual.codec import StoreCounts, read_counts
-from deixis.memory.perceptual.migrations import MIGRATIONS
+from deixis.memory.perceptual.database.codec import StoreCounts, read_counts
+from deixis.memory.perceptual.database.migrations import MIGRATIONS
 
 FOLDER = "perceptual"
 """Folder of the perceptual memory within the folder of a memory."""
