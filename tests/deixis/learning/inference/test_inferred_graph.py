@@ -14,7 +14,7 @@ from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.ontology.rdf.vocabulary import PROV
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 from deixis.session import Session
 

@@ -7,10 +7,10 @@ and classes of the axiom; ``false`` is a contradiction.
 Rules over lists are expanded for each list: ``cls-int1``, ``cls-int2``, ``cls-uni``, ``cls-oo``, ``scm-int``,
 ``scm-uni``, ``prp-spo2``, ``prp-key``, ``prp-adp``, ``cax-adc``, ``eq-diff2``, ``eq-diff3``.
 
-The datatype rules (table 8) are in :mod:`deixis.reasoning.description_logic.rl_chaining`, since they depend on values.
-Rules that only state tautologies are left out (``eq-ref``, ``prp-ap``, ``cls-thing``, ``cls-nothing1``, ``scm-cls``,
-``scm-op``, ``scm-dp``). If another rule needs such a tautology as a premise, a second line with the same name gives the
-conclusion.
+The datatype rules (table 8) are in :mod:`deixis.reasoning.description_logic.owl_rl.chaining`, since they depend on
+values. Rules that only state tautologies are left out (``eq-ref``, ``prp-ap``, ``cls-thing``, ``cls-nothing1``,
+``scm-cls``, ``scm-op``, ``scm-dp``). If another rule needs such a tautology as a premise, a second line with the same
+name gives the conclusion.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from deixis.reasoning.description_logic.rl_facts import Fact, FactIndex
+from deixis.reasoning.description_logic.owl_rl.facts import Fact, FactIndex
 from deixis.reasoning.description_logic.terms import DISTINCT_MEMBERS, MEMBERS, SAME_AS, SUB_CLASS_OF, TYPE, term
 
 RULES = """

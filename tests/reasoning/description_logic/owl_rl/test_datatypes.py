@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from ontologies import ntriples, triple, triples
 
 from deixis.reasoning.description_logic.entailment import entail
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.datatypes import IllFormedError, is_in, value_of
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import is_consistent
-from deixis.reasoning.description_logic.rl_datatypes import IllFormedError, is_in, value_of
 from deixis.reasoning.description_logic.terms import term
 
 BOUNDS = {

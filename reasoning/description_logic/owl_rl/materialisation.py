@@ -15,8 +15,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.rl_chaining import ForwardChaining
-from deixis.reasoning.description_logic.rl_facts import Fact
+from deixis.reasoning.description_logic.owl_rl.chaining import ForwardChaining
+from deixis.reasoning.description_logic.owl_rl.facts import Fact
 from deixis.reasoning.description_logic.terms import Triple
 from deixis.reasoning.errors import NotEntailedError
 
@@ -41,8 +41,8 @@ class Contradiction:
 class Materialisation:
     """All triples that follow by the rules of OWL 2 RL from the triples added so far.
 
-    :mod:`deixis.reasoning.description_logic.rl_rules` lists the rules and the omitted ones. The cost of adding triples
-    is proportional to their consequences. To remove triples, materialise the remaining ones again.
+    :mod:`deixis.reasoning.description_logic.owl_rl.rules` lists the rules and the omitted ones. The cost of adding
+    triples is proportional to their consequences. To remove triples, materialise the remaining ones again.
     """
 
     def __init__(self, triples: Iterable[Triple] = (), deadline: Deadline = Deadline.never()) -> None:

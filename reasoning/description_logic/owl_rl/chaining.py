@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.rl_datatypes import DATATYPES, DataValue, IllFormedError, is_in, value_of
-from deixis.reasoning.description_logic.rl_facts import (
+from deixis.reasoning.description_logic.owl_rl.datatypes import DATATYPES, DataValue, IllFormedError, is_in, value_of
+from deixis.reasoning.description_logic.owl_rl.facts import (
     Atom,
     Binding,
     Fact,
@@ -27,7 +27,7 @@ from deixis.reasoning.description_logic.rl_facts import (
     substituted,
     unified,
 )
-from deixis.reasoning.description_logic.rl_rules import EXPANSIONS, TermAtom, TextRule, list_members, rules
+from deixis.reasoning.description_logic.owl_rl.rules import EXPANSIONS, TermAtom, TextRule, list_members, rules
 from deixis.reasoning.description_logic.terms import (
     EQUIVALENT_CLASS,
     EQUIVALENT_PROPERTY,

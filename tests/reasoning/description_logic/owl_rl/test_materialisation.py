@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from ontologies import PREFIXES, core, ntriples, triple, triples
 
 from deixis.deadline import Deadline
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.rules import rules
 from deixis.reasoning.description_logic.reasoners import classify
-from deixis.reasoning.description_logic.rl_rules import rules
 from deixis.reasoning.description_logic.terms import (
     EQUIVALENT_CLASS,
     EQUIVALENT_PROPERTY,
