@@ -202,9 +202,9 @@ def compile_features() -> None:
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
-    from deixis.perception.features.keypoints import voxel_keypoints
-    from deixis.perception.features.normals import estimate_normals
-    from deixis.perception.features.spin_images import SpinImageDescriber, spin_images
+    from deixis.perception.features.descriptors.spin_images import SpinImageDescriber, spin_images
+    from deixis.perception.features.points.keypoints import voxel_keypoints
+    from deixis.perception.features.points.normals import estimate_normals
 
     side = np.linspace(0.0, 0.05, 6)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))

@@ -24,11 +24,11 @@ from deixis.memory.perceptual.protocol import PerceptualMemory, PerceptualReadin
 from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
-from deixis.perception.features.colour import ColourDescriber
 from deixis.perception.features.describer import Describer
-from deixis.perception.features.form import FormDescriber
-from deixis.perception.features.spin_images import SpinImageDescriber
-from deixis.perception.features.upright import UprightDescriber
+from deixis.perception.features.descriptors.colour import ColourDescriber
+from deixis.perception.features.descriptors.form import FormDescriber
+from deixis.perception.features.descriptors.spin_images import SpinImageDescriber
+from deixis.perception.features.descriptors.upright import UprightDescriber
 from deixis.perception.recognition.calibration import SHIPPED, SHIPPED_JOINT, Calibration, beside_colour
 from deixis.perception.recognition.instances import InstanceCategory
 from deixis.perception.recognition.joint import JointRecogniser

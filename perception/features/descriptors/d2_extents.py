@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
-from deixis.perception.features.keypoints import voxel_keypoints
+from deixis.perception.features.points.keypoints import voxel_keypoints
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
-from deixis.perception.features.keypoints import voxel_keypoints
-from deixis.perception.features.spin_images import image_size, keypoints_and_normals, spin_images
+from deixis.perception.features.descriptors.spin_images import image_size, keypoints_and_normals, spin_images
+from deixis.perception.features.points.keypoints import voxel_keypoints
 
 SPACING = 0.004
 """Distance in metres to which points are thinned, so that the weight of a part does not depend on its point density."""

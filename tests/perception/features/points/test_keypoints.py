@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.errors import CloudError
-from deixis.perception.features.keypoints import voxel_keypoints
+from deixis.perception.features.points.keypoints import voxel_keypoints
 
 
 def plain(points: NDArray[np.floating], size: float) -> list[int]:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
-from deixis.perception.features.keypoints import voxel_keypoints
-from deixis.perception.features.normals import estimate_normals
+from deixis.perception.features.points.keypoints import voxel_keypoints
+from deixis.perception.features.points.normals import estimate_normals
 from deixis.perception.open3d import open3d
 
 NEIGHBOURS = 100

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.form import LEVELS, PARTS, STATIONS, FormDescriber, form_parts
+from deixis.perception.features.descriptors.form import LEVELS, PARTS, STATIONS, FormDescriber, form_parts
 from deixis.perception.simulator.cameras.views import views_of
 from deixis.perception.simulator.meshes.tableware import make
 

@@ -8,7 +8,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.upright import EXTENT_OFFSET, HISTOGRAM_CELLS, UprightDescriber, upright_shape
+from deixis.perception.features.descriptors.upright import (
+    EXTENT_OFFSET,
+    HISTOGRAM_CELLS,
+    UprightDescriber,
+    upright_shape,
+)
 
 EYE = (0.0, -1.0, 0.8)
 
@@ -88,7 +93,7 @@ def test_a_descriptor_is_two_images_and_the_shape() -> None:
 
 
 def test_with_weights_0_it_is_the_roots_of_spin_images() -> None:
-    from deixis.perception.features.spin_images import SpinImageDescriber
+    from deixis.perception.features.descriptors.spin_images import SpinImageDescriber
 
     cloud = PointCloud(box(0.1, 0.06, 0.04).astype(np.float32), origin=EYE)
     found = UprightDescriber(profile=0, extents=0).describe(cloud)

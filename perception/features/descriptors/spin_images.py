@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError
-from deixis.perception.features.blocks import in_blocks
 from deixis.perception.features.describer import require_indices, require_length, require_points
-from deixis.perception.features.keypoints import voxel_keypoints
-from deixis.perception.features.normals import estimate_normals
+from deixis.perception.features.points.blocks import in_blocks
+from deixis.perception.features.points.keypoints import voxel_keypoints
+from deixis.perception.features.points.normals import estimate_normals
 
 LARGE_CLOUD = 20_000
 CELLS_OF_FEW, CELLS_OF_MANY = 3, 5
@@ -109,7 +109,7 @@ def spin_images(
     if not len(keypoints):
         return np.empty((0, image_size(width)), np.float32)
 
-    from deixis.perception.features.kernels import cell_grid, images, in_axes_of
+    from deixis.perception.features.points.kernels import cell_grid, images, in_axes_of
 
     finite = np.isfinite(points).all(axis=1)
     grid = cell_grid(points[finite], support / (CELLS_OF_FEW if len(points) < LARGE_CLOUD else CELLS_OF_MANY))
@@ -156,7 +156,7 @@ def _require(
 def _require_neighbours(
     grid: object, places: NDArray[np.float64], keypoints: NDArray[np.integer], support: float, least: int
 ) -> None:
-    from deixis.perception.features.kernels import tally
+    from deixis.perception.features.points.kernels import tally
 
     counts = np.zeros(len(places), np.int64)
     tally(grid, places, float(support), counts)

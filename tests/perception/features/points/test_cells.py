@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.perception.features.kernels import ball_runs, cell_grid, cylinder_runs, in_axes_of
+from deixis.perception.features.points.kernels import ball_runs, cell_grid, cylinder_runs, in_axes_of
 
 
 @settings(max_examples=80, deadline=None)

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from deixis.perception.errors import CloudError
-from deixis.perception.features.normals import estimate_normals
+from deixis.perception.features.points.normals import estimate_normals
 
 WAYS: list[dict[str, Any]] = [{"radius": 0.12}, {"neighbours": 12}]
 

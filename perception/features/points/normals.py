@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import CloudError
-from deixis.perception.features.blocks import in_blocks
 from deixis.perception.features.describer import require_indices, require_length, require_points
+from deixis.perception.features.points.blocks import in_blocks
 
 LINE_SPREAD_RATIO = 1e-6
 """Ratio of the second to the first variance below which a neighbourhood is a line, and has no plane."""
@@ -129,7 +129,7 @@ def neighbourhoods(
         raise CloudError("normals need exactly one of `radius` and `neighbours`")
     if radius is not None:
         require_length(radius, "a normal's radius")
-        from deixis.perception.features.kernels import cell_grid, in_axes_of, spreads
+        from deixis.perception.features.points.kernels import cell_grid, in_axes_of, spreads
 
         grid = cell_grid(points, radius)
         turned, radius = in_axes_of(grid, places), float(radius)

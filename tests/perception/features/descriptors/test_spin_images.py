@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from deixis.perception.errors import CloudError
-from deixis.perception.features.spin_images import spin_images
+from deixis.perception.features.descriptors.spin_images import spin_images
 
 GOLDEN = Path(__file__).with_name("spin_images.golden.json")
 

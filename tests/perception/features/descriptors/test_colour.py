@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.colour import ColourDescriber
+from deixis.perception.features.descriptors.colour import ColourDescriber
 
 RED, BLUE, GREY = (190, 40, 40), (40, 70, 180), (128, 128, 128)
 CHANNEL = st.integers(0, 255)

@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.features.describer import finite_points
-from deixis.perception.features.keypoints import voxel_keypoints
-from deixis.perception.features.normals import estimate_normals, neighbourhoods
-from deixis.perception.features.upright import (
+from deixis.perception.features.descriptors.upright import (
     FOOT_PERCENTILE,
     MIN_HEIGHT,
     SPACING,
     TOP_PERCENTILE,
     in_smallest_rectangle,
 )
+from deixis.perception.features.points.keypoints import voxel_keypoints
+from deixis.perception.features.points.normals import estimate_normals, neighbourhoods
 
 MIN_POINTS = 3
 """Minimum number of points with a normal."""
