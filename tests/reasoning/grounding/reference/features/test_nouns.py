@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.reference.nouns import NAMED, Nouns, class_shares
-from deixis.reasoning.grounding.reference.room import Room
+from deixis.reasoning.grounding.reference.features.nouns import NAMED, Nouns, class_shares
+from deixis.reasoning.grounding.reference.features.room import Room
 
 
 def room(labels: tuple[str | None, ...], candidates: tuple[dict[str, float], ...] | None = None) -> Room:

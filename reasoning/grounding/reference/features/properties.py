@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.things.colours import Colours
+from deixis.reasoning.grounding.reference.features.room import Room
 from deixis.reasoning.grounding.reference.query import Person, Property
-from deixis.reasoning.grounding.reference.room import Room
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

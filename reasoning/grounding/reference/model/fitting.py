@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.things.colours import Colours
-from deixis.reasoning.grounding.reference.likelihood import Score, add_gradients
-from deixis.reasoning.grounding.reference.model import DOUBTS, UNCALIBRATED, Model, calibrated
-from deixis.reasoning.grounding.reference.nouns import NOUN_FEATURES, NUMBER_FEATURES
-from deixis.reasoning.grounding.reference.properties import SIZES, property_features
+from deixis.reasoning.grounding.reference.features.nouns import NOUN_FEATURES, NUMBER_FEATURES
+from deixis.reasoning.grounding.reference.features.properties import SIZES, property_features
+from deixis.reasoning.grounding.reference.features.relations import FAMILIES, RELATIONS, Pairs
+from deixis.reasoning.grounding.reference.features.room import Room
+from deixis.reasoning.grounding.reference.model.likelihood import Score, add_gradients
+from deixis.reasoning.grounding.reference.model.model import DOUBTS, UNCALIBRATED, Model, calibrated
 from deixis.reasoning.grounding.reference.query import Property, Query
-from deixis.reasoning.grounding.reference.relations import FAMILIES, RELATIONS, Pairs
-from deixis.reasoning.grounding.reference.room import Room
 
 Array = NDArray[np.float64]
 
@@ -262,7 +262,7 @@ def fit_calibration(held_out: Sequence[tuple[Model, Example]]) -> Array:
     Returns
     -------
     ndarray
-        The weights of :func:`~deixis.reasoning.grounding.reference.model.calibrated`, shape (2 d,).
+        The weights of :func:`~deixis.reasoning.grounding.reference.model.model.calibrated`, shape (2 d,).
     """
     from scipy.optimize import minimize
 

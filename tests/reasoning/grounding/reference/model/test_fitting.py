@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.reference.fitting import Example, feature_names, fit, initial_weights
-from deixis.reasoning.grounding.reference.model import Lexis, Model
-from deixis.reasoning.grounding.reference.nouns import Nouns
+from deixis.reasoning.grounding.reference.features.nouns import Nouns
+from deixis.reasoning.grounding.reference.features.room import Room
+from deixis.reasoning.grounding.reference.model.fitting import Example, feature_names, fit, initial_weights
+from deixis.reasoning.grounding.reference.model.model import Lexis, Model
 from deixis.reasoning.grounding.reference.query import Description, Query, Relation
-from deixis.reasoning.grounding.reference.room import Room
 
 COLOURS = default_ontology().colours
 NOUNS = Nouns(default_ontology().lexicon)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.lexicon.lexicon import Lexicon, Relatedness
-from deixis.reasoning.grounding.reference.room import Room
+from deixis.reasoning.grounding.reference.features.room import Room
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from deixis.reasoning.grounding.reference.answer import Frame
-from deixis.reasoning.grounding.reference.model import Model
-from deixis.reasoning.grounding.reference.properties import SIDES
+from deixis.reasoning.grounding.reference.features.properties import SIDES
+from deixis.reasoning.grounding.reference.features.relations import RELATIONS
+from deixis.reasoning.grounding.reference.features.room import Room
+from deixis.reasoning.grounding.reference.model.model import Model
 from deixis.reasoning.grounding.reference.query import Query
-from deixis.reasoning.grounding.reference.relations import RELATIONS
-from deixis.reasoning.grounding.reference.room import Room
 
 PLACES = frozenset({"corner", "wall", "edge", "middle", "centre", "center"})
 

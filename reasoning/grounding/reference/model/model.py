@@ -3,7 +3,7 @@
 A description is scored in logarithms: the noun against the label, properties and relations by weighted features. The
 landmark of a relation is summed over its own posterior, the viewer over all directions. All of it is one log-linear
 model with latent landmarks and viewers, whose weights are fitted by maximum likelihood
-(:mod:`deixis.reasoning.grounding.reference.fitting`).
+(:mod:`deixis.reasoning.grounding.reference.model.fitting`).
 """
 
 from __future__ import annotations
@@ -16,7 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.things.colours import Colours
-from deixis.reasoning.grounding.reference.likelihood import (
+from deixis.reasoning.grounding.reference.features.nouns import class_shares
+from deixis.reasoning.grounding.reference.features.properties import SIDES, called_by, property_features
+from deixis.reasoning.grounding.reference.features.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
+from deixis.reasoning.grounding.reference.features.room import Room
+from deixis.reasoning.grounding.reference.model.likelihood import (
     Score,
     constant,
     log_complement,
@@ -25,8 +29,6 @@ from deixis.reasoning.grounding.reference.likelihood import (
     log_sum,
     weighted,
 )
-from deixis.reasoning.grounding.reference.nouns import class_shares
-from deixis.reasoning.grounding.reference.properties import SIDES, called_by, property_features
 from deixis.reasoning.grounding.reference.query import (
     Description,
     Person,
@@ -36,8 +38,6 @@ from deixis.reasoning.grounding.reference.query import (
     Viewer,
     readings,
 )
-from deixis.reasoning.grounding.reference.relations import ANY_RELATION, FAMILIES, RELATIONS, VIEWED, Pairs
-from deixis.reasoning.grounding.reference.room import Room
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

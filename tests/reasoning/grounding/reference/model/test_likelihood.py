@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.reference.likelihood import (
+from deixis.reasoning.grounding.reference.model.likelihood import (
     Score,
     add_gradients,
     constant,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.reasoning.grounding.reference.room import Room
+from deixis.reasoning.grounding.reference.features.room import Room
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
