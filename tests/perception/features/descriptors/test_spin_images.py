@@ -1,7 +1,6 @@
 """Spin images: compared with a plain reference implementation, with values by hand, and under rigid motion.
 
-The golden values beside this file are those of the reference; ``python tests/perception/features/test_spin_images.py``
-writes them again.
+The golden values beside this file are those of the reference; this file, run as a script, writes them again.
 """
 
 from __future__ import annotations
