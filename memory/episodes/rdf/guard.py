@@ -72,7 +72,8 @@ class Guard:
         """
         doubtful = [fluent for fluent in fluents if not self.accepts(fluent)]
         if doubtful:
-            results = violations([triple for fluent in doubtful for triple in _described(fluent)], file=self._file)
+            described = [(*fluent_triples(fluent), statement_triple(fluent.statement)) for fluent in doubtful]
+            results = violations([triple for triples in described for triple in triples], file=self._file)
             if results:
                 raise RejectedWriteError(
                     f"nothing was written: it breaks the shapes in {count(len(results), 'place')}", results
@@ -143,10 +144,6 @@ class Guard:
 def shipped_guard() -> Guard:
     """Return the guard of the shipped shapes, compiled once."""
     return Guard(SHIPPED)
-
-
-def _described(fluent: EpisodicFluent) -> list[ox.Triple]:
-    return [*fluent_triples(fluent), statement_triple(fluent.statement)]
 
 
 class _Description:
