@@ -33,10 +33,10 @@ from killing import forks_of
 
 from deixis.memory import folder as files
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Logged
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Logged
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.projection import follow, is_current
-from deixis.memory.episodes.rdf import fluent_iri, fluent_triples
+from deixis.memory.episodes.rdf.observations import fluent_iri, fluent_triples
 from deixis.memory.semantic.rdf.graphs import FLUENTS
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.reasoning.temporal.fluent import Pattern
@@ -274,8 +274,8 @@ WRITER = """
 import os
 from pathlib import Path
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Finish
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Finish
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.episodes.projection import follow, is_current
 from deixis.memory.semantic.store import SemanticMemory
 

@@ -15,7 +15,7 @@ from common import data_folder
 from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 
-from deixis.learning.views import COLOUR, FORM, SPIN_IMAGE_ROOTS, UPRIGHT, Comparison, known_by
+from deixis.learning.views.views import COLOUR, FORM, SPIN_IMAGE_ROOTS, UPRIGHT, Comparison, known_by
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import read_cloud
 from deixis.perception.recognition.calibration import auroc, expected_calibration_error

@@ -16,9 +16,9 @@ import pyoxigraph as ox
 import rdflib
 from records import command_line, recorded, seconds
 
-from deixis.ontology.vocabulary import BASE
+from deixis.ontology.rdf.vocabulary import BASE
 from deixis.reasoning.description_logic.justification import justify
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import Reasoner, classify
 from deixis.reasoning.description_logic.terms import (
     NAMED_INDIVIDUAL,

@@ -29,7 +29,7 @@ from scipy.linalg import eigh
 from scipy.spatial.distance import cdist
 
 from deixis.experiments.open_ended.things import FOLDER
-from deixis.learning.views import FORM, UPRIGHT
+from deixis.learning.views.views import FORM, UPRIGHT
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.recognition.calibration import SHIPPED_JOINT, auroc

@@ -37,7 +37,7 @@ from records import command_line, count, recorded, share
 from deixis.errors import DeixisError
 from deixis.grammar.english import confidence
 from deixis.grammar.english.reader import read_english
-from deixis.ontology.facts import Fact as ScriptFact
+from deixis.ontology.graph.facts import Fact as ScriptFact
 from deixis.report.layouts.read import reading_to_dict
 
 SAME = {

@@ -25,12 +25,12 @@ from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS, STATED_SIDES
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS, STATED_SIDES
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 OBJECTS, FACTS = 11, 22

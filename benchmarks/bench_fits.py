@@ -2,11 +2,11 @@
 
 Right pairs are generated tables and photographs (``$DEIXIS_DATA/vrd``) with their own descriptions; wrong ones are
 tables with shuffled things, and photographs with another's description. Prints the powers of
-:mod:`deixis.reasoning.grounding.hypotheses` as they are fitted (:mod:`deixis.reasoning.grounding.fitting.fits`), and
-the likeliest powers on tables and on photographs alone. Then, on other tables: the share of wrong descriptions noticed
-at each rate of false alarms, for photographs also in ten-fold cross-validation; the decided and the right matches of
-photographs, with their own descriptions and with others'; and how often ``fits`` is below a half on tables of 12
-objects whose kinds are known, with 22 facts and more.
+:mod:`deixis.reasoning.grounding.hypotheses.hypotheses` as they are fitted
+(:mod:`deixis.reasoning.grounding.fitting.fits`), and the likeliest powers on tables and on photographs alone. Then, on
+other tables: the share of wrong descriptions noticed at each rate of false alarms, for photographs also in ten-fold
+cross-validation; the decided and the right matches of photographs, with their own descriptions and with others'; and
+how often ``fits`` is below a half on tables of 12 objects whose kinds are known, with 22 facts and more.
 """
 
 from __future__ import annotations
@@ -25,12 +25,13 @@ from deixis.deadline import Deadline
 from deixis.experiments.cross_validation import folds
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import FOLDER, Photograph, photographs
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
+from deixis.reasoning.grounding.engines.map_engines import ExactEngine
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
 from deixis.reasoning.grounding.fitting.fits import fit_powers, likeliest_powers
-from deixis.reasoning.grounding.hypotheses import (
+from deixis.reasoning.grounding.hypotheses.hypotheses import (
     ANOTHER_PRIOR,
     AS_IT_STANDS,
     CHANCE_SHARE,
@@ -41,7 +42,6 @@ from deixis.reasoning.grounding.hypotheses import (
     Side,
     Verdict,
 )
-from deixis.reasoning.grounding.map_engines import ExactEngine
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.options import is_decided
 

@@ -1,11 +1,11 @@
 """Measure graded meaning on described photographs (those of ``bench_vrd.py``) and on generated tables.
 
-Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts`); the one-to-one map
-with the largest sum is found exactly. Prints the share of objects named right, mean over images, each a mean over
-random node orders. ``shipped`` words and sizes do not depend on these images. ``learned`` words, and sizes by the names
-in the descriptions, are fitted by cross-validation over images: the test fold is never seen. ``--halves`` adds the
-shares of two fixed halves of the images, development and confirmation; the last choices of form, and the strengths of
-the priors of learned models, were made on the first half alone.
+Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts.facts`); the
+one-to-one map with the largest sum is found exactly. Prints the share of objects named right, mean over images, each a
+mean over random node orders. ``shipped`` words and sizes do not depend on these images. ``learned`` words, and sizes by
+the names in the descriptions, are fitted by cross-validation over images: the test fold is never seen. ``--halves``
+adds the shares of two fixed halves of the images, development and confirmation; the last choices of form, and the
+strengths of the priors of learned models, were made on the first half alone.
 
 ``--tables N`` grounds N generated tables of 12 objects per setting instead: the share right of the best map, beside the
 exact Bayes limit given the words only and given also how pairs are drawn; the expected calibration error of the
@@ -30,14 +30,14 @@ from deixis.experiments.scoreboard.bayes_limit import bayes_limit
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.evidence.facts import FactTables, crisp_tables, fact_tables
-from deixis.reasoning.grounding.evidence.labels import classes
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights, size_evidence
+from deixis.reasoning.grounding.evidence.facts.facts import FactTables, crisp_tables, fact_tables
+from deixis.reasoning.grounding.evidence.properties.labels import classes
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights, size_evidence
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.fitting.fit import FitSettings
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 HALVES_SEED = 2016
 SETTINGS = ((1.0, 0.0), (1.5, 0.0), (2.5, 0.0), (1.0, 0.1), (2.5, 0.1), (2.5, 0.2))  # facts per object, share off

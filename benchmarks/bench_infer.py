@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rdflib import Graph, URIRef
 from records import command_line, ratio, recorded, seconds
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.implications import Implications
 

@@ -41,13 +41,13 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.matching import ladders
-from deixis.reasoning.grounding.matching.coincidences import discounted
-from deixis.reasoning.grounding.matching.exchangeable import exchangeable
-from deixis.reasoning.grounding.matching.ladders import sampled_marginals
-from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.matching.posterior import ladders
+from deixis.reasoning.grounding.matching.posterior.coincidences import discounted
+from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior.ladders import sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem, to_assignment
-from deixis.reasoning.grounding.matching.scalable import scalable
+from deixis.reasoning.grounding.matching.search.scalable import scalable
 from deixis.reasoning.grounding.options import is_decided
 
 HELD_OUT = 100

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from records import command_line, figure, recorded, share
 
 from deixis.examples_data import example
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.activities.activity import Activity, LaidThing, Laying, Step
 from deixis.reasoning.activities.prediction import LayingModel
 from deixis.robot.live.run import live_robot

@@ -25,9 +25,9 @@ from common import data_folder
 from records import command_line, count, figure, recorded, share
 
 from deixis.ontology.inflection import singulars
-from deixis.ontology.kinds import Kinds
 from deixis.ontology.lexicon.lexicon import Lexicon
 from deixis.ontology.tbox import load_ontology
+from deixis.ontology.things.kinds import Kinds
 
 CONCRETE = {"05", "06", "08", "13", "20"}
 """WordNet's files of animals, artefacts, body parts, food and plants."""

@@ -21,7 +21,7 @@ import numpy as np
 from records import command_line, count, recorded, seconds, share
 
 from deixis.examples_data import example
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.live.run import LiveRobot, live_robot
 from deixis.robot.live.senses import AT, VIEW

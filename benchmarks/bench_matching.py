@@ -23,13 +23,13 @@ from records import command_line, figure, recorded
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, generate
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
-from deixis.reasoning.grounding.evidence.facts import fact_tables
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.matching.exact import exact, maps_within, warm
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.matching.scalable import scalable
+from deixis.reasoning.grounding.matching.search.exact import exact, maps_within, warm
+from deixis.reasoning.grounding.matching.search.scalable import scalable
 
 T = TypeVar("T")
 

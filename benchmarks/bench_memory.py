@@ -21,8 +21,8 @@ from deixis.memory.errors import QueryError, QueryTimeoutError
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory
-from deixis.ontology.triples import iri, text, typed
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.triples import iri, text, typed
+from deixis.ontology.rdf.vocabulary import DX, W3C
 
 ASSERTED = graph_iri(GraphName.ASSERTED)
 

@@ -32,7 +32,7 @@ from records import command_line, figure, mean, recorded
 import deixis
 from deixis.experiments.open_ended.mesh_list import CORRECTED, EXCLUDED
 from deixis.experiments.open_ended.things import FOLDER, in_metres, listed_meshes, rows_of, simulated, upright
-from deixis.learning.views import (
+from deixis.learning.views.views import (
     FORM,
     SPIN_IMAGE_ROOTS,
     UPRIGHT,

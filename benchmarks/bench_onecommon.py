@@ -14,12 +14,12 @@ from common import data_folder
 from records import command_line, mean, recorded, share
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
+from deixis.reasoning.grounding.evidence.properties.labels import Label
 from deixis.reasoning.grounding.ground import ground
 
 

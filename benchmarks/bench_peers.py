@@ -22,7 +22,7 @@ from peers import annealing, faq, graph_matching
 from records import command_line, mean, recorded
 
 from deixis.experiments.scoreboard.cases import Case, Setting, generated_cases
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import Problem
 
 SEED = 4242  # the scoreboard's seed is 1, or given by the user

@@ -26,7 +26,7 @@ import numpy as np
 import plyvel
 from records import command_line, figure, peer_version, recorded
 
-from deixis.memory.perceptual.handle import OPTIONS
+from deixis.memory.perceptual.database.handle import OPTIONS
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 

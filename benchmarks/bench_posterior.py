@@ -16,9 +16,9 @@ import numpy as np
 from records import command_line, figure, recorded
 
 from deixis.experiments.generated_tables import generate
-from deixis.reasoning.grounding.evidence.facts import fact_tables
-from deixis.reasoning.grounding.matching import ladders as settings
-from deixis.reasoning.grounding.matching.posterior import Posterior, posterior
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
+from deixis.reasoning.grounding.matching.posterior import ladders as settings
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior, posterior
 from deixis.reasoning.grounding.matching.problem import Problem
 
 ABSENT = math.log(0.05 / 0.95)  # as in grounding

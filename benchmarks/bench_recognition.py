@@ -28,10 +28,10 @@ from scipy.spatial.distance import pdist
 
 from deixis.examples_data import example
 from deixis.grammar.layout.parser import parse_script
-from deixis.learning import views as recognising
-from deixis.learning.views import known_by
+from deixis.learning.views import views as recognising
+from deixis.learning.views.views import known_by
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.form import PARTS, form_parts
+from deixis.perception.features.descriptors.form import PARTS, form_parts
 from deixis.perception.features.registry import DESCRIBERS, describer_named
 from deixis.perception.recognition.calibration import auroc, expected_calibration_error
 from deixis.perception.recognition.distances import Target

@@ -25,7 +25,7 @@ from refer3d import Described, nr3d, read_scenes, sr3d
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.answer import DECIDED
-from deixis.reasoning.grounding.reference.model import Model
+from deixis.reasoning.grounding.reference.model.model import Model
 from deixis.reasoning.grounding.reference.questions import answered, best_question
 from deixis.workflows.descriptions.refer import MAX_QUESTIONS, read_description, refer, shipped_model
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from records import command_line, mean, recorded
 
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, compared_scene
 from deixis.reasoning.comparison.retrieval import rank_layouts, rank_scenes

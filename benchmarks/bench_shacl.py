@@ -18,8 +18,8 @@ from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.memory.semantic.store import SemanticMemory
 from deixis.memory.semantic.validation.shacl import shapes_graph, violations
 from deixis.memory.semantic.validation.validate import check_change
-from deixis.ontology.triples import iri, text
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.rdf.triples import iri, text
+from deixis.ontology.rdf.vocabulary import DX
 
 NODES, CHANGED = 10_000, 1_000
 

@@ -21,10 +21,10 @@ from peers import spin_images_pcl
 from records import command_line, ratio, recorded, seconds
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.blocks import available
-from deixis.perception.features.normals import estimate_normals
+from deixis.perception.features.descriptors.spin_images import spin_images
+from deixis.perception.features.points.blocks import available
+from deixis.perception.features.points.normals import estimate_normals
 from deixis.perception.features.registry import DESCRIBERS, describer_named
-from deixis.perception.features.spin_images import spin_images
 
 SUPPORT = 0.08
 KEYPOINTS = 500

@@ -19,7 +19,7 @@ from records import command_line, recorded, share
 
 from deixis.errors import DeixisError
 from deixis.grammar.english.reader import read_english
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.facts import Fact
 
 STEPS = {
     "left": (-1, 0), "right": (1, 0), "top": (0, 1), "bottom": (0, -1), "above": (0, 1), "below": (0, -1),

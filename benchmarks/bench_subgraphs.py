@@ -16,8 +16,8 @@ from records import command_line, ratio, recorded
 
 from deixis.examples_data import example
 from deixis.perception.formats.scene_json import read_scene
-from deixis.reasoning.grounding.similarity import node_similarity
-from deixis.reasoning.grounding.similarity_engine import described
+from deixis.reasoning.grounding.engines.similarity import node_similarity
+from deixis.reasoning.grounding.engines.similarity_engine import described
 from deixis.workflows.layouts.read import read_script
 
 

@@ -3,8 +3,9 @@
 The tables have 12 to 100 objects of three layouts, of which none, a twentieth or a tenth are missing and as many things
 are not described; one fact in ten is wrong. Seeds from ``FITTED_SEEDS`` on are fitted to. For these and for as many
 tables of other seeds, the command prints the decided and the right matches and the calibration error, without and with
-the shipped weights of :mod:`deixis.reasoning.grounding.matching.coincidences`. Intervals are Wilson's, 95 per cent, as
-if matches of one table were independent. ``--tables N`` is the number of large tables of each setting and layout.
+the shipped weights of :mod:`deixis.reasoning.grounding.matching.posterior.coincidences`. Intervals are Wilson's, 95 per
+cent, as if matches of one table were independent. ``--tables N`` is the number of large tables of each setting and
+layout.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import LAYOUTS
 from deixis.perception.recognition.calibration import expected_calibration_error
 from deixis.reasoning.grounding.fitting.coincidences import JudgedTable, fit_coincidences
-from deixis.reasoning.grounding.matching.coincidences import SHIPPED_WEIGHTS, CoincidenceWeights, coincidences
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior.coincidences import SHIPPED_WEIGHTS, CoincidenceWeights, coincidences
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 from deixis.reasoning.grounding.options import is_decided
 
 FITTED_SEEDS, OTHER_SEEDS = 500, 900

@@ -20,8 +20,8 @@ from refer3d import Described, nr3d, read_scenes, scanrefer, sr3d
 
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import DescriptionError
-from deixis.reasoning.grounding.reference.fitting import Example, fit, fit_calibration, initial_weights
-from deixis.reasoning.grounding.reference.model import Model
+from deixis.reasoning.grounding.reference.model.fitting import Example, fit, fit_calibration, initial_weights
+from deixis.reasoning.grounding.reference.model.model import Model
 from deixis.workflows.descriptions.learn_reference import write_reference
 from deixis.workflows.descriptions.refer import model_with, read_description
 

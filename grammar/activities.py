@@ -16,8 +16,8 @@ import numpy as np
 
 from deixis.errors import DeixisError
 from deixis.grammar.files import read_text
-from deixis.ontology.allen import ALL_ALLEN
 from deixis.ontology.inflection import is_plural, singular
+from deixis.ontology.relations.allen import ALL_ALLEN
 from deixis.ontology.strict_json import parse_json
 from deixis.reasoning.activities.activity import RELATIONS, Activity, LaidThing, Step, StepSequence, kind_of
 

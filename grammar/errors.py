@@ -6,7 +6,7 @@ import unicodedata
 from dataclasses import dataclass
 
 from deixis.errors import DeixisError
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 MAX_PROBLEMS_SHOWN = 50  # problems that are shown in full
 LINE_WINDOW = 100  # characters of a long line that are shown

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from deixis.grammar.errors import ScriptFileError, StatementError, shortened
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 MAX_FILE_BYTES = 4 * 1024 * 1024  # bytes of one file; reading it takes up to 150 times as much memory
 MAX_INCLUDE_DEPTH = 32  # maximum depth of nested includes

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from deixis.grammar.errors import Diagnostic
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
-from deixis.ontology.relation import Reading as WordReading
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.relations.relation import Reading as WordReading
 
 Span = tuple[int, int]
 """First and last character of a phrase in the text, counted from 0, the end exclusive."""

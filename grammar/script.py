@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 from deixis.answers import Answer, count
 from deixis.grammar.reading import Reading
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Colour
-from deixis.ontology.facts import Fact, Source
-from deixis.ontology.kinds import Kind
-from deixis.ontology.relation import Relation
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact, Source
+from deixis.ontology.relations.relation import Relation
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.colours import Colour
+from deixis.ontology.things.kinds import Kind
 
 if TYPE_CHECKING:
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,7 +294,7 @@ class Script(Answer):
 
     @cached_property
     def _graph(self) -> RelationGraph:
-        from deixis.ontology.graph import RelationGraph  # imports numpy, which the facts do not need
+        from deixis.ontology.graph.graph import RelationGraph  # imports numpy, which the facts do not need
 
         known = [self.kinds.get(name) or self.ontology.of_name(name)[0] for name in self.objects]
         kinds = [kind.iri if kind else None for kind in known]

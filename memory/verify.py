@@ -26,8 +26,8 @@ import pyoxigraph as ox
 
 from deixis.memory import folder as files
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
-from deixis.memory.episodes.episode import EVENT
 from deixis.memory.episodes.experiences import CONSOLIDATED
+from deixis.memory.episodes.fluents.episode import EVENT
 from deixis.memory.errors import DamagedMemoryError, MemoryFormatError, ReadOnlyMemoryError
 from deixis.memory.folder import FolderState
 from deixis.memory.owner import OwnerLock, ReaderLock

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from deixis.errors import OntologyError
-from deixis.ontology.colours import Colour, Colours, colours_from_triples
-from deixis.ontology.kinds import Kind, Kinds, plain_name, spaced
-from deixis.ontology.relation import Relation, Relations, relation_from_triples
-from deixis.ontology.sizes import Sizes, sizes_from_triples
-from deixis.ontology.triple_index import TripleIndex
-from deixis.ontology.triples import content_key
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.triple_index import TripleIndex
+from deixis.ontology.rdf.triples import content_key
+from deixis.ontology.rdf.vocabulary import DX, W3C
+from deixis.ontology.relations.relation import Relation, Relations, relation_from_triples
+from deixis.ontology.things.colours import Colour, Colours, colours_from_triples
+from deixis.ontology.things.kinds import Kind, Kinds, plain_name, spaced
+from deixis.ontology.things.sizes import Sizes, sizes_from_triples
 
 if TYPE_CHECKING:
     import pyoxigraph as ox

@@ -16,16 +16,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
-from deixis.ontology.colours import Rgb
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relations
+from deixis.ontology.things.colours import Rgb
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import CloudError, SceneError
 
 if TYPE_CHECKING:
     from deixis.reasoning.geometry.poses import Poses
     from deixis.reasoning.geometry.rectangle import SceneRelations
-    from deixis.reasoning.grounding.reference.room import Room
+    from deixis.reasoning.grounding.reference.features.room import Room
 
 
 @dataclass(frozen=True, slots=True)
@@ -610,8 +610,8 @@ class Scene(Answer):
     @cached_property
     def room(self) -> Room:
         """The geometry that descriptions of one object are compared with (:func:`deixis.refer`)."""
+        from deixis.reasoning.grounding.reference.features.room import Room
         from deixis.reasoning.grounding.reference.query import Person
-        from deixis.reasoning.grounding.reference.room import Room
 
         if self.viewer is not None:
             return self.from_viewer().room

@@ -11,8 +11,8 @@ from typing import Any
 import deixis
 from deixis.learning.update import stale
 from deixis.memory.episodes.blackboard import Blackboard, open_episodes
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import finish_recording, put_episode, start_recording
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.perceptual.in_folder import export_all
 from deixis.memory.semantic.exchange import export_memory
 from deixis.memory.verify import verify

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.options import Select

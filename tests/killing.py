@@ -60,8 +60,9 @@ import os, shutil, signal, sys
 import deixis
 from deixis.examples_data import example
 from deixis.learning import update as learning
-from deixis.memory.episodes.disk import DiskKeys
-from deixis.memory.perceptual import exchange, handle
+from deixis.memory.episodes.store.disk import DiskKeys
+from deixis.memory.perceptual import exchange
+from deixis.memory.perceptual.database import handle
 from deixis.memory.semantic.rdf import ledger
 from deixis.robot.robot import Robot
 from deixis.session import Session

@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN
-from deixis.ontology.graph import Fact
-from deixis.ontology.relation import Relation
+from deixis.ontology.graph.graph import Fact
+from deixis.ontology.relations.allen import ALL_ALLEN
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.geometry.allen import allen_relations
 
 

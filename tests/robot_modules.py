@@ -8,8 +8,8 @@ import threading
 from collections.abc import Callable
 from typing import ClassVar
 
-from deixis.memory.episodes.changes import Add, Logged
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Logged
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.journal import write_together
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.modules import Board, Module

@@ -8,8 +8,8 @@ from functools import cache
 from hypothesis import strategies as st
 from rdflib import OWL, RDF, RDFS, Graph, URIRef
 
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.ontology.tbox import default_ontology, tbox_turtle
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus

@@ -50,8 +50,8 @@ implies the wide relation of the same word.
 ## Relations, the graded reading
 
 Words beside the ten. A graded model says how well each fits a pair of boxes
-(`reasoning/grounding/evidence/meaning.py`). The Allen relations are necessary for a word, not sufficient: inference
-uses them, inverses, symmetry, transitivity and broader words.
+(`reasoning/grounding/evidence/words/meaning.py`). The Allen relations are necessary for a word, not sufficient:
+inference uses them, inverses, symmetry, transitivity and broader words.
 
 {graded}
 

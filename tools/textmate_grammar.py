@@ -10,7 +10,7 @@ from typing import Any
 
 from deixis.grammar.layout.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PATTERN
 from deixis.grammar.layout.words import BETWEEN, IS, NUMBERS, VERBS, chains
-from deixis.ontology.relation import plain_phrase
+from deixis.ontology.relations.relation import plain_phrase
 from deixis.ontology.tbox import Ontology, default_ontology
 
 GRAMMAR = Path(__file__).parents[1] / "editors" / "vscode" / "syntaxes" / "deixis-layout.tmLanguage.json"

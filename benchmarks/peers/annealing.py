@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from deixis.reasoning.grounding.matching.problem import Compiled, Problem, compile_problem, to_assignment
-from deixis.reasoning.grounding.matching.scalable import mean_range
+from deixis.reasoning.grounding.matching.search.scalable import mean_range
 
 HOT, COLD = 1.0, 0.1  # in units of the mean range of a table; see bench_peers.py
 

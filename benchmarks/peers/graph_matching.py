@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.reasoning.grounding.engines.similarity import assign
 from deixis.reasoning.grounding.matching.problem import Problem
-from deixis.reasoning.grounding.similarity import assign
 
 MOST_CELLS = 2_000  # number of matches; the affinity has its square
 

@@ -27,8 +27,8 @@ from deixis.grammar.script import (
     Script,
     Statement,
 )
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact, Source
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact, Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 

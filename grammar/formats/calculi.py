@@ -29,8 +29,8 @@ from numpy.typing import NDArray
 from deixis.errors import DeixisError
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, shortened
 from deixis.grammar.files import read_text
-from deixis.ontology.graph import Source
-from deixis.ontology.relation import nearest
+from deixis.ontology.graph.graph import Source
+from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import CalculusError
 from deixis.reasoning.qualitative.calculi.calculus import MAX_TABLE_ATOMS, Calculus, Subclass, TableCalculus
 from deixis.reasoning.qualitative.calculi.laws import Violation, lawful

@@ -17,7 +17,7 @@ from typing import Any
 from deixis.errors import DeixisError
 from deixis.grammar.errors import shortened
 from deixis.grammar.files import read_text
-from deixis.ontology.allen import SYMBOLS, Allen, allen_mask, members
+from deixis.ontology.relations.allen import SYMBOLS, Allen, allen_mask, members
 from deixis.ontology.strict_json import json_type, parse_json
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import MAX_SECONDS, UNKNOWN, Bounds

@@ -20,7 +20,7 @@ from pathlib import Path
 from deixis.errors import DeixisError
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN, Diagnostic, shortened
 from deixis.grammar.files import read_text
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 from deixis.reasoning.errors import NetworkError, UnknownAtomError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, bits
 from deixis.reasoning.qualitative.networks.network import Constraint, Network

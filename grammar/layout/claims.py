@@ -1,6 +1,6 @@
 """Phrases that state claims in the layout language: their patterns, what each means, and how a claim is written.
 
-A claim is what is not a relation between two objects (:mod:`deixis.ontology.claims`): a place (*at the far left
+A claim is what is not a relation between two objects (:mod:`deixis.ontology.graph.claims`): a place (*at the far left
 corner*), an arrangement (*in a row*), a distance (*about 2 cm from*), a comparison with several (*between*, *largest
 of*). A phrase stands for the term of the claim, its value and its metres. Some phrases are followed by objects.
 """
@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from deixis.grammar.layout.words import BETWEEN, BOUNDARY
-from deixis.ontology.claims import COLLECTIVE, PLACES, SUPERLATIVES, Claim
+from deixis.ontology.graph.claims import COLLECTIVE, PLACES, SUPERLATIVES, Claim
 from deixis.ontology.lexicon.adjectives import adjectives
-from deixis.ontology.relation import ARTICLES
+from deixis.ontology.relations.relation import ARTICLES
 
 SIDES = (
     *("left", "right", "far", "near", "front", "back", "top", "bottom", "upper", "lower", "rear", "above", "below"),

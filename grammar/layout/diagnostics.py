@@ -12,8 +12,8 @@ from deixis.grammar.layout.draft import Draft
 from deixis.grammar.layout.names import RESERVED_FOR, is_also_noun, may_be_meant_as_name, naming_hint
 from deixis.grammar.layout.tree import UNQUALIFIED_DECLARATION, source_of, span_of
 from deixis.grammar.layout.words import DENIALS
-from deixis.ontology.facts import Source
-from deixis.ontology.relation import plain_phrase
+from deixis.ontology.graph.facts import Source
+from deixis.ontology.relations.relation import plain_phrase
 
 RELATION_EXPECTED = "expected a relation such as 'left of', or 'is a'"
 SMART_QUOTES = "“”„‟«»‘’"

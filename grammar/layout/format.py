@@ -19,12 +19,12 @@ from deixis.grammar.script import (
     Script,
     Statement,
 )
-from deixis.ontology.claims import SUPERLATIVES, Claim
-from deixis.ontology.colours import Colour
-from deixis.ontology.facts import Source
-from deixis.ontology.kinds import Kind
+from deixis.ontology.graph.claims import SUPERLATIVES, Claim
+from deixis.ontology.graph.facts import Source
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.colours import Colour
+from deixis.ontology.things.kinds import Kind
 
 
 def format_script(script: Script) -> str:

@@ -15,7 +15,7 @@ from deixis.grammar.layout.claims import CLAIM_OF_PATTERN, CLAIM_PATTERN, HAS_PA
 from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE, Scanner
 from deixis.grammar.layout.tree import TreeBuilder
 from deixis.grammar.layout.words import chains, phrase_pattern
-from deixis.ontology.relation import plain_phrase
+from deixis.ontology.relations.relation import plain_phrase
 from deixis.ontology.tbox import Ontology
 
 NOTHING = "(?!)"  # pattern that matches nothing: a terminal for which the ontology has no word

@@ -9,7 +9,7 @@ from lark import Token
 from deixis.grammar.errors import StatementError, shortened
 from deixis.grammar.layout.words import NOUNS_TOO
 from deixis.grammar.script import Mention
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 RESERVED_FOR = {
     "FUNCTION": "is a reserved word",

@@ -26,7 +26,7 @@ from deixis.grammar.layout.names import key_of
 from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE
 from deixis.grammar.layout.tree import span_of
 from deixis.grammar.script import Comment, Header, Include, Script, Statement
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 STATEMENTS_PER_CLOCK_CHECK = 200

@@ -13,7 +13,7 @@ from lark import Token
 from lark.lexer import TerminalDef
 
 from deixis.grammar.layout.words import KEYWORDS
-from deixis.ontology.relation import ARTICLES
+from deixis.ontology.relations.relation import ARTICLES
 
 NOUN_PHRASE_TERMINALS = frozenset({"COUNT", "STRING", "COMPOUND"})
 TERMINALS_WITHOUT_RULE = ("END", "COMMENT", "COMPOUND", "NUMBER", "OPEN_STRING", "UNKNOWN")

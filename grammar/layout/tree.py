@@ -20,9 +20,9 @@ from deixis.grammar.script import (
     RelationStatement,
     Statement,
 )
-from deixis.ontology.claims import PLACES, Claim
-from deixis.ontology.facts import Source
-from deixis.ontology.relation import Reading, Relation, plain_phrase
+from deixis.ontology.graph.claims import PLACES, Claim
+from deixis.ontology.graph.facts import Source
+from deixis.ontology.relations.relation import Reading, Relation, plain_phrase
 
 UNQUALIFIED_DECLARATION = "the kind or colour of an object cannot be denied, optional or hedged"
 

@@ -16,8 +16,8 @@ from deixis.grammar.layout.language import language_of
 from deixis.grammar.layout.parser import STATEMENTS_PER_CLOCK_CHECK, FileReader
 from deixis.grammar.layout.tokens import TERMINALS_WITHOUT_RULE
 from deixis.grammar.script import Header, Include, Script, Statement
-from deixis.ontology.facts import Source
-from deixis.ontology.relation import ARTICLES
+from deixis.ontology.graph.facts import Source
+from deixis.ontology.relations.relation import ARTICLES
 from deixis.ontology.tbox import Ontology, default_ontology
 
 

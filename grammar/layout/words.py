@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from itertools import product
 from typing import Any
 
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.ontology.tbox import Ontology
 
 IS = ("is", "are")

@@ -19,7 +19,7 @@ from lark.exceptions import UnexpectedInput
 
 from deixis.errors import DeixisError
 from deixis.grammar.layout.words import phrase_pattern
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import Ontology, default_ontology
 
 MAX_QUESTION = 1000

@@ -1,6 +1,6 @@
 """The blackboard: fluents with a log of all changes, what holds now, what held when, and subscriptions.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> seen = Source(Origin.SEEN, "tracker")
 >>> with Blackboard.transient() as board:
 ...     board.add(episodic("f1", ("cup", "on", "table"), start=2.0, source=seen), by="tracker")
@@ -27,8 +27,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Self
 
-from deixis.memory.episodes.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
-from deixis.memory.episodes.codec import (
+from deixis.memory.episodes.fluents.changes import KINDS, Add, Change, Delete, Finish, Logged, Update
+from deixis.memory.episodes.fluents.codec import (
     change_of_list,
     change_to_list,
     decode_fluent,
@@ -37,17 +37,17 @@ from deixis.memory.episodes.codec import (
     encode_fluent,
     encode_logged,
 )
-from deixis.memory.episodes.disk import STORE, DiskKeys
-from deixis.memory.episodes.episode import EpisodicFluent, Source, check_text
-from deixis.memory.episodes.guard import Guard, shipped_guard
-from deixis.memory.episodes.intervals import endings_meeting, interval_keys
-from deixis.memory.episodes.keys import Keys, TransientKeys
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Source, check_text
+from deixis.memory.episodes.rdf.guard import Guard, shipped_guard
+from deixis.memory.episodes.store.disk import STORE, DiskKeys
+from deixis.memory.episodes.store.intervals import endings_meeting, interval_keys
+from deixis.memory.episodes.store.keys import Keys, TransientKeys
 from deixis.memory.episodes.subscription import Callback, SubscriberState, Subscription
 from deixis.memory.errors import EpisodeError, MemoryWriteError, UnknownFluentError
 from deixis.memory.folder import EPISODES, inspect
 from deixis.memory.journal import JournalEntry, Part, clear_journal, has_committed, read_journal, write_journal
 from deixis.memory.owner import Closing, ThreadLock
-from deixis.memory.perceptual.handle import wrap_level_errors
+from deixis.memory.perceptual.database.handle import wrap_level_errors
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
@@ -73,7 +73,7 @@ class Blackboard(Closing):
 
     Examples
     --------
-    >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+    >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
     >>> with Blackboard.transient() as board:
     ...     fluent = episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SEEN, "tracker"))
     ...     board.add(fluent, by="tracker")
@@ -94,7 +94,7 @@ class Blackboard(Closing):
     Writes of several changes, changes by pattern, and subscriptions:
 
     >>> from datetime import UTC, datetime
-    >>> from deixis.memory.episodes.changes import Add
+    >>> from deixis.memory.episodes.fluents.changes import Add
     >>> board = Blackboard.transient(origin=datetime(2026, 5, 1, tzinfo=UTC))
     >>> seen = Source(Origin.SEEN, "tracker")
     >>> facts = (("cup", "on", "table"), ("jug", "on", "table"))
@@ -251,7 +251,7 @@ class Blackboard(Closing):
         return self._origin
 
     def event_here(self, event: str) -> str | None:
-        """Return the id of an event that another store names (:func:`deixis.memory.episodes.episode.event_of`).
+        """Return the id of an event that another store names (:func:`deixis.memory.episodes.fluents.episode.event_of`).
 
         Parameters
         ----------

@@ -1,6 +1,6 @@
 """Export the fluents of a blackboard as text, and import such a text.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> with Blackboard.transient() as first, Blackboard.transient(first.origin) as second:
 ...     _ = first.add(episodic("f1", ("cup", "on", "table"), start=2.0, source=Source(Origin.SAID, "anna")), by="anna")
 ...     text = export_episodes(first)
@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import EpisodeError, ImportFormatError, RejectedWriteError
 from deixis.memory.folder import EPISODES, size
 from deixis.reasoning.temporal.bounds import Bounds

@@ -1,6 +1,6 @@
 """Experiences: named stretches of time that were recorded, and what held in them.
 
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> with Blackboard.transient() as board:
 ...     start_recording(board, "first table", 1.0, by="robot")
 ...     source = Source(Origin.SEEN, "tracker")
@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Change, Update
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Change, Update
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import EpisodeError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 

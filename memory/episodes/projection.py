@@ -12,9 +12,9 @@ from collections.abc import Iterable, Iterator
 import pyoxigraph as ox
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Logged
-from deixis.memory.episodes.episode import EpisodicFluent
-from deixis.memory.episodes.rdf import EP, RESOURCES, fluent_iri, fluent_triples, statement_triple
+from deixis.memory.episodes.fluents.changes import Logged
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
+from deixis.memory.episodes.rdf.observations import EP, RESOURCES, fluent_iri, fluent_triples, statement_triple
 from deixis.memory.semantic.rdf.graphs import FLUENTS, NOW
 from deixis.reasoning.temporal.fluent import Statement
 

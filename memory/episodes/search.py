@@ -14,9 +14,9 @@ from datetime import datetime
 from enum import Enum
 from typing import Protocol
 
-from deixis.memory.episodes.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.experiences import Holding
-from deixis.memory.episodes.rdf import EP, SOSA, predicate_iri, resource_iri, thing_iri
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.rdf.observations import EP, SOSA, predicate_iri, resource_iri, thing_iri
 from deixis.memory.semantic.rdf.graphs import FLUENTS
 from deixis.reasoning.temporal.fluent import Pattern
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from deixis.memory.episodes.changes import Logged
+from deixis.memory.episodes.fluents.changes import Logged
 from deixis.memory.folder import one_line
 
 Callback = Callable[[Logged], object]

@@ -22,7 +22,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from deixis.memory.perceptual.layout import CALIBRATION
+from deixis.memory.perceptual.database.layout import CALIBRATION
 from deixis.perception.recognition.calibration import Calibration
 
 ViewPlace = tuple[str, str]

@@ -29,7 +29,7 @@ from safetensors import SafetensorError
 
 from deixis.memory.errors import ImportFormatError, MemoryWriteError, RecordError, RejectedWriteError
 from deixis.memory.owner import Closing
-from deixis.memory.perceptual.codec import pack, unpack
+from deixis.memory.perceptual.database.codec import pack, unpack
 from deixis.memory.perceptual.protocol import PerceptualMemory, Progress
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View, arrays_by_name, arrays_by_use
 

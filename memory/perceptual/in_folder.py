@@ -14,8 +14,8 @@ from pathlib import Path
 
 from deixis.memory.errors import DamagedMemoryError
 from deixis.memory.folder import inspect
+from deixis.memory.perceptual.database.layout import FOLDER, version_in
 from deixis.memory.perceptual.exchange import Archive, Imported, export_views, import_views, is_archive
-from deixis.memory.perceptual.layout import FOLDER, version_in
 from deixis.memory.perceptual.level import LevelMemory, UndamagedMemory
 from deixis.memory.perceptual.protocol import PerceptualStats, Progress
 

@@ -29,9 +29,9 @@ from typing import Self
 
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
 from deixis.memory.owner import Closing
-from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import ViewHeader, read_about, read_name, write_category, write_name
-from deixis.memory.perceptual.handle import Handle, WriteBatch, acquire, closed, release
+from deixis.memory.perceptual.database import keys
+from deixis.memory.perceptual.database.codec import ViewHeader, read_about, read_name, write_category, write_name
+from deixis.memory.perceptual.database.handle import Handle, WriteBatch, acquire, closed, release
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken

@@ -16,8 +16,8 @@ from deixis.memory.errors import (
 )
 from deixis.memory.folder import size
 from deixis.memory.owner import Closing
-from deixis.memory.perceptual import keys
-from deixis.memory.perceptual.codec import (
+from deixis.memory.perceptual.database import keys
+from deixis.memory.perceptual.database.codec import (
     StoreCounts,
     ViewHeader,
     named,
@@ -27,11 +27,11 @@ from deixis.memory.perceptual.codec import (
     read_name,
     read_view,
 )
-from deixis.memory.perceptual.handle import Handle, Places, closed, read_places
-from deixis.memory.perceptual.layout import VERSION
+from deixis.memory.perceptual.database.handle import Handle, Places, closed, read_places
+from deixis.memory.perceptual.database.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.records import CategoryRecord, Json, View, check_name
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 
 MAX_LISTED = 5
 """Maximum number of categories that a message lists."""

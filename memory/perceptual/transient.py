@@ -17,8 +17,8 @@ from dataclasses import dataclass, field, replace
 
 from deixis.memory.errors import UnknownViewError
 from deixis.memory.owner import Closing
-from deixis.memory.perceptual.handle import closed
-from deixis.memory.perceptual.layout import VERSION
+from deixis.memory.perceptual.database.handle import closed
+from deixis.memory.perceptual.database.layout import VERSION
 from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
 from deixis.memory.perceptual.reading import unknown_category, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken

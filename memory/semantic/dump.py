@@ -30,8 +30,8 @@ from deixis.memory.semantic.rdf.graphs import (
     models_of_graph,
     package_graph,
 )
-from deixis.ontology.triples import content_key, iri, learned_iri, text, typed, with_names
-from deixis.ontology.vocabulary import PROV, W3C
+from deixis.ontology.rdf.triples import content_key, iri, learned_iri, text, typed, with_names
+from deixis.ontology.rdf.vocabulary import PROV, W3C
 from deixis.printable import shortened
 
 _ACTIVITY = "http://www.w3.org/ns/prov#Activity"

@@ -25,8 +25,8 @@ from deixis.memory.semantic.rdf.graphs import (
 )
 from deixis.memory.semantic.rdf.package import packaged
 from deixis.memory.semantic.store import SemanticMemory
-from deixis.ontology.triples import with_blank
-from deixis.ontology.vocabulary import W3C
+from deixis.ontology.rdf.triples import with_blank
+from deixis.ontology.rdf.vocabulary import W3C
 
 TYPE, NAMED_INDIVIDUAL = ox.NamedNode(W3C.RDF_TYPE), ox.NamedNode(PREFIXES["owl"] + "NamedIndividual")
 

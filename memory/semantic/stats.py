@@ -9,7 +9,7 @@ import pyoxigraph as ox
 
 from deixis.memory.folder import VERSION, size
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.vocabulary import DX, W3C
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ from datetime import datetime
 import pyoxigraph as ox
 
 from deixis.errors import UnknownTermError
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact, Source
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact, Source
 from deixis.ontology.lessons.types import ANONYMOUS, Alternative, LayoutConcept, Match, Role
-from deixis.ontology.relation import Relation, Relations, nearest
-from deixis.ontology.triple_index import TripleIndex
-from deixis.ontology.triples import last_part
-from deixis.ontology.vocabulary import DX, PROV, W3C
+from deixis.ontology.rdf.triple_index import TripleIndex
+from deixis.ontology.rdf.triples import last_part
+from deixis.ontology.rdf.vocabulary import DX, PROV, W3C
+from deixis.ontology.relations.relation import Relation, Relations, nearest
 
 
 def layouts(triples: Iterable[ox.Triple], relations: Relations) -> tuple[LayoutConcept, ...]:

@@ -14,13 +14,13 @@ from types import MappingProxyType
 
 import pyoxigraph as ox
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact, dispensable
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact, dispensable
 from deixis.ontology.lessons.types import LayoutConcept
 from deixis.ontology.lessons.write import claim_iri, fact_iri, layout_iri, role_iri
-from deixis.ontology.relation import Relation
-from deixis.ontology.triples import Description, content_key, iri, learned_iri, skolem, text, typed
-from deixis.ontology.vocabulary import DX, W3C
+from deixis.ontology.rdf.triples import Description, content_key, iri, learned_iri, skolem, text, typed
+from deixis.ontology.rdf.vocabulary import DX, W3C
+from deixis.ontology.relations.relation import Relation
 
 SH = "http://www.w3.org/ns/shacl#"
 _RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"

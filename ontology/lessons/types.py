@@ -9,14 +9,14 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
 from deixis.answers import Answer
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Rgb
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import singular
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.relations.relation import Relation, Relations
+from deixis.ontology.things.colours import Rgb
 
 if TYPE_CHECKING:
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
 
 
 ANONYMOUS = "user"
@@ -44,7 +44,7 @@ class LayoutConcept:
     Examples
     --------
     >>> import deixis
-    >>> from deixis.learning.lesson import layout_concept
+    >>> from deixis.learning.lessons.lesson import layout_concept
     >>> layout = layout_concept(deixis.read_script(text="layout tea; cup on saucer; spoon right of cup"), "tea-1")
     >>> layout.name, [role.name for role in layout.roles]
     ('tea', ['cup', 'saucer', 'spoon'])
@@ -78,7 +78,7 @@ class LayoutConcept:
         """
         names = [role.name for role in self.roles]
         kinds, colours = ([role.kind for role in self.roles], [role.colour for role in self.roles])
-        from deixis.ontology.graph import RelationGraph
+        from deixis.ontology.graph.graph import RelationGraph
 
         return RelationGraph.from_facts(
             vocabulary, names, self.facts, kinds=kinds, colours=colours if any(colours) else ()

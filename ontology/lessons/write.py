@@ -6,13 +6,10 @@ from collections.abc import Collection, Iterator
 
 import pyoxigraph as ox
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import hex_of_rgb
-from deixis.ontology.facts import Fact
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.lessons.types import LayoutConcept, Lesson, Match, Role, SeenObject, WordLesson
-from deixis.ontology.relation import Relations
-from deixis.ontology.triples import (
+from deixis.ontology.rdf.triples import (
     Description,
     category_iri,
     content_key,
@@ -23,7 +20,10 @@ from deixis.ontology.triples import (
     text,
     typed,
 )
-from deixis.ontology.vocabulary import DX, PROV, W3C
+from deixis.ontology.rdf.vocabulary import DX, PROV, W3C
+from deixis.ontology.relations.relation import Relations
+from deixis.ontology.things.colours import hex_of_rgb
+from deixis.ontology.things.kinds import Kinds
 
 _CORNERS = ((DX.MIN_X, DX.MAX_X), (DX.MIN_Y, DX.MAX_Y), (DX.MIN_Z, DX.MAX_Z))
 

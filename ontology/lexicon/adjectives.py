@@ -1,6 +1,6 @@
 """Adjectives that describe things, by the dimension that they are about: colour, size, material, shape and others.
 
-``adjectives.txt`` lists them. The colours of the TBox (:mod:`deixis.ontology.colours`) are not repeated there;
+``adjectives.txt`` lists them. The colours of the TBox (:mod:`deixis.ontology.things.colours`) are not repeated there;
 :meth:`Lexicon.adjective <deixis.ontology.lexicon.lexicon.Lexicon.adjective>` looks up both.
 """
 

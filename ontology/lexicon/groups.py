@@ -13,7 +13,7 @@ from pathlib import Path
 
 from deixis.errors import OntologyError
 from deixis.ontology.inflection import singulars
-from deixis.ontology.kinds import Kind, Kinds, spaced
+from deixis.ontology.things.kinds import Kind, Kinds, spaced
 
 GROUPS_FILE = Path(__file__).with_name("groups.txt")
 

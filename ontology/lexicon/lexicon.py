@@ -11,13 +11,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from deixis.ontology.inflection import singulars
-from deixis.ontology.kinds import Kind, Kinds, plain_name, spaced
 from deixis.ontology.lexicon.adjectives import Description, adjectives
+from deixis.ontology.things.kinds import Kind, Kinds, plain_name, spaced
 
 if TYPE_CHECKING:
-    from deixis.ontology.colours import Colours
     from deixis.ontology.lexicon.groups import Groups
-    from deixis.ontology.sizes import SizeRange, Sizes
+    from deixis.ontology.things.colours import Colours
+    from deixis.ontology.things.sizes import SizeRange, Sizes
 
 SYNONYMS = 0.97
 """Similarity of two words for the same kind."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from deixis.errors import OntologyError
-from deixis.ontology.kinds import Kind
-from deixis.ontology.sizes import Extent, Outline, SizeRange
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.rdf.vocabulary import DX
+from deixis.ontology.things.kinds import Kind
+from deixis.ontology.things.sizes import Extent, Outline, SizeRange
 
 NOUNS_FILE = Path(__file__).with_name("nouns.txt")
 

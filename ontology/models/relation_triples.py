@@ -13,9 +13,9 @@ import pyoxigraph as ox
 
 from deixis.errors import OntologyError
 from deixis.ontology.models.relations import Provenance, RelationModel, Term, Trend
-from deixis.ontology.triple_index import TripleIndex
-from deixis.ontology.triples import Description, content_key, iri, last_part, learned_iri, text, typed
-from deixis.ontology.vocabulary import DX, PROV, W3C
+from deixis.ontology.rdf.triple_index import TripleIndex
+from deixis.ontology.rdf.triples import Description, content_key, iri, last_part, learned_iri, text, typed
+from deixis.ontology.rdf.vocabulary import DX, PROV, W3C
 
 
 def model_triples(model: RelationModel) -> Iterator[ox.Triple]:

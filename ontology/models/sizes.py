@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import pyoxigraph as ox
 
 from deixis.errors import OntologyError
-from deixis.ontology.triple_index import TripleIndex
-from deixis.ontology.triples import LEARNED, Description, iri, learned_iri, typed
-from deixis.ontology.vocabulary import BASE, DX, PROV, W3C
+from deixis.ontology.rdf.triple_index import TripleIndex
+from deixis.ontology.rdf.triples import LEARNED, Description, iri, learned_iri, typed
+from deixis.ontology.rdf.vocabulary import BASE, DX, PROV, W3C
 
 
 @dataclass(frozen=True, slots=True)

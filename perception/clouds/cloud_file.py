@@ -7,11 +7,11 @@ from pathlib import Path
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.content import content_of
 from deixis.perception.clouds.depth import PNG, Intrinsics, read_depth, read_intrinsics
-from deixis.perception.clouds.npy import MAGIC, read_npz_cloud
-from deixis.perception.clouds.pcd import read_pcd
-from deixis.perception.clouds.ply import read_ply
-from deixis.perception.clouds.writing import pcd_bytes, ply_bytes
-from deixis.perception.clouds.xyz import read_xyz
+from deixis.perception.clouds.formats.npy import MAGIC, read_npz_cloud
+from deixis.perception.clouds.formats.pcd import read_pcd
+from deixis.perception.clouds.formats.ply import read_ply
+from deixis.perception.clouds.formats.writing import pcd_bytes, ply_bytes
+from deixis.perception.clouds.formats.xyz import read_xyz
 from deixis.perception.errors import CloudError
 
 TEXT = frozenset({".xyz", ".xyzn", ".xyzrgb", ".txt", ".csv", ".asc", ".pts"})

@@ -21,7 +21,7 @@ from deixis.extras import require
 from deixis.ontology.strict_json import parse_json
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.content import Content, content_of
-from deixis.perception.clouds.npy import MAGIC, MAX_DEFLATED, read_npy, read_npz
+from deixis.perception.clouds.formats.npy import MAGIC, MAX_DEFLATED, read_npy, read_npz
 from deixis.perception.errors import CloudError
 
 MAX_PIXELS = 2**25

@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 
 from deixis.perception.checks import shown
 from deixis.perception.clouds.content import MAX_LINE, Content, content_of
+from deixis.perception.clouds.formats.ply import read_ply_mesh
 from deixis.perception.clouds.mesh import Mesh, fans
-from deixis.perception.clouds.ply import read_ply_mesh
 from deixis.perception.errors import CloudError
 
 _STL_HEADER = 84

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.keypoints import voxel_keypoints
-from deixis.perception.features.upright import SPACING
+from deixis.perception.features.descriptors.upright import SPACING
+from deixis.perception.features.points.keypoints import voxel_keypoints
 from deixis.perception.scene import Heading, Scene
 
 Array = NDArray[np.float64]

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from deixis.errors import UnknownTermError
-from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
-from deixis.perception.features.form import FormDescriber
-from deixis.perception.features.fpfh import FpfhDescriber
-from deixis.perception.features.good import GoodDescriber
-from deixis.perception.features.spin_images import SpinImageDescriber
-from deixis.perception.features.upright import UprightDescriber
+from deixis.perception.features.descriptors.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.descriptors.form import FormDescriber
+from deixis.perception.features.descriptors.fpfh import FpfhDescriber
+from deixis.perception.features.descriptors.good import GoodDescriber
+from deixis.perception.features.descriptors.spin_images import SpinImageDescriber
+from deixis.perception.features.descriptors.upright import UprightDescriber
 
 DESCRIBERS: Mapping[str, Callable[[], Describer]] = MappingProxyType(
     {

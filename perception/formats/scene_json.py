@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from deixis.ontology.colours import Rgb, hex_of_rgb, rgb_of_hex
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 from deixis.ontology.strict_json import json_type, parse_json
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.colours import Rgb, hex_of_rgb, rgb_of_hex
 from deixis.perception.checks import MAX_SHOWN, mapping, number, shown, text
 from deixis.perception.errors import SceneError
 from deixis.perception.formats.coco import coco_scene, is_coco

@@ -37,7 +37,7 @@ PRIOR_SPREADS: Mapping[str, float] = MappingProxyType(
 )
 """Median ICD by descriptor, with default settings, over 16 kinds of simulated tableware, six things of each kind and
 two views of each thing (benchmarks/bench_recognition.py --constants); for colour, over the things found on six laid
-tables. The roots of spin images are those of :data:`deixis.learning.views.SPIN_IMAGE_ROOTS`."""
+tables. The roots of spin images are those of :data:`deixis.learning.views.views.SPIN_IMAGE_ROOTS`."""
 
 
 @dataclass(frozen=True)

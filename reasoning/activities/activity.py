@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.relations.allen import ALL_ALLEN
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.endpoints import allen_masks, converse_masks, distances_from_bounds
 from deixis.reasoning.temporal.fluent import Fluent, Statement

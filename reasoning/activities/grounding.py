@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.reasoning.activities.activity import RELATIONS, STARTS_FIRST, Activity, Step, StepSequence
-from deixis.reasoning.grounding.matching.exact import exact
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem, empty_tables
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 NONE_ODDS = 0.0
 """Log-odds of no known activity against one of them."""

@@ -32,22 +32,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Colour, Colours
-from deixis.ontology.graph import RelationGraph, dispensable
-from deixis.ontology.kinds import Kinds, with_article
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph, dispensable
+from deixis.ontology.things.colours import Colour, Colours
+from deixis.ontology.things.kinds import Kinds, with_article
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims, violated
 from deixis.reasoning.comparison.turning import Turned, is_aim, turned_roles
-from deixis.reasoning.grounding.answer import FactOutcome, Grounding, Outcome
-from deixis.reasoning.grounding.engine import Engine
-from deixis.reasoning.grounding.evidence.colours import other_colours
+from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, Outcome
+from deixis.reasoning.grounding.answers.members import assignment_of, broken_of_members
+from deixis.reasoning.grounding.engines.engine import Engine
 from deixis.reasoning.grounding.evidence.evidence import PRESENT_LOG_ODDS, Evidence
-from deixis.reasoning.grounding.evidence.labels import Label, naming
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
-from deixis.reasoning.grounding.evidence.unary import OUTLIERS
+from deixis.reasoning.grounding.evidence.properties.colours import other_colours
+from deixis.reasoning.grounding.evidence.properties.labels import Label, naming
+from deixis.reasoning.grounding.evidence.properties.unary import OUTLIERS
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.members import assignment_of, broken_of_members
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 
 SURE_CONFIDENCE = 0.9

@@ -1,9 +1,10 @@
 """Check claims: whether each holds of the things in its roles, and what was measured.
 
-The degree of a claim is that of grounding (:mod:`deixis.reasoning.grounding.evidence.claims`): 1 at the prototype, one
-half at the border. A claim holds above one half, so that the second tallest of several is not the tallest, and a denied
-claim holds otherwise. What boxes do not show (contents, materials, what is not among the objects) is undecidable.
-Directions are decided for things whose front, head or handle is known, and for long things that lie across them.
+The degree of a claim is that of grounding (:mod:`deixis.reasoning.grounding.evidence.claims.claims`): 1 at the
+prototype, one half at the border. A claim holds above one half, so that the second tallest of several is not the
+tallest, and a denied claim holds otherwise. What boxes do not show (contents, materials, what is not among the objects)
+is undecidable. Directions are decided for things whose front, head or handle is known, and for long things that lie
+across them.
 """
 
 from __future__ import annotations
@@ -16,17 +17,17 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
+from deixis.ontology.graph.claims import PLACES, SUPERLATIVES, Claim
 from deixis.ontology.models.relations import RelationModels
-from deixis.ontology.relation import Relations
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.poses import MIN_STRETCH, Poses, bearings
-from deixis.reasoning.grounding.evidence.aims import (
+from deixis.reasoning.grounding.evidence.claims.aims import (
     AIMING,
     degree_of_angle,
     is_of_handle,
     stated_direction,
 )
-from deixis.reasoning.grounding.evidence.claims import (
+from deixis.reasoning.grounding.evidence.claims.claims import (
     EACH_OTHER,
     MAX_THINGS,
     MEASURES,
@@ -34,13 +35,13 @@ from deixis.reasoning.grounding.evidence.claims import (
     ClaimDegrees,
     distance_degree,
 )
-from deixis.reasoning.grounding.evidence.meaning import BORDER, EXTREME
-from deixis.reasoning.grounding.evidence.places import (
+from deixis.reasoning.grounding.evidence.claims.places import (
     TOWARDS,
     lean_in_things,
     lean_on_surface,
     place_degree,
 )
+from deixis.reasoning.grounding.evidence.words.meaning import BORDER, EXTREME
 
 HOLDS_ABOVE = 0.5 + 1e-9
 """Degree above which a claim holds."""

@@ -8,9 +8,9 @@ So the similarity is 1 exactly if everything corresponds, and symmetric between 
 objects.
 
 - Objects correspond by kind: the degree halves with every kind, itself and broader ones, that only one of them has. A
-  word for no known kind is its own kind (:func:`deixis.reasoning.grounding.evidence.labels.classes`), of the objects
-  with that name, numbers aside, and is similar to no other kind. An unlabelled object corresponds as far as its size is
-  usual for the kind; in an image, its size relative to the others. Without any knowledge it corresponds fully.
+  word for no known kind is its own kind (:func:`deixis.reasoning.grounding.evidence.properties.labels.classes`), of the
+  objects with that name, numbers aside, and is similar to no other kind. An unlabelled object corresponds as far as its
+  size is usual for the kind; in an image, its size relative to the others. Without any knowledge it corresponds fully.
 - A size is fully usual within two deviations of the kind's, and less so outside, as a Gaussian of its logarithm.
 - Relations correspond by the steps between directions: the degree halves with every step from the nearest exact
   relation that the stated relation admits.
@@ -35,16 +35,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.allen import Allen, allen_mask
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
-from deixis.ontology.relation import Reading, Relation, Relations
-from deixis.ontology.sizes import Sizes
+from deixis.ontology.relations.allen import Allen, allen_mask
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.kinds import Kinds
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.geometry.rectangle import SceneRelations
-from deixis.reasoning.grounding.evidence.labels import category_of, classes
-from deixis.reasoning.grounding.evidence.unary import log_sizes, looks_in_image
+from deixis.reasoning.grounding.evidence.properties.labels import category_of, classes
+from deixis.reasoning.grounding.evidence.properties.unary import log_sizes, looks_in_image
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 Array = NDArray[np.float64]
@@ -306,7 +306,7 @@ class Comparison:
         Likeness
             Similarity, matches, and whether it is proved.
         """
-        from deixis.reasoning.grounding.matching.exact import exact
+        from deixis.reasoning.grounding.matching.search.exact import exact
 
         problem = self.problem(layout, scene)
         best = exact(problem, deadline)

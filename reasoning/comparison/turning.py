@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.reasoning.comparison.claims import ClaimOutcome
 from deixis.reasoning.geometry.poses import TOOL_STRETCH, Poses, bearings
-from deixis.reasoning.grounding.answer import FactOutcome
-from deixis.reasoning.grounding.evidence.aims import AIMING, is_of_handle, stated_direction
+from deixis.reasoning.grounding.answers.answer import FactOutcome
+from deixis.reasoning.grounding.evidence.claims.aims import AIMING, is_of_handle, stated_direction
 
 AIMED_AT = {"faced_by": "facing", "pointed_at_by": "pointing"}
 """Relations whose object is the thing that points at the subject, with their inverses."""

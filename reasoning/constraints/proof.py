@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Generic, TypeVar
 
-from deixis.ontology.graph import Source
+from deixis.ontology.graph.graph import Source
 
 Claim = TypeVar("Claim", covariant=True)
 

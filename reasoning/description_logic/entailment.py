@@ -14,7 +14,7 @@ from enum import StrEnum
 from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import Axioms, split_axioms
 from deixis.reasoning.description_logic.justification import Justification, justify, justify_all
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import Reasoner, classify
 from deixis.reasoning.description_logic.terms import (
     CLASS,

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from deixis.deadline import Deadline
 from deixis.reasoning.constraints.minimal import FEW, Minimal, minimal_by
 from deixis.reasoning.description_logic.axioms import Axiom, Axioms, split_axioms
-from deixis.reasoning.description_logic.materialisation import Contradiction, Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Contradiction, Materialisation
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
 from deixis.reasoning.description_logic.terms import (
     ASSERTION_PROPERTY,

@@ -18,9 +18,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN
-from deixis.ontology.graph import Fact
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.graph.graph import Fact
+from deixis.ontology.relations.allen import ALL_ALLEN
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.reasoning.constraints.difference import STRICT, ZERO, Difference
 from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces
 

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relation, Relations
 
 COMPARATIVES = {
     "largest": "bigger",

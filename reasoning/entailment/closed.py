@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.reasoning.constraints.paths import OrderGraph
 from deixis.reasoning.entailment.bounds import AXES, Bound, EndpointBounds, meaning
 from deixis.reasoning.errors import LimitError

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Relation, Relations
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.entailment.closed import order_graph
 from deixis.reasoning.entailment.closing import consistent

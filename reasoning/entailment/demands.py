@@ -12,8 +12,8 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.constraints.disjunctive import Clause
 from deixis.reasoning.entailment.bounds import Alternatives, EndpointBounds, bounds_of, claims, common, meaning
 

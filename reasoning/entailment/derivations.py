@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.reasoning.constraints.minimal import minimal_subset
 from deixis.reasoning.constraints.paths import ShortestPaths
 from deixis.reasoning.constraints.proof import Proof, Rule

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from collections.abc import Iterable
 
-from deixis.ontology.facts import Fact
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.entailment.derivations import Derivation
 

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
-from deixis.ontology.export import node_iris, pairs_to_ntriples
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.graph.export import node_iris, pairs_to_ntriples
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.bounds import meaning
 from deixis.reasoning.entailment.closing import Closed, close

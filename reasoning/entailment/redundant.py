@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import deque
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.reasoning.entailment.bounds import AXES, claims
 from deixis.reasoning.entailment.demands import demands_of
 
@@ -31,7 +31,7 @@ def redundant_facts(graph: RelationGraph, deadline: Deadline = Deadline.never())
 
     Examples
     --------
-    >>> from deixis.ontology.graph import Fact
+    >>> from deixis.ontology.graph.graph import Fact
     >>> from deixis.ontology.tbox import default_ontology
     >>> r = default_ontology().relations
     >>> facts = [Fact(s, (r["left"],), o) for s, o in ("ab", "bc", "ac")]

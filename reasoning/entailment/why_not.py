@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.reasoning.entailment.bounds import Order, meaning
 from deixis.reasoning.entailment.closed import groups_of, orders_of
 from deixis.reasoning.entailment.closing import local_problem, picture_of, picture_of_group

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN, Allen
+from deixis.ontology.relations.allen import ALL_ALLEN, Allen
 
 
 def allen_relations(
@@ -39,7 +39,7 @@ def allen_relations(
 
     Returns
     -------
-    Codes of :class:`deixis.ontology.allen.Allen`, in the broadcast shape.
+    Codes of :class:`deixis.ontology.relations.allen.Allen`, in the broadcast shape.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def _options(a: int, b: int) -> tuple[tuple[EndOrder, ...], ...]:
 def convex_hull(mask: int) -> ConvexSet:
     """Return the smallest convex set that contains a non-empty set; it is unique, since convex sets have convex meets.
 
-    >>> from deixis.ontology.allen import allen_mask, members
+    >>> from deixis.ontology.relations.allen import allen_mask, members
     >>> [relation.symbol for relation in members(convex_hull(allen_mask([Allen.BEFORE, Allen.OVERLAPS])).mask)]
     ['<', 'm', 'o']
     """
@@ -154,7 +154,7 @@ def convex_hull(mask: int) -> ConvexSet:
 def convex_pieces(mask: int) -> tuple[ConvexSet, ...]:
     """Return a small union of convex sets that equals a set of Allen relations, found greedily, the largest first.
 
-    >>> from deixis.ontology.allen import allen_mask, members
+    >>> from deixis.ontology.relations.allen import allen_mask, members
     >>> pieces = convex_pieces(allen_mask([Allen.AFTER, Allen.BEFORE, Allen.MEETS]))
     >>> [[relation.symbol for relation in members(piece.mask)] for piece in pieces]
     [['<', 'm'], ['>']]

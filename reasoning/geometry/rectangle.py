@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
-from deixis.ontology.allen import SYMBOLS, Allen
-from deixis.ontology.graph import PaperGraph, RelationGraph
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
+from deixis.ontology.relations.allen import SYMBOLS, Allen
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.geometry.poses import Poses

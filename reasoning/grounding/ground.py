@@ -11,24 +11,24 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.ontology.lessons.types import Match
-from deixis.reasoning.grounding.alternatives import (
+from deixis.reasoning.grounding.answers.alternatives import (
     MIN_LISTED_PROBABILITY,
     alternatives,
     left_out_objects,
     left_out_things,
 )
-from deixis.reasoning.grounding.answer import FactOutcome, FrameOfFact, Grounding, Outcome, Pivotal, Standing
-from deixis.reasoning.grounding.engine import Alignment, Engine
+from deixis.reasoning.grounding.answers.answer import FactOutcome, FrameOfFact, Grounding, Outcome, Pivotal, Standing
+from deixis.reasoning.grounding.answers.members import with_members
+from deixis.reasoning.grounding.answers.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
+from deixis.reasoning.grounding.answers.sensitivity import WithoutFact, leave_one_out
+from deixis.reasoning.grounding.answers.symmetry import interchangeable
+from deixis.reasoning.grounding.engines.engine import Alignment, Engine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.pair_features import HEADINGS
-from deixis.reasoning.grounding.matching.posterior import Posterior
+from deixis.reasoning.grounding.evidence.words.pair_features import HEADINGS
+from deixis.reasoning.grounding.matching.posterior.posterior import Posterior
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.members import with_members
 from deixis.reasoning.grounding.options import is_decided
 from deixis.reasoning.grounding.reference.answer import Frame
-from deixis.reasoning.grounding.sensitivity import MAX_OBJECTS as MAX_SENSITIVITY_OBJECTS
-from deixis.reasoning.grounding.sensitivity import WithoutFact, leave_one_out
-from deixis.reasoning.grounding.symmetry import interchangeable
 
 SENSITIVITY_SHARE = 0.1
 """Share of the time limit for computing what would change without each fact."""
@@ -51,7 +51,7 @@ def ground(
     evidence
         Description, scene, and the evidence for each match.
     engine
-        Engine that finds the matches (:func:`deixis.reasoning.grounding.engines.engine_named`).
+        Engine that finds the matches (:func:`deixis.reasoning.grounding.engines.registry.engine_named`).
     deadline
         End of the time limit.
     notes

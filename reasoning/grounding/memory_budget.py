@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from deixis.reasoning.errors import OutOfMemoryError, SettingError
 
 if TYPE_CHECKING:
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
 
 DEFAULT_MEMORY_LIMIT = 2.0
 """Default memory limit of a grounding in units of 10^9 bytes, without the program itself."""
@@ -76,8 +76,8 @@ def required_gigabytes(objects: int, things: int, facts: int, tables: int, *, ch
     >>> required_gigabytes(1000, 1000, 2500, 10) < 1 < required_gigabytes(20000, 20000, 50000, 10)
     True
     """
-    from deixis.reasoning.grounding.matching.exact import MAX_PASS_CELLS, MAX_STACK_CELLS
     from deixis.reasoning.grounding.matching.problem import MAX_PLACES, MIN_PLACES, PLACES_PER_THING
+    from deixis.reasoning.grounding.matching.search.exact import MAX_PASS_CELLS, MAX_STACK_CELLS
 
     proved = 2 * facts * (things + 1) ** 2 <= MAX_PASS_CELLS  # by a search that keeps a stack
     level = 2 * (objects + facts) * (things + 1)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class EngineName(StrEnum):
-    """The engines that align a description with a scene (:mod:`deixis.reasoning.grounding.engines`)."""
+    """The engines that align a description with a scene (:mod:`deixis.reasoning.grounding.engines.registry`)."""
 
     EXACT = "exact"
     SCALABLE = "scalable"

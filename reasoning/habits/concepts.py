@@ -9,10 +9,10 @@ from enum import StrEnum
 import numpy as np
 
 from deixis.ontology.inflection import plural
-from deixis.ontology.kinds import spaced
 from deixis.ontology.lexicon.groups import Groups
 from deixis.ontology.tbox import Ontology
-from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+from deixis.ontology.things.kinds import spaced
+from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 LARGE, SMALL = 0.4, 0.12
 """Usual length in metres from which on a thing is large, and below which it is small."""

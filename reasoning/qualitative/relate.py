@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError, UnknownTermError
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import SettingError, UnknownCalculusError
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.geometry.rectangle import require_boxes

@@ -14,7 +14,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen, members
+from deixis.ontology.relations.allen import Allen, members
 from deixis.reasoning.constraints.difference import ZERO, add_arrays
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds, encode, to_ticks

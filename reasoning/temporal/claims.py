@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.relations.allen import ALL_ALLEN
 from deixis.reasoning.constraints.difference import STRICT
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_pieces

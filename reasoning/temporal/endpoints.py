@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.relations.allen import Allen
 from deixis.reasoning.constraints.difference import STRICT, UNBOUNDED, ZERO, add_arrays
 from deixis.reasoning.geometry.allen import HIGH_A, HIGH_B, LOW_A, LOW_B, convex_hull
 from deixis.reasoning.temporal.bounds import Bounds

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from deixis.ontology.allen import ALL_ALLEN, members
+from deixis.ontology.relations.allen import ALL_ALLEN, members
 from deixis.reasoning.constraints.difference import ZERO, add
 from deixis.reasoning.temporal.bounds import UNKNOWN, Bounds
 from deixis.reasoning.temporal.errors import FluentError

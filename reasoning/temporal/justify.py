@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from deixis.deadline import Deadline
-from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.ontology.relations.allen import ALL_ALLEN, Allen, members
 from deixis.reasoning.constraints.disjunctive import SearchOutcome
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.geometry.allen import convex_hull

@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.layout.format import format_script
     from deixis.grammar.script import Script
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
     from deixis.ontology.lessons.types import LayoutConcept, Match
-    from deixis.ontology.relation import Relation
+    from deixis.ontology.relations.relation import Relation
     from deixis.perception.clouds.cloud import PointCloud
     from deixis.perception.formats.scene_json import read_scene
     from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
     from deixis.reasoning.activities.grounding import ActivityGrounding, RecognisedActivity
     from deixis.reasoning.activities.prediction import Prediction
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
     from deixis.session import Session
     from deixis.workflows.descriptions.refer import refer
@@ -110,8 +110,8 @@ _HOMES = {
     "Prediction": "deixis.reasoning.activities.prediction",
     "Check": "deixis.workflows.grounding.check",
     "DeixisError": "deixis.errors",
-    "Fact": "deixis.ontology.facts",
-    "Grounding": "deixis.reasoning.grounding.answer",
+    "Fact": "deixis.ontology.graph.facts",
+    "Grounding": "deixis.reasoning.grounding.answers.answer",
     "Imagination": "deixis.workflows.layouts.imagine",
     "Inference": "deixis.workflows.layouts.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",
@@ -123,10 +123,10 @@ _HOMES = {
     "PointCloud": "deixis.perception.clouds.cloud",
     "QueryResult": "deixis.memory.semantic.queries.results",
     "Recall": "deixis.workflows.knowledge.recall",
-    "Recognised": "deixis.learning.views",
+    "Recognised": "deixis.learning.views.views",
     "RecognisedActivity": "deixis.reasoning.activities.grounding",
     "Reference": "deixis.reasoning.grounding.reference.answer",
-    "Relation": "deixis.ontology.relation",
+    "Relation": "deixis.ontology.relations.relation",
     "Retrieval": "deixis.workflows.grounding.retrieve",
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",

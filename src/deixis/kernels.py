@@ -55,10 +55,11 @@ def compile_grounding(engine: str) -> None:
     from deixis.reasoning.entailment.conflict import find_conflict
     from deixis.reasoning.entailment.implications import Implications
     from deixis.reasoning.geometry.pairs import Surroundings
-    from deixis.reasoning.grounding.engines import engine_named
+    from deixis.reasoning.grounding.engines.registry import engine_named
     from deixis.reasoning.grounding.evidence.evidence import evidence_from
     from deixis.reasoning.grounding.ground import ground
-    from deixis.reasoning.grounding.matching import exact, ladders
+    from deixis.reasoning.grounding.matching.posterior import ladders
+    from deixis.reasoning.grounding.matching.search import exact
     from deixis.reasoning.kernel import load_compiled
     from deixis.workflows.layouts.read import as_scene
 
@@ -201,9 +202,9 @@ def compile_features() -> None:
     import numpy as np
 
     from deixis.perception.clouds.cloud import PointCloud
-    from deixis.perception.features.keypoints import voxel_keypoints
-    from deixis.perception.features.normals import estimate_normals
-    from deixis.perception.features.spin_images import SpinImageDescriber, spin_images
+    from deixis.perception.features.descriptors.spin_images import SpinImageDescriber, spin_images
+    from deixis.perception.features.points.keypoints import voxel_keypoints
+    from deixis.perception.features.points.normals import estimate_normals
 
     side = np.linspace(0.0, 0.05, 6)
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))

@@ -17,8 +17,8 @@ from deixis.reasoning.errors import NothingFoundError
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.learning.recollection import Recollection
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.lessons.recollection import Recollection
+    from deixis.learning.models.words import LearnedWords
     from deixis.memory.journal import Commit, JointWrite
     from deixis.memory.perceptual.records import View
     from deixis.memory.semantic.queries.results import QueryResult
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from deixis.ontology.tbox import Ontology
     from deixis.perception.scene import Scene
     from deixis.reasoning.description_logic.object_view import ObjectView
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 COMPLETION_SHARE = 0.5
 """Share of a query's time limit in which the implications of layouts are computed."""
@@ -118,7 +118,7 @@ class KnowledgeStore(Closing):
         MemoryBusyError
             If another process has the memory open.
         """
-        from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+        from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 
         if self._meaning is None:
             self._meaning = self._in_force() if self.exists() else SHIPPED
@@ -128,7 +128,7 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.rdf.graphs import ModelSet
         from deixis.ontology.models.relation_triples import models_from_triples
         from deixis.ontology.models.sizes import SIZE_PROPERTIES, sizes_from_triples
-        from deixis.reasoning.grounding.evidence.meaning import Meaning, shipped_models
+        from deixis.reasoning.grounding.evidence.words.meaning import Meaning, shipped_models
 
         words = models_from_triples(self.memory().models(ModelSet.WORDS))
         sizes = sizes_from_triples(self.memory().models(ModelSet.SIZES, SIZE_PROPERTIES))
@@ -142,7 +142,7 @@ class KnowledgeStore(Closing):
         Recollection
             The lessons with their scenes; empty without a memory.
         """
-        from deixis.learning.recollection import Recollection
+        from deixis.learning.lessons.recollection import Recollection
         from deixis.learning.update import remembered
 
         return remembered(self.memory(), self.ontology) if self.exists() else Recollection(())
@@ -206,8 +206,8 @@ class KnowledgeStore(Closing):
         SettingError
             If ``strength`` is not above 0.
         """
+        from deixis.learning.models.words import new_lessons
         from deixis.learning.update import keep_words
-        from deixis.learning.words import new_lessons
 
         taken = self.memory().knows if self.exists() else lambda view_id: False
         lessons, left_out = new_lessons(examples, self.recollection(), taken)
@@ -345,7 +345,7 @@ class KnowledgeStore(Closing):
         UnknownTermError
             If there is neither.
         """
-        from deixis.learning.recollection import find_layout
+        from deixis.learning.lessons.recollection import find_layout
 
         return find_layout(self.memory(), name, self.ontology.relations)
 
@@ -362,7 +362,7 @@ class KnowledgeStore(Closing):
         int
             The number, without reading the lessons; 0 for the id of a lesson.
         """
-        from deixis.learning.recollection import lessons_named
+        from deixis.learning.lessons.recollection import lessons_named
 
         return len(lessons_named(self.memory(), name))
 
@@ -430,8 +430,8 @@ class KnowledgeStore(Closing):
         from deixis.memory.semantic.exchange import TURTLE_GRAPHS
         from deixis.memory.semantic.rdf.graphs import GraphName
         from deixis.memory.semantic.rdf.package import packaged
-        from deixis.ontology.triples import with_blank_nodes
-        from deixis.ontology.vocabulary import BASE
+        from deixis.ontology.rdf.triples import with_blank_nodes
+        from deixis.ontology.rdf.vocabulary import BASE
         from deixis.reasoning.description_logic.object_view import ObjectView
 
         if self.exists():

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from deixis.grammar.script import Script
-    from deixis.learning.concept import CountedConcept
-    from deixis.learning.recollection import Recollection
-    from deixis.learning.tables import TaughtTable
-    from deixis.learning.views import Recognised, Taught
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.layouts.concept import CountedConcept
+    from deixis.learning.layouts.tables import TaughtTable
+    from deixis.learning.lessons.recollection import Recollection
+    from deixis.learning.models.words import LearnedWords
+    from deixis.learning.views.views import Recognised, Taught
     from deixis.memory.journal import Part
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
     from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.description_logic.object_view import ObjectView
-    from deixis.reasoning.grounding.answer import Grounding
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.answers.answer import Grounding
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.dialogue import Ask
     from deixis.workflows.knowledge.learn import Learned, Recording
@@ -637,8 +637,8 @@ class Session(Closing):
         >>> import tempfile
         >>> from datetime import UTC, datetime
         >>> from deixis.memory.episodes.blackboard import Blackboard
-        >>> from deixis.memory.episodes.changes import Add
-        >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+        >>> from deixis.memory.episodes.fluents.changes import Add
+        >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
         >>> seen, noon = Source(Origin.SEEN, "tracker"), datetime(2026, 5, 1, 12, tzinfo=UTC)
         >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
         >>> with tempfile.TemporaryDirectory() as folder, Session(folder) as session:
@@ -733,7 +733,7 @@ class Session(Closing):
         tuple of TaughtTable
             The tables in the order learned, each with the things that are known by now; empty without a memory.
         """
-        from deixis.learning.tables import taught_tables
+        from deixis.learning.layouts.tables import taught_tables
 
         if not self.knowledge_store.exists():
             return ()
@@ -773,7 +773,7 @@ class Session(Closing):
         UnknownTermError
             If there is neither.
         """
-        from deixis.learning.concept import CountedConcept, concept_of
+        from deixis.learning.layouts.concept import CountedConcept, concept_of
 
         last, tables = self.layout(name), self.tables(name)
         if not tables:

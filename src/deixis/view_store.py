@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 from deixis.memory.on_demand import OnDemand
 from deixis.memory.owner import Closing
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.errors import SceneError
 
 if TYPE_CHECKING:
-    from deixis.learning.views import KeptName, Known, Taught
-    from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.learning.views.views import KeptName, Known, Taught
+    from deixis.memory.perceptual.database.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.protocol import Progress
     from deixis.memory.perceptual.records import View
@@ -126,7 +126,7 @@ class ViewStore(Closing):
         tuple
             The change, and what each view taught.
         """
-        from deixis.learning.views import batch_of
+        from deixis.learning.views.views import batch_of
 
         def change(readable: LevelMemory) -> tuple[WriteBatch, tuple[Taught, ...]]:
             batch, taught = batch_of(readable, views, lessons, named)
@@ -147,7 +147,7 @@ class ViewStore(Closing):
         tuple
             Views to keep, and the names that stay as taught.
         """
-        from deixis.learning.views import KeptName, taught_by_hand
+        from deixis.learning.views.views import KeptName, taught_by_hand
 
         named = taught_by_hand(self.memory(), views) if self.exists() else {}
         kept = []
@@ -177,7 +177,7 @@ class ViewStore(Closing):
         Known
             The recogniser.
         """
-        from deixis.learning.views import nothing_known, recogniser_of
+        from deixis.learning.views.views import nothing_known, recogniser_of
 
         if not self.exists():
             return nothing_known(frame)
@@ -190,7 +190,7 @@ class ViewStore(Closing):
         -------
         dict
             Id of the thing by role, by the id of the lesson and the key of the boxes of its scene
-            (:func:`deixis.learning.teachings.boxes_key`); the teaching that came last counts.
+            (:func:`deixis.learning.views.teachings.boxes_key`); the teaching that came last counts.
         """
         return self._despite_damage(self.memory(), _settled) if self.exists() else {}
 
@@ -240,8 +240,8 @@ def _counted(memory: LevelMemory) -> dict[str, int]:
 
 
 def _settled(memory: LevelMemory) -> dict[tuple[str, str], dict[str, str]]:
-    from deixis.learning.teachings import Teaching
-    from deixis.memory.perceptual import keys
+    from deixis.learning.views.teachings import Teaching
+    from deixis.memory.perceptual.database import keys
 
     stored, found = memory.teachings(), []
     for view in memory.headers():
@@ -279,7 +279,7 @@ def views_of_matches(
     SceneError
         If two things have the same points.
     """
-    from deixis.learning.teachings import GROUNDING
+    from deixis.learning.views.teachings import GROUNDING
 
     seen = [match for match in matches if match.decided and scene[match.perceived].cloud is not None]
     views = [view_of_thing(scene, match.perceived, plain_name(category_of(match)), GROUNDING) for match in seen]
@@ -328,9 +328,9 @@ def view_of_thing(
     SceneError
         If the scene has no points of the thing.
     """
-    from deixis.learning.teachings import boxes_key
-    from deixis.learning.views import view_of
-    from deixis.memory.episodes.episode import EVENT
+    from deixis.learning.views.teachings import boxes_key
+    from deixis.learning.views.views import view_of
+    from deixis.memory.episodes.fluents.episode import EVENT
 
     file = scene.file if scene.file.startswith("<") else str(Path(scene.file).absolute())
     metadata: dict[str, object] = {"scene": file, "boxes": boxes_key(scene), "object": object_id, "teacher": teacher}

@@ -20,9 +20,9 @@ LOADED_LATER = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
 from deixis.deadline import Deadline
-from deixis.learning.scene_evidence import evidence_of
+from deixis.learning.lessons.scene_evidence import evidence_of
 from deixis.workflows.layouts.read import load_scene, read_script
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.ground import ground
 from deixis.reasoning.kernel import Kernel
 from deixis.grammar.formats.networks import read_networks

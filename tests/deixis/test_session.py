@@ -18,7 +18,7 @@ from deixis.memory.errors import MemoryFormatError
 from deixis.perception.errors import SceneError
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.report.grounding.ground import grounding_lines
 
 SCRIPT1 = deixis.read_script(example("script1.layout"))

@@ -16,7 +16,7 @@ from source_tree import ROOT
 
 import deixis
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.reasoning.temporal.bounds import Bounds
 
 jsonschema = pytest.importorskip("jsonschema")

@@ -9,8 +9,8 @@ import pytest
 from rdflib import DCTERMS, OWL, RDF, RDFS, SKOS, SOSA, SSN, Graph, URIRef
 from rdflib.namespace import GEO
 
+from deixis.ontology.rdf.vocabulary import BASE, ONTOLOGY_IRI
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
-from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
 from deixis.reasoning.description_logic.reasoners import classify
 
 FOLDER = TBOX_FILES[0].parent / "alignments"

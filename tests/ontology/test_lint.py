@@ -16,8 +16,8 @@ import pyoxigraph as ox
 import pytest
 from rdflib import OWL, RDF, Graph, Literal, Namespace, URIRef
 
+from deixis.ontology.rdf.vocabulary import BASE, ONTOLOGY_IRI
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
-from deixis.ontology.vocabulary import BASE, ONTOLOGY_IRI
 
 CHECKS: dict[str, dict[str, Any]] = {
     check["name"]: check

@@ -16,9 +16,9 @@ from rdflib import DCTERMS, OWL, PROV, RDF, RDFS, SKOS, Graph, URIRef
 from source_tree import ROOT
 
 from deixis.errors import DeixisError, OntologyError
-from deixis.ontology import vocabulary
+from deixis.ontology.rdf import vocabulary
+from deixis.ontology.rdf.vocabulary import BASE, DX, ONTOLOGY_IRI
 from deixis.ontology.tbox import default_ontology, load_ontology, tbox_turtle
-from deixis.ontology.vocabulary import BASE, DX, ONTOLOGY_IRI
 
 PREFIXES = """
 @prefix dx: <https://w3id.org/deixis/onto#> .

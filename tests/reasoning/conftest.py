@@ -10,8 +10,8 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact, RelationGraph, Source
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph, Source
+from deixis.ontology.relations.relation import Relations
 from deixis.ontology.tbox import default_ontology
 
 SENTENCE = re.compile(r"(optional )?(?:([\d.]+) )?(not )?([a-z_ ]+)\((\w+), (\w+)\)")

@@ -8,8 +8,8 @@ import pytest
 from ontology_page import PAGE, page
 from rdflib import RDF, RDFS, SKOS, Graph, URIRef
 
+from deixis.ontology.rdf.vocabulary import BASE, DX
 from deixis.ontology.tbox import default_ontology, tbox_turtle
-from deixis.ontology.vocabulary import BASE, DX
 
 TEXT = PAGE.read_text(encoding="utf-8")
 GRAPH = Graph().parse(data=tbox_turtle(), format="turtle")

@@ -34,7 +34,7 @@ from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
-from deixis.ontology.claims import PLACES
+from deixis.ontology.graph.claims import PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
 

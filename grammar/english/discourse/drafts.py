@@ -11,7 +11,7 @@ from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
 from deixis.grammar.english.vocabulary.nouns import HEADED, last_word
-from deixis.ontology.claims import COLLECTIVE
+from deixis.ontology.graph.claims import COLLECTIVE
 
 MIN_PAST_OF_STORY = 3
 """Number of clauses in the past tense from which a text is a story, whose past is its present."""

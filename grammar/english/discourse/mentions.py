@@ -12,7 +12,7 @@ from deixis.grammar.english.discourse.references import POLES, REGIONS, Focus, R
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import PARTS, SURFACES, VESSELS, VIEWER_WORDS, last_word
-from deixis.ontology.claims import PLACES
+from deixis.ontology.graph.claims import PLACES
 
 SUPERLATIVES = {
     ("size", 1): "largest", ("size", -1): "smallest", ("height", 1): "tallest", ("height", -1): "shortest",

@@ -12,7 +12,7 @@ from deixis.grammar.english.discourse.references import OPPOSITES, Region
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Degree, Predicate
 from deixis.grammar.english.vocabulary.nouns import HOLDERS, SUBSTANCES, SURFACES, VESSELS, last_word
-from deixis.ontology.claims import COLLECTIVE
+from deixis.ontology.graph.claims import COLLECTIVE
 
 GROUNDS = re.compile(r"\b(?:foreground|background)\b", re.IGNORECASE)
 

@@ -22,7 +22,7 @@ from deixis.grammar.english.vocabulary.nouns import (
     VIEWER_WORDS,
     last_word,
 )
-from deixis.ontology.claims import PLACES
+from deixis.ontology.graph.claims import PLACES
 
 UNARY = frozenset(
     [

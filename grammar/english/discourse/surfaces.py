@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence
 from deixis.grammar.english.vocabulary.nouns import SURFACES, SURROUNDINGS, last_word
-from deixis.ontology.claims import PLACES
+from deixis.ontology.graph.claims import PLACES
 
 DIRECTIONS = frozenset(
     [

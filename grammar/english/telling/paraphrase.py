@@ -12,8 +12,8 @@ from deixis.grammar.english.telling.wording import (
     said_of_fact,
 )
 from deixis.grammar.reading import StatedFact, joined_choices
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import is_plural
 
 

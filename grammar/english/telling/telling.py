@@ -15,7 +15,7 @@ from deixis.grammar.english.telling.wording import (
 )
 from deixis.grammar.english.vocabulary.function_words import NUMBERS, ORDINALS
 from deixis.grammar.reading import StatedFact
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import is_plural, plural
 
 MAX_PREDICATES = 4

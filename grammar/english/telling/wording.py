@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from deixis.grammar.reading import StatedFact
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
-from deixis.ontology.relation import Relation
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.relations.relation import Relation
 from deixis.ontology.tbox import default_ontology
 
 RELATION_WORDS = {

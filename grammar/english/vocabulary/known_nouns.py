@@ -7,7 +7,7 @@ from functools import lru_cache
 from deixis.grammar.english.vocabulary.adjectives import adjectives
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
 from deixis.ontology.inflection import SAME, singulars
-from deixis.ontology.kinds import Kinds
+from deixis.ontology.things.kinds import Kinds
 
 _PART_OF_NAME = frozenset({"other", "state", "shape", "thickness", "position", "count"})
 """Dimensions of adjectives that can be part of a compound; a colour, a size or a material describes the thing."""

@@ -17,7 +17,7 @@ from deixis.answers import Answer, count
 from deixis.memory.errors import QueryError
 from deixis.memory.semantic.queries.limits import CELL_BYTES, ROW_BYTES, QueryLimits
 from deixis.memory.semantic.rdf.files import PREFIXES, short
-from deixis.ontology.triples import with_blank_nodes
+from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.printable import visible_line
 
 Term = ox.NamedNode | ox.BlankNode | ox.Literal | ox.Triple

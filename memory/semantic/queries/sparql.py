@@ -26,9 +26,9 @@ from deixis.memory.semantic.queries.tokens import (
 )
 from deixis.memory.semantic.rdf.files import PREFIXES
 from deixis.memory.semantic.rdf.graphs import GRAPHS, READABLE, GraphName, graph_iri
-from deixis.ontology.relation import nearest
-from deixis.ontology.triples import typed
-from deixis.ontology.vocabulary import BASE, DX
+from deixis.ontology.rdf.triples import typed
+from deixis.ontology.rdf.vocabulary import BASE, DX
+from deixis.ontology.relations.relation import nearest
 from deixis.printable import window
 
 _UPDATES = {"INSERT", "DELETE", "LOAD", "CLEAR", "CREATE", "DROP", "COPY", "MOVE", "ADD", "WITH", "USING"}

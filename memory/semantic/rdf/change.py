@@ -11,7 +11,7 @@ import pyoxigraph as ox
 from deixis.memory.errors import RejectedWriteError
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import GraphName, ModelSet, graph_iri, lesson_graph, models_graph
-from deixis.ontology.triples import content_key, skolem
+from deixis.ontology.rdf.triples import content_key, skolem
 
 Models = Mapping[ModelSet, Sequence[ox.Triple]]
 """Sets of learned models, each replacing the stored one; sets that are left out stay."""

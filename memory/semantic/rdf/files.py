@@ -21,8 +21,8 @@ import pyoxigraph as ox
 
 from deixis.memory.errors import ImportFormatError
 from deixis.memory.semantic.rdf.graphs import GRAPHS
-from deixis.ontology.triples import LEARNED, with_blank
-from deixis.ontology.vocabulary import BASE, W3C
+from deixis.ontology.rdf.triples import LEARNED, with_blank
+from deixis.ontology.rdf.vocabulary import BASE, W3C
 
 PREFIXES = {
     "dcterms": "http://purl.org/dc/terms/",

@@ -26,8 +26,8 @@ from deixis.memory.semantic.rdf.graphs import (
     loaded_graph,
     package_graph,
 )
-from deixis.ontology.triples import learned_iri
-from deixis.ontology.vocabulary import PROV
+from deixis.ontology.rdf.triples import learned_iri
+from deixis.ontology.rdf.vocabulary import PROV
 
 Contributions = Mapping[GraphName, Sequence[ox.Triple]]
 

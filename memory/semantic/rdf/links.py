@@ -23,7 +23,7 @@ from deixis.memory.semantic.rdf.graphs import (
     view_node,
     views_graph,
 )
-from deixis.ontology.triples import text
+from deixis.ontology.rdf.triples import text
 
 
 class Link(NamedTuple):

@@ -9,8 +9,8 @@ from typing import TypeVar
 import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri, package_graph
+from deixis.ontology.rdf.triples import skolem
 from deixis.ontology.tbox import TBOX_FILES, tbox_turtle
-from deixis.ontology.triples import skolem
 
 SHAPES_FILE = TBOX_FILES[0].with_name("shapes.ttl")
 

@@ -11,7 +11,7 @@ import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf.after import DATA, After, Node
 from deixis.memory.semantic.rdf.change import Change
-from deixis.ontology.vocabulary import W3C
+from deixis.ontology.rdf.vocabulary import W3C
 
 TYPE = ox.NamedNode(W3C.RDF_TYPE)
 SUB_CLASS_OF = ox.NamedNode(W3C.RDFS_SUB_CLASS_OF)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.detection.settings import SurfaceSettings
-from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from deixis.ontology.sizes import Extent, SizeRange
+from deixis.ontology.things.sizes import Extent, SizeRange
 
 SHARED_VARIATION = 0.7
 """Weight of the common random part in a thing's three lengths: a long spoon is also wide and high."""

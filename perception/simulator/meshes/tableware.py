@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from deixis.ontology.kinds import Kind
-from deixis.ontology.sizes import Extent, Outline, SizeRange
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.ontology.things.kinds import Kind
+from deixis.ontology.things.sizes import Extent, Outline, SizeRange
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.meshes.blocks import block, cylinder, napkin

@@ -12,9 +12,9 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.allen import Allen
+from deixis.ontology.relations.relation import Reading
 from deixis.reasoning.constraints.difference import Difference
 from deixis.reasoning.constraints.disjunctive import Clause
 from deixis.reasoning.entailment.realisation.pieces import Piece, choice, region

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.sizes import SizeRange
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.things.sizes import SizeRange
 from deixis.reasoning.constraints.difference import DifferenceNetwork
 from deixis.reasoning.constraints.minimal import Minimal
 from deixis.reasoning.entailment.realisation.composition import Wishes, compose, in_line, within

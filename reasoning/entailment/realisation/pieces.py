@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact
+from deixis.ontology.graph.graph import Fact
 from deixis.reasoning.geometry.allen import ConvexSet, convex_hull, convex_sets
 
 X, Y = 0, 1

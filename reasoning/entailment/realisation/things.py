@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.sizes import Outline, SizeRange
+from deixis.ontology.things.sizes import Outline, SizeRange
 
 UPRIGHT, LYING = (1, 0), (0, 1)
 """Sides along x and along y in both orientations, as 0 for length and 1 for width."""

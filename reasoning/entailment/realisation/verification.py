@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.geometry.rectangle import box_relations
 

@@ -19,25 +19,25 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.errors import GraphError
-from deixis.ontology.claims import Claim
-from deixis.ontology.colours import Colours
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kinds
-from deixis.ontology.relation import Reading, Relation
-from deixis.ontology.sizes import Sizes
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation
+from deixis.ontology.things.colours import Colours
+from deixis.ontology.things.kinds import Kinds
+from deixis.ontology.things.sizes import Sizes
 from deixis.reasoning.geometry.pairs import pair_geometry
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding.evidence.candidates import Candidates, candidate_ratios
-from deixis.reasoning.grounding.evidence.claims import ClaimTables, claim_tables
-from deixis.reasoning.grounding.evidence.colours import colour_evidence
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees, frame_shares, log_likelihood_ratio
-from deixis.reasoning.grounding.evidence.facts import FactEvidence, FactTables, hedged
-from deixis.reasoning.grounding.evidence.labels import Label, classes
-from deixis.reasoning.grounding.evidence.latent_places import place_ratios
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
-from deixis.reasoning.grounding.evidence.pair_features import OWN_WORDS
-from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, label_ratios, size_evidence
+from deixis.reasoning.grounding.evidence.claims.claims import ClaimTables, claim_tables
+from deixis.reasoning.grounding.evidence.facts.facts import FactEvidence, FactTables, hedged
+from deixis.reasoning.grounding.evidence.facts.latent_places import place_ratios
+from deixis.reasoning.grounding.evidence.properties.candidates import Candidates, candidate_ratios
+from deixis.reasoning.grounding.evidence.properties.colours import colour_evidence
+from deixis.reasoning.grounding.evidence.properties.labels import Label, classes
+from deixis.reasoning.grounding.evidence.properties.unary import LABEL_ERROR, label_ratios, size_evidence
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, frame_shares, log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, SHIPPED, Meaning, shipped_models
+from deixis.reasoning.grounding.evidence.words.pair_features import OWN_WORDS
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.memory_budget import different_facts
 

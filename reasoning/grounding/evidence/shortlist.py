@@ -2,7 +2,8 @@
 
 Labels, sizes and colours select the candidates of each object. Each fact is compared with the pairs of its objects'
 candidates only, which are its block. Messages between facts, objects and things (belief propagation; see
-:mod:`deixis.reasoning.grounding.matching.belief_propagation`) then give approximate probabilities of the candidates.
+:mod:`deixis.reasoning.grounding.matching.search.belief_propagation`) then give approximate probabilities of the
+candidates.
 
 1. Facts are processed in the order of the size of their blocks, the smallest first. Between groups of facts, candidates
    that have become almost impossible are dropped, so that later blocks are smaller: an object of which only its
@@ -24,15 +25,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import SPREAD, Surroundings
 from deixis.reasoning.geometry.rectangle import cross_relations
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees, log_likelihood_ratio
-from deixis.reasoning.grounding.evidence.facts import SaidFacts, compared_facts, literal_degree
-from deixis.reasoning.grounding.evidence.literalness import LITERAL, LITERAL_PRIOR
-from deixis.reasoning.grounding.evidence.meaning import OUTLIERS, Meaning, shipped_models
+from deixis.reasoning.grounding.evidence.facts.facts import SaidFacts, compared_facts, literal_degree
+from deixis.reasoning.grounding.evidence.facts.literalness import LITERAL, LITERAL_PRIOR
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees, log_likelihood_ratio
+from deixis.reasoning.grounding.evidence.words.meaning import OUTLIERS, Meaning, shipped_models
 from deixis.reasoning.grounding.matching.problem import Problem
 
 Array = NDArray[np.float64]

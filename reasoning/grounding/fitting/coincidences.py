@@ -1,4 +1,4 @@
-"""Fit the weights of :mod:`deixis.reasoning.grounding.matching.coincidences` to tables with known truth.
+"""Fit the weights of :mod:`deixis.reasoning.grounding.matching.posterior.coincidences` to tables with known truth.
 
 The score of a table is the mean log-probability of the truth, which makes all probabilities right, plus
 ``DECISION_WEIGHT`` times the mean worth of the decisions: 1 for a decided match that is right, ``-WRONG_COST`` for a
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.matching.coincidences import SHIPPED_WEIGHTS, Coincidences, CoincidenceWeights
+from deixis.reasoning.grounding.matching.posterior.coincidences import SHIPPED_WEIGHTS, Coincidences, CoincidenceWeights
 from deixis.reasoning.grounding.options import DECIDED, DECIDED_LOWER_BOUND
 
 Array = NDArray[np.float64]

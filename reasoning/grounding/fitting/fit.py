@@ -30,8 +30,8 @@ from deixis.ontology.models.relations import (
 )
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry
-from deixis.reasoning.grounding.evidence.degrees import degree_of_view
-from deixis.reasoning.grounding.evidence.pair_features import view
+from deixis.reasoning.grounding.evidence.words.degrees import degree_of_view
+from deixis.reasoning.grounding.evidence.words.pair_features import view
 from deixis.reasoning.grounding.fitting.likelihood import Expansion, Likelihood, SaidPairs, hats
 from deixis.reasoning.grounding.fitting.parameters import Layout
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.hypotheses import ANOTHER_PRIOR, FitEvidence
+from deixis.reasoning.grounding.hypotheses.hypotheses import ANOTHER_PRIOR, FitEvidence
 
 Array = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.relations import FAMILIES, MODEL_OF_WORD, SAYING, RelationModel
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import PairGeometry, pair_geometry
-from deixis.reasoning.grounding.evidence.pair_features import View, view
+from deixis.reasoning.grounding.evidence.words.pair_features import View, view
 from deixis.reasoning.grounding.fitting.parameters import MAX_STEP, Layout
 
 

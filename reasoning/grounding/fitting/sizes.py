@@ -2,7 +2,7 @@
 
 With few views, a median is uncertain and a deviation more so. Therefore both are drawn towards a prior: that of a usual
 size or, where no usual size is stated, the common distribution of the views of all kinds. Sizes are natural logarithms
-of length and aspect, as :func:`deixis.reasoning.grounding.evidence.unary.log_sizes` returns them.
+of length and aspect, as :func:`deixis.reasoning.grounding.evidence.properties.unary.log_sizes` returns them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.models.sizes import SizeModel
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.evidence.sizes import MIN_SPREAD
+from deixis.reasoning.grounding.evidence.properties.sizes import MIN_SPREAD
 
 Array = NDArray[np.float64]
 

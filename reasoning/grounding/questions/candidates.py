@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.matching.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding.matching.exact import Maps
+    from deixis.reasoning.grounding.matching.search.exact import Maps
 
 MAX_LISTED_MAPS = 5_000
 """Maximum number of maps that are listed one by one; beyond it, interchangeable objects are stored as groups."""
@@ -217,7 +217,7 @@ def candidates_of(
     >>> len(found), found.count, found.complete
     (1, 362880, False)
     """
-    from deixis.reasoning.grounding.matching.exact import maps_within
+    from deixis.reasoning.grounding.matching.search.exact import maps_within
 
     found = maps_within(problem, margin, deadline, limit=limit)
     if found.complete:

@@ -15,7 +15,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Relation
+from deixis.ontology.relations.relation import Relation
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.candidates import Candidates
 from deixis.reasoning.grounding.questions.situation import Situation, spoken

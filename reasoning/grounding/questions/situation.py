@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import SceneRelations

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.reasoning.geometry.rectangle import SceneRelations
 
 MIN_SIZE_RATIO = 1.3

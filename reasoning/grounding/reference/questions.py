@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from deixis.ontology.inflection import is_plural
 from deixis.reasoning.grounding.reference.answer import DECIDED, Question
-from deixis.reasoning.grounding.reference.room import Room
+from deixis.reasoning.grounding.reference.features.room import Room
 from deixis.reasoning.grounding.reference.wording import named
 
 Array = NDArray[np.float64]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deixis.ontology.inflection import plural
-from deixis.ontology.kinds import with_article
+from deixis.ontology.things.kinds import with_article
 from deixis.reasoning.grounding.reference.query import Description, Person, Property, Query, Relation, Viewer
 
 WORDS = {

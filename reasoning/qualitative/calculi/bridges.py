@@ -14,7 +14,7 @@ from typing import Protocol, cast
 
 import numpy as np
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.relations.allen import Allen
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, bits
 from deixis.reasoning.qualitative.calculi.distance import SAME

@@ -20,7 +20,7 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError
 from deixis.reasoning.qualitative.calculi.words import atoms_within, relation_of
 

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import SYMBOLS, Allen
+from deixis.ontology.relations.allen import SYMBOLS, Allen
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus
 from deixis.reasoning.qualitative.calculi.tractable import EVERY_ORDER, ORD_HORN
@@ -137,7 +137,7 @@ def point_algebra() -> TableCalculus:
 
 
 def interval_algebra() -> TableCalculus:
-    """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in ontology.allen.
+    """Return the interval algebra: thirteen relations of proper intervals (Allen 1983), codes as in relations.allen.
 
     Returns
     -------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import cast
 
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus, ProductCalculus, TableCalculus, bits
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus, TableCalculus, coarsening
 
 UNNAMED = "overlap"

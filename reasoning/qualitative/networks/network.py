@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Source
+from deixis.ontology.graph.graph import Source
 from deixis.reasoning.errors import NetworkError
 from deixis.reasoning.qualitative.calculi.calculus import Calculus
 

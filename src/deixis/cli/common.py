@@ -178,7 +178,7 @@ def tell_of_compiling() -> None:
 
 def note_unit(scene: Scene) -> None:
     """Print a note on standard error if the things of a scene are so large or small that its unit must be wrong."""
-    from deixis.learning.scene_evidence import unit_notes
+    from deixis.learning.lessons.scene_evidence import unit_notes
     from deixis.ontology.tbox import default_ontology
 
     for note in unit_notes(scene, (), default_ontology()):

@@ -55,7 +55,7 @@ def layouts_in(memory: Path) -> set[str]:
     """Read the names of the learned layouts without locking or changing the memory."""
     import pyoxigraph as ox
 
-    from deixis.ontology.vocabulary import W3C
+    from deixis.ontology.rdf.vocabulary import W3C
 
     store, layouts = _layouts(memory)
     label = ox.NamedNode(W3C.RDFS_LABEL)
@@ -65,7 +65,7 @@ def layouts_in(memory: Path) -> set[str]:
 
 def lessons_in(memory: Path) -> set[str]:
     """Read the ids of the lessons that taught a layout, without locking or changing the memory."""
-    from deixis.ontology.triples import last_part
+    from deixis.ontology.rdf.triples import last_part
 
     return {last_part(layout.value) for layout in _layouts(memory)[1]}
 
@@ -75,7 +75,7 @@ def _layouts(memory: Path) -> tuple[ox.Store, list[ox.NamedNode]]:
 
     from deixis.memory.semantic.opening import open_for_reading
     from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
-    from deixis.ontology.vocabulary import DX, W3C
+    from deixis.ontology.rdf.vocabulary import DX, W3C
 
     store = open_for_reading(memory)
     is_a, layout = ox.NamedNode(W3C.RDFS_SUB_CLASS_OF), ox.NamedNode(DX.LAYOUT)
@@ -93,7 +93,7 @@ def categories_in(memory: Path) -> set[str]:
 
     import plyvel
 
-    from deixis.memory.perceptual import keys, layout
+    from deixis.memory.perceptual.database import keys, layout
 
     with TemporaryDirectory(prefix="deixis-") as scratch:
         layout.mirror(memory.resolve() / layout.FOLDER, Path(scratch))

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from deixis.experiments.photographs import Photograph
 from deixis.ontology.models.sizes import SizeModel
-from deixis.reasoning.grounding.evidence.labels import classes
-from deixis.reasoning.grounding.evidence.meaning import Meaning, shipped_models
-from deixis.reasoning.grounding.evidence.unary import log_sizes
+from deixis.reasoning.grounding.evidence.properties.labels import classes
+from deixis.reasoning.grounding.evidence.properties.unary import log_sizes
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning, shipped_models
 from deixis.reasoning.grounding.fitting.fit import FitSettings, learn_relations
 from deixis.reasoning.grounding.fitting.likelihood import said_pairs
 from deixis.reasoning.grounding.fitting.sizes import learn_sizes

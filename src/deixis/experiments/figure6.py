@@ -23,16 +23,16 @@ from scipy.optimize import linear_sum_assignment
 
 from deixis.examples_data import example
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import PaperGraph, RelationGraph
+from deixis.ontology.graph.graph import PaperGraph, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.plots.figure import INK, PAPER, QUIET, new_figure, require_picture, save
+from deixis.reasoning.grounding.answers.symmetry import interchangeable
+from deixis.reasoning.grounding.engines.similarity import node_similarity
+from deixis.reasoning.grounding.engines.similarity_engine import described
 from deixis.reasoning.grounding.evidence.evidence import Evidence, no_unary_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.similarity import node_similarity
-from deixis.reasoning.grounding.similarity_engine import described
-from deixis.reasoning.grounding.symmetry import interchangeable
 from deixis.workflows.layouts.read import read_script
 
 

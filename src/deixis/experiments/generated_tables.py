@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, box_relations, scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem

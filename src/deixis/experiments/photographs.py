@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.models.relations import FAMILIES
 from deixis.ontology.tbox import Ontology
 

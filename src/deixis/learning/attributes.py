@@ -42,7 +42,7 @@ def measured(scene: Scene) -> Array:
     Sizes are logarithms of lengths in metres, colours are in CIELAB. Gloss is the share of highlights, pattern the
     spread of the colours that are not highlights.
     """
-    from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+    from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
     n = len(scene.objects)
     found = np.full((n, len(MEASURES)), np.nan)
@@ -79,7 +79,7 @@ def _sides(thing: PerceivedObject) -> tuple[float, float, float]:
 
 def _surface(scene: Scene, thing: PerceivedObject) -> tuple[float, float]:
     """Return the share of highlights and the spread of the other colours; NaN without a coloured cloud."""
-    from deixis.reasoning.grounding.evidence.colours import lab_of_srgb
+    from deixis.reasoning.grounding.evidence.properties.colours import lab_of_srgb
 
     cloud = thing.cloud
     if cloud is None:

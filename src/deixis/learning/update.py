@@ -17,12 +17,12 @@ from urllib.parse import quote, unquote
 import pyoxigraph as ox
 
 from deixis.deadline import Deadline
-from deixis.learning.implied_statements import completion
-from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, following
-from deixis.learning.recollection import Recollection, Remembered, recollect, remembered_lesson
-from deixis.learning.sizes import Counts, Row, SizeStatistics, SizeView, size_views
-from deixis.learning.word_statistics import replacing, stored_words
-from deixis.learning.words import LearnedWords, fit, informed, without
+from deixis.learning.inference.implied_statements import completion
+from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows, following
+from deixis.learning.lessons.recollection import Recollection, Remembered, recollect, remembered_lesson
+from deixis.learning.models.sizes import Counts, Row, SizeStatistics, SizeView, size_views
+from deixis.learning.models.word_statistics import replacing, stored_words
+from deixis.learning.models.words import LearnedWords, fit, informed, without
 from deixis.memory.folder import FolderState, inspect
 from deixis.memory.journal import Commit, JointWrite
 from deixis.memory.perceptual.records import View
@@ -42,9 +42,9 @@ from deixis.ontology.lessons.write import asserted_triples, episode_triples, lea
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import RelationModel
 from deixis.ontology.models.sizes import SIZE_PROPERTIES, size_iri, size_triples
+from deixis.ontology.rdf.triples import iri, text
+from deixis.ontology.rdf.vocabulary import PROV
 from deixis.ontology.tbox import Ontology
-from deixis.ontology.triples import iri, text
-from deixis.ontology.vocabulary import PROV
 from deixis.reasoning.description_logic.subsumption import BeyondLessonsError
 from deixis.reasoning.errors import NothingFoundError
 from deixis.scratch import scratch_folder

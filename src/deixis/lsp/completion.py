@@ -13,7 +13,7 @@ from deixis.grammar.layout.names import key_of
 from deixis.grammar.layout.unfinished import Expected, expected_next
 from deixis.grammar.layout.words import chains
 from deixis.lsp.document import MAX_STATEMENT, Document
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 
 MAX_LINES_JOINED = 100  # maximum number of lines of one statement that are read before the position
 MAX_WORDS = 5  # maximum number of words before the position that can begin a phrase

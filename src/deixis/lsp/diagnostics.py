@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from deixis.grammar.errors import MAX_PROBLEMS_SHOWN
 from deixis.lsp.document import READ_TIME_LIMIT, Document
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 LINT_TIME_LIMIT = 1.0
 """Time limit in seconds for the warnings of a document that is being typed."""

@@ -14,7 +14,7 @@ from deixis.grammar.layout.language import Language, language_of
 from deixis.grammar.layout.names import key_of
 from deixis.grammar.layout.unfinished import UnfinishedScript, read_unfinished
 from deixis.grammar.script import Mention, Script, mentions
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 from deixis.ontology.tbox import Ontology, default_ontology
 
 READ_TIME_LIMIT = 2.0

@@ -11,7 +11,7 @@ from deixis.grammar.layout.names import MAX_NAME, key_of, unquote
 from deixis.grammar.script import Header, Include, RelationStatement
 from deixis.lsp.diagnostics import Problem
 from deixis.lsp.document import Document
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 VIEWPOINT = " seen from chair"  # end of the header that a quick fix adds
 

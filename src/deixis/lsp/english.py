@@ -15,7 +15,7 @@ from deixis.lsp.completion import MAX_COMPLETIONS, MAX_WORDS, Completion, Role
 from deixis.lsp.diagnostics import LINT_TIME_LIMIT, MAX_WARNINGS, Problem
 from deixis.lsp.document import READ_TIME_LIMIT
 from deixis.lsp.edits import Edit, Fix
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from deixis.deadline import Deadline
 from deixis.grammar.layout.names import key_of
 from deixis.lsp.document import Document, is_object, name_of
-from deixis.ontology.facts import Fact
-from deixis.ontology.kinds import Kind
-from deixis.ontology.relation import plain_phrase
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.relations.relation import plain_phrase
+from deixis.ontology.things.kinds import Kind
 
 HOVER_TIME_LIMIT = 1.0
 """Time limit in seconds for what follows."""

@@ -26,7 +26,7 @@ from deixis.lsp.edits import Edit, RenameError, fixes, formatted, rename
 from deixis.lsp.english import EnglishText, english_completions, english_fixes, english_hover, english_problems
 from deixis.lsp.hover import hover
 from deixis.lsp.symbols import mentions_of, symbols
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 from deixis.version import VERSION
 
 PAUSE = 0.3

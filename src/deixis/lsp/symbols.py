@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from deixis.grammar.layout.names import key_of
 from deixis.lsp.document import Document
-from deixis.ontology.facts import Source
+from deixis.ontology.graph.facts import Source
 
 
 @dataclass(frozen=True, slots=True)

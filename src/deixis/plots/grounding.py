@@ -17,7 +17,7 @@ from deixis.perception.scene import PerceivedObject, Scene
 from deixis.plots.arrows import Arrow, Ends, draw_arrows, draw_directions, drawing_order, points_along
 from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress_table, save
 from deixis.plots.names import write_names
-from deixis.reasoning.grounding.answer import FactOutcome, Grounding
+from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
 from deixis.reasoning.grounding.options import DECIDED
 from deixis.report.grounding.ground import MAX_LISTED, at_most_many, probability_text
 
@@ -119,7 +119,7 @@ def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None 
     DeixisError
         If the engine was called without a scene.
     """
-    from deixis.reasoning.grounding.hypotheses import side_text
+    from deixis.reasoning.grounding.hypotheses.hypotheses import side_text
     from deixis.workflows.grounding.viewpoint import scene_from
 
     if not isinstance(found.scene, Scene):

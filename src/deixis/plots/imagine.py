@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.errors import DeixisError
-from deixis.ontology.kinds import Kind, Kinds
-from deixis.ontology.sizes import Outline
+from deixis.ontology.things.kinds import Kind, Kinds
+from deixis.ontology.things.sizes import Outline
 from deixis.perception.scene import PerceivedObject
 from deixis.plots.figure import INK, canvas, dress_table, save
 from deixis.plots.names import write_names

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.ontology.models.relations import FAMILIES, RelationModel, RelationModels
-from deixis.ontology.relation import Relation
+from deixis.ontology.relations.relation import Relation
 from deixis.plots.figure import INK, PAPER, new_figure, save
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.perception.recognition.recogniser import Recognition
     from deixis.perception.scene import Detected, PerceivedObject, Scene
 

@@ -6,9 +6,9 @@ import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.export import claim_to_dict, fact_to_dict, graph_to_dict
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.export import claim_to_dict, fact_to_dict, graph_to_dict
+from deixis.ontology.graph.facts import Fact
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.derivations import Derivation
     from deixis.reasoning.entailment.why_not import WhyNot
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding
+    from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.layouts.infer import Inference
@@ -193,7 +193,7 @@ def grounding_to_dict(found: Grounding) -> dict[str, Any]:
         Data for JSON: the matches, the objects and things left out with the reasons, the interchangeable names, the
         facts by outcome, and the facts on which the answer depends.
     """
-    from deixis.reasoning.grounding.answer import Outcome, Standing
+    from deixis.reasoning.grounding.answers.answer import Outcome, Standing
 
     pivotal = [
         {

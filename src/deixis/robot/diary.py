@@ -14,8 +14,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from deixis.memory.episodes.changes import Add, Change, Finish, Update
-from deixis.memory.episodes.episode import MAX_TEXT, EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Change, Finish, Update
+from deixis.memory.episodes.fluents.episode import MAX_TEXT, EpisodicFluent, Origin, Source, episodic
 from deixis.perception.formats.scene_json import read_scene, scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from deixis.grammar.script import Script
-from deixis.ontology.claims import PLACES, SUPERLATIVES
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.graph.claims import PLACES, SUPERLATIVES
+from deixis.ontology.things.kinds import plain_name
 
 RELIABLE = 0.95
 """Probability that an object is there when a person says so."""

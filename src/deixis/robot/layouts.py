@@ -1,7 +1,7 @@
 """Layouts over several tables: the text that describes one, and which relations hold and how things lie on tables.
 
 A layout that a text described on one table, and that lay on others too, is one concept. What its tables taught is
-counted (:mod:`deixis.learning.experience`) and kept with the lessons in the memory.
+counted (:mod:`deixis.learning.layouts.experience`) and kept with the lessons in the memory.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.grammar.script import Script
-from deixis.learning.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
-from deixis.learning.lesson import layout_name
-from deixis.learning.scene_evidence import graph_evidence, named_by_candidates
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph, dispensable
-from deixis.ontology.relation import Reading, Relation, Relations
+from deixis.learning.layouts.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
+from deixis.learning.lessons.lesson import layout_name
+from deixis.learning.lessons.scene_evidence import graph_evidence, named_by_candidates
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph, dispensable
+from deixis.ontology.relations.relation import Reading, Relation, Relations
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.reasoning.comparison.explanation import NOTHING, MistakeOdds, TableEvidence
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.evidence.candidates import candidate_ratios
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.properties.candidates import candidate_ratios
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from deixis.learning.tables import TaughtTable
+from deixis.learning.layouts.tables import TaughtTable
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 
 QUESTION_COST = 0.5
 """Cost of a question in nats: it is asked if its answer is expected to tell more."""

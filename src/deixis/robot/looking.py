@@ -13,14 +13,14 @@ from functools import cached_property
 
 import numpy as np
 
-from deixis.learning.experience import Experience
-from deixis.learning.views import Known, recognise
-from deixis.ontology.kinds import plain_name
+from deixis.learning.layouts.experience import Experience
+from deixis.learning.views.views import Known, recognise
 from deixis.ontology.tbox import Ontology
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, explain
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
 UNEXPLAINED_LAYOUT = -2.0

@@ -4,8 +4,8 @@ A module declares which statements it reads and which it writes, as patterns. It
 other writes. The same module runs in a thread or in a process of its own; see :mod:`deixis.robot.runtime`.
 
 >>> from deixis.memory.episodes.blackboard import Blackboard
->>> from deixis.memory.episodes.changes import Add
->>> from deixis.memory.episodes.episode import Origin, Source, episodic
+>>> from deixis.memory.episodes.fluents.changes import Add
+>>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 >>> class Greeter(Module):
 ...     name, reads, writes = "greeter", (Pattern(predicate="entered"),), (Pattern(predicate="greeted"),)
 >>> with Blackboard.transient() as whole:
@@ -27,8 +27,8 @@ from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 from deixis.errors import DeixisError
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Change, Logged, Update
-from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.episodes.fluents.changes import Add, Change, Logged, Update
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
 from deixis.memory.folder import one_line
 from deixis.memory.journal import Part
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement

@@ -15,7 +15,7 @@ from deixis.grammar.script import Script
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.occlusion import hidden_places
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.workflows.grounding.ground import GroundingRequest
 
 Array = NDArray[np.float64]

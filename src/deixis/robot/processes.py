@@ -26,8 +26,8 @@ from deixis import extras
 from deixis.errors import DeixisError
 from deixis.memory import errors as memory_errors
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Change, Logged
-from deixis.memory.episodes.codec import (
+from deixis.memory.episodes.fluents.changes import Change, Logged
+from deixis.memory.episodes.fluents.codec import (
     change_of_list,
     change_to_list,
     decode_fluent,
@@ -35,7 +35,7 @@ from deixis.memory.episodes.codec import (
     encode_fluent,
     logged_bytes,
 )
-from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
 from deixis.memory.episodes.subscription import Subscription
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.folder import EPISODES

@@ -17,14 +17,14 @@ from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
 from deixis.grammar.script import Script
-from deixis.learning.experience import Experience
-from deixis.learning.teachings import GROUNDING
+from deixis.learning.layouts.experience import Experience
+from deixis.learning.views.teachings import GROUNDING
 from deixis.memory.episodes.blackboard import Blackboard, has_episodes
-from deixis.memory.episodes.changes import Change
-from deixis.memory.episodes.episode import event_of
+from deixis.memory.episodes.fluents.changes import Change
+from deixis.memory.episodes.fluents.episode import event_of
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from deixis.learning.views import Taught
+    from deixis.learning.views.views import Taught
     from deixis.workflows.knowledge.learn import Learned, Recording
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 

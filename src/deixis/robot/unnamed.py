@@ -15,14 +15,14 @@ import numpy as np
 from deixis.grammar.layout.format import layout_script
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
-from deixis.learning.experience import COMPARED, TOLERANCE, Experience
-from deixis.ontology.facts import Fact
+from deixis.learning.layouts.experience import COMPARED, TOLERANCE, Experience
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.lessons.types import LayoutConcept, Role
 from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import NOTHING, explain
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 from deixis.view_store import UNKNOWN
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
     from deixis.perception.scene import Scene
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.layouts.infer import Inference
 

@@ -12,7 +12,7 @@ import pytest
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.scoreboard import bayes_limit as module
 from deixis.experiments.scoreboard.bayes_limit import bayes_limit
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
 

@@ -9,10 +9,10 @@ from deixis.experiments.cross_validation import folds, learned_meanings
 from deixis.experiments.photographs import Photograph
 from deixis.experiments.scoreboard.cases import PHOTOGRAPHS, Case, Setting
 from deixis.experiments.scoreboard.contestants import ablations
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
-from deixis.reasoning.grounding.evidence.labels import category_of
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.properties.labels import category_of
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.fitting.fit import FitSettings
 
 RELATIONS = default_ontology().relations

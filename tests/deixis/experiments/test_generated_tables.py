@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.experiments.generated_tables import PIECES, RING, SETTING, generate, nearest, neighbours
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

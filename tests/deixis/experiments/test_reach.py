@@ -10,13 +10,13 @@ import deixis
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import neighbours
 from deixis.experiments.place_settings import formal_setting
-from deixis.learning.scene_evidence import evidence_of
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.learning.lessons.scene_evidence import evidence_of
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights
-from deixis.reasoning.grounding.matching.exact import exact
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
+from deixis.reasoning.grounding.matching.search.exact import exact
 
 ABSENT = {"red_wine_glass", "white_wine_glass", "champagne_glass"}
 

@@ -27,10 +27,10 @@ from deixis.experiments.scoreboard.plot import plot_scoreboard
 from deixis.experiments.scoreboard.report import lines, verdict
 from deixis.experiments.scoreboard.run import Scoreboard, ScoreboardPlan, run, steps
 from deixis.experiments.scoreboard.statistics import holm, interval, paired_p
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 TINY = ScoreboardPlan(

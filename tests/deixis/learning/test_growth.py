@@ -16,8 +16,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from deixis.learning import update as keeping
-from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows
-from deixis.learning.sizes import Counts, SizeStatistics, SizeView
+from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows
+from deixis.learning.models.sizes import Counts, SizeStatistics, SizeView
 from deixis.memory import owner as disk
 from deixis.memory.errors import RejectedWriteError
 from deixis.memory.folder import size

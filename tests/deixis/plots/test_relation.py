@@ -12,8 +12,8 @@ from deixis.ontology.models.relations import Provenance
 from deixis.ontology.tbox import default_ontology
 from deixis.plots.relation import REFERENCE, SUBJECT, field, relation_figure
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import relation_degree
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.degrees import relation_degree
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 RELATIONS = default_ontology().relations
 

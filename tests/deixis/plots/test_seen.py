@@ -11,7 +11,7 @@ from commands import deixis
 from matplotlib.figure import Figure
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.learning.views import Recognised
+from deixis.learning.views.views import Recognised
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import write_cloud
 from deixis.perception.detection.table.viewpoint import in_frame

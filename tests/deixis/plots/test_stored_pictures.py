@@ -46,7 +46,7 @@ def imagined_table() -> Figure:
 def relation_field() -> Figure:
     from deixis.ontology.tbox import default_ontology
     from deixis.plots.relation import relation_figure
-    from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
     return relation_figure(default_ontology().relations["left"], shipped_models(), steps=61)
 
@@ -67,7 +67,7 @@ def perceived_table() -> Figure:
 
 def recognised_table() -> Figure:
     """Draw stated answers: a sure name, a likely one and an unknown thing in turn, the same on every processor."""
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.perception.recognition.calibration import SHIPPED
     from deixis.perception.recognition.recogniser import Candidate, Recognition
     from deixis.perception.recognition.spread import Width, spreads

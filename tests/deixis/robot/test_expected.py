@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Update
-from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.memory.episodes.experiences import finish_recording, start_recording
+from deixis.memory.episodes.fluents.changes import Add, Update
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.expected import GIVEN_UP, ExpectedObject, Sighting, Standing, introduced
 from deixis.robot.modules import ModuleSpec

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.learning.experience import Experience, Moments, log_sizes, long_axis, predictive
+from deixis.learning.layouts.experience import Experience, Moments, log_sizes, long_axis, predictive
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import OrientedBox, PerceivedObject
 from deixis.robot.layouts import LearnedLayout, angle_between

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.learning.experience import Experience, Moments, Tally
+from deixis.learning.layouts.experience import Experience, Moments, Tally
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import OrientedBox, PerceivedObject, Scene
 from deixis.robot.robot import Robot

@@ -10,8 +10,8 @@ from episodic_fluents import SEEN
 from timing import BUSY_SECONDS, until
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import episodic
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.modules import Clock, ModuleError, ModuleSpec
 from deixis.robot.runtime import Runtime

@@ -21,7 +21,7 @@ from deixis.grammar.layout.parser import parse_script
 from deixis.kernels import compile_grounding
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError, SettingError
-from deixis.reasoning.grounding.answer import Standing
+from deixis.reasoning.grounding.answers.answer import Standing
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.memory_budget import different_facts, leaves_room_for_chains, required_gigabytes
 from deixis.workflows.grounding.ground import GroundingRequest, answer

@@ -7,7 +7,7 @@ import pytest
 from deixis.grammar.english.reader import read_english
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.reading import Reading
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 
 
 def reading(text: str) -> Reading:

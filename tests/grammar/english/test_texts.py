@@ -6,7 +6,7 @@ import pytest
 from bench_english import Score, written_facts, written_texts, written_traps
 
 from deixis.grammar.english.reader import read_english
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 
 TEXTS = Path(__file__).parent / "texts"
 MIN_FOUND, MIN_RIGHT = 0.8, 0.9

@@ -22,7 +22,7 @@ from deixis.grammar.formats.fluents import (
     parse_fluents,
     read_fluents,
 )
-from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.relations.allen import ALL_ALLEN
 from deixis.reasoning.constraints.difference import add
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import AllenStatement, EndDifference, Fluent, Statement, TemporalRelation

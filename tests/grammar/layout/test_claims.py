@@ -15,7 +15,7 @@ from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.claims import meaning, phrase_of
 from deixis.grammar.layout.format import format_script
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.claims import PLACES, SUPERLATIVES, Claim
+from deixis.ontology.graph.claims import PLACES, SUPERLATIVES, Claim
 from deixis.report.json_answers import script_to_dict
 from deixis.report.layouts.read import reading_to_dict
 

@@ -7,7 +7,7 @@ import pytest
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
-from deixis.ontology.graph import Source
+from deixis.ontology.graph.graph import Source
 from deixis.ontology.tbox import load_ontology
 
 FIGURE_7 = """\

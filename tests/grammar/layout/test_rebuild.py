@@ -9,9 +9,9 @@ from random_scripts import scripts
 from deixis.grammar.layout.format import layout_script
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
-from deixis.learning.lesson import layout_concept
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.learning.lessons.lesson import layout_concept
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.lessons.read import layouts
 from deixis.ontology.tbox import default_ontology
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from deixis.memory.episodes import blackboard as module
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Delete, Finish, Update
-from deixis.memory.episodes.episode import EpisodicFluent, episodic
+from deixis.memory.episodes.fluents.changes import Add, Delete, Finish, Update
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, episodic
 from deixis.memory.errors import EpisodeError, UnknownFluentError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern, Statement

@@ -9,9 +9,9 @@ from episodic_fluents import on, some_fluents
 from hypothesis import given, settings
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent
 from deixis.memory.episodes.exchange import export_episodes, import_episodes
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
 from deixis.memory.errors import ImportFormatError, RejectedWriteError
 
 ORIGIN = datetime(2026, 11, 23, tzinfo=UTC)

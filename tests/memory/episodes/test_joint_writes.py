@@ -9,10 +9,10 @@ import pytest
 from episodic_fluents import on
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Delete, Finish, Update
-from deixis.memory.episodes.codec import change_of_list, change_to_list
-from deixis.memory.episodes.disk import DiskKeys
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Delete, Finish, Update
+from deixis.memory.episodes.fluents.codec import change_of_list, change_to_list
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
+from deixis.memory.episodes.store.disk import DiskKeys
 from deixis.memory.errors import EpisodeError, MemoryWriteError
 from deixis.memory.journal import JOURNAL, JointWrite, write_together
 from deixis.memory.semantic.rdf.change import Change

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from deixis.memory.episodes import projection
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, episodic
 from deixis.memory.episodes.projection import follow, is_current
-from deixis.memory.episodes.rdf import fluent_triples, statement_triple
+from deixis.memory.episodes.rdf.observations import fluent_triples, statement_triple
 from deixis.memory.semantic.rdf.graphs import FLUENTS, NOW
 from deixis.session import Session
 

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.projection import follow
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
 from deixis.reasoning.temporal.bounds import Bounds

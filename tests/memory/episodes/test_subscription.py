@@ -14,8 +14,8 @@ from timing import BUSY_SECONDS
 
 from deixis.memory.episodes import subscription as module
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Logged
-from deixis.memory.episodes.episode import episodic
+from deixis.memory.episodes.fluents.changes import Add, Logged
+from deixis.memory.episodes.fluents.episode import episodic
 from deixis.memory.episodes.subscription import Condition
 from deixis.memory.errors import EpisodeError
 from deixis.reasoning.temporal.fluent import Pattern

@@ -16,7 +16,7 @@ import pytest
 
 from deixis.errors import DeixisError
 from deixis.memory.errors import DamagedMemoryError
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 

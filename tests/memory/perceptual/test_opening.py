@@ -19,9 +19,9 @@ import pytest
 from deixis.memory import owner as disk
 from deixis.memory.errors import DamagedMemoryError, MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.owner import OwnerLock
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
+from deixis.memory.perceptual.database.migrations import MIGRATIONS
 from deixis.memory.perceptual.level import LevelMemory
-from deixis.memory.perceptual.migrations import MIGRATIONS
 from deixis.memory.perceptual.records import Batch, CategoryRecord, View
 from deixis.memory.perceptual.transient import TransientMemory
 
@@ -253,7 +253,7 @@ def test_a_second_opening_in_one_process_shares_the_handle(
 HOLDER = """
 import sys, time
 from deixis.memory.perceptual.level import LevelMemory
-from deixis.memory.perceptual.migrations import MIGRATIONS
+from deixis.memory.perceptual.database.migrations import MIGRATIONS
 memory = LevelMemory.open(sys.argv[1])
 print("open", flush=True)
 time.sleep(60)
@@ -308,7 +308,7 @@ def test_a_failed_opening_removes_only_what_it_made(
 
     with monkeypatch.context() as patched:
         patched.setattr("deixis.memory.owner.OwnerLock.acquire", after_another)
-        patched.setattr("deixis.memory.perceptual.handle._counted", full)
+        patched.setattr("deixis.memory.perceptual.database.handle._counted", full)
         with pytest.raises(MemoryWriteError):
             LevelMemory.open(place, create=True)
     assert place.exists() == there

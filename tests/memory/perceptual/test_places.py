@@ -10,7 +10,7 @@ import plyvel
 import pytest
 
 from deixis.memory.errors import DamagedMemoryError, UnknownViewError
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
 from deixis.memory.perceptual.level import LevelMemory
 from deixis.memory.perceptual.records import Batch, View
 

@@ -10,7 +10,7 @@ import numpy as np
 import plyvel
 import pytest
 
-from deixis.memory.perceptual import keys
+from deixis.memory.perceptual.database import keys
 from deixis.memory.perceptual.level import LevelMemory, UndamagedMemory
 from deixis.memory.perceptual.records import View
 

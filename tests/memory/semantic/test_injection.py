@@ -20,7 +20,7 @@ from deixis.memory.errors import QueryError
 from deixis.memory.semantic.exchange import export_memory, import_dump
 from deixis.memory.semantic.rdf.graphs import CANONICAL, ORDER, GraphName, graph_iri, lesson_graph, package_graph
 from deixis.memory.semantic.store import SemanticMemory
-from deixis.ontology.triples import learned_iri
+from deixis.ontology.rdf.triples import learned_iri
 
 Learn = Callable[..., None]
 

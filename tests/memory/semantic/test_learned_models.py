@@ -18,7 +18,7 @@ from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.models.relation_triples import model_triples, models_from_triples
 from deixis.ontology.models.relations import Provenance, RelationModel, Term
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.rdf.vocabulary import DX
 
 MADE = Provenance((), 3.0, datetime(2026, 11, 21, tzinfo=UTC), "0.1.0", ("dinner-1",), 1.0)
 MODEL = RelationModel("horizontal", (Term("gap", (0.0, 1.0), (0.0, -1.5e-7)),), 0.01, 0.07, MADE)

@@ -11,14 +11,23 @@ import pyoxigraph as ox
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.graph import Fact, Source
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.graph import Fact, Source
 from deixis.ontology.lessons.read import layouts, lesson_records, unknown_layout
 from deixis.ontology.lessons.types import Alternative, LayoutConcept, Lesson, Match, Role, next_lesson_id
 from deixis.ontology.lessons.write import asserted_triples, episode_triples, learned_triples
+from deixis.ontology.rdf.triples import (
+    GENID,
+    LEARNED,
+    decimal,
+    last_part,
+    learned_iri,
+    typed,
+    with_blank_nodes,
+    with_names,
+)
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.triples import GENID, LEARNED, decimal, last_part, learned_iri, typed, with_blank_nodes, with_names
-from deixis.ontology.vocabulary import DX
 from deixis.perception.scene import PerceivedObject, Scene
 
 RELATIONS = default_ontology().relations

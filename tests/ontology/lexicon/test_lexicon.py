@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.ontology.kinds import Kind
 from deixis.ontology.lexicon.lexicon import Relatedness
-from deixis.ontology.sizes import Outline
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology, load_ontology
-from deixis.ontology.vocabulary import DX
+from deixis.ontology.things.kinds import Kind
+from deixis.ontology.things.sizes import Outline
 
 ONTOLOGY = default_ontology()
 LEXICON = ONTOLOGY.lexicon

@@ -7,9 +7,9 @@ import re
 import pytest
 
 from deixis.errors import OntologyError
-from deixis.ontology.kinds import spaced
 from deixis.ontology.lexicon.nouns import listed_words, read_nouns
 from deixis.ontology.tbox import default_ontology, load_ontology
+from deixis.ontology.things.kinds import spaced
 
 KINDS = default_ontology().kinds
 NOUNS = read_nouns(KINDS.words)

@@ -18,8 +18,8 @@ from deixis.ontology.models.relations import (
     Term,
     Trend,
 )
+from deixis.ontology.rdf.vocabulary import DX
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.vocabulary import DX
 
 TERM = Term("gap", (0.0, 0.5, 1.0), (0.0, -0.1, -2.0), Trend.FALLING)
 MODEL = RelationModel("horizontal", (TERM, Term("alike", (0.0, 1.0), (-0.3, 0.0))), 0.01, 0.07)

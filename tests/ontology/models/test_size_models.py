@@ -9,8 +9,8 @@ import pytest
 
 from deixis.errors import OntologyError
 from deixis.ontology.models.sizes import SizeModel, size_triples, sizes_from_triples
-from deixis.ontology.triples import iri, text, typed
-from deixis.ontology.vocabulary import BASE, DX, PROV
+from deixis.ontology.rdf.triples import iri, text, typed
+from deixis.ontology.rdf.vocabulary import BASE, DX, PROV
 
 PLATE, FORK = BASE + "DinnerPlate", BASE + "Fork"
 MODEL = SizeModel((math.log(0.27), 0.1), (math.log(0.98), 0.05), False, 4.0)

@@ -10,8 +10,8 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.clouds.cloud_file import TEXT, read_cloud, write_cloud
-from deixis.perception.clouds.columns import KNOWN
 from deixis.perception.clouds.depth import read_intrinsics
+from deixis.perception.clouds.tables.columns import KNOWN
 from deixis.perception.errors import CloudError
 
 PAGE = (Path(__file__).parents[3] / "docs" / "reference" / "clouds.md").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from deixis.learning.views import COLOUR, COMPARISONS, SPIN_IMAGE_ROOTS, comparisons_in
+from deixis.learning.views.views import COLOUR, COMPARISONS, SPIN_IMAGE_ROOTS, comparisons_in
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import detect
 from deixis.perception.detection.settings import DetectionSettings

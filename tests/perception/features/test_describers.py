@@ -13,11 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from deixis.errors import UnknownTermError
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
-from deixis.perception.features.good import GoodDescriber
+from deixis.perception.features.descriptors.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.descriptors.good import GoodDescriber
+from deixis.perception.features.descriptors.spin_images import SpinImageDescriber
 from deixis.perception.features.registry import DESCRIBERS, describer_named
-from deixis.perception.features.spin_images import SpinImageDescriber
 
 ALL = [describer_named(name) for name in DESCRIBERS]
 POSE_FREE = [describer for describer in ALL if not describer.local and describer.name != "form"]

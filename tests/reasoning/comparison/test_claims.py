@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict, check_claims
 from deixis.reasoning.geometry.poses import Poses
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 THINGS = {  # minimum and maximum in metres, on a table of 70 by 50 cm
     "plate": ((0.20, 0.10, 0.0), (0.44, 0.34, 0.02)),

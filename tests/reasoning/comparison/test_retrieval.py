@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from deixis.experiments.place_settings import formal_setting
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.models.sizes import SizeModel
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.comparison.likeness import (
@@ -27,7 +27,7 @@ from deixis.reasoning.comparison.likeness import (
 from deixis.reasoning.comparison.retrieval import assignment_bound, quick_bound, rank_layouts, rank_scenes
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
-from deixis.reasoning.grounding.evidence.labels import category_of
+from deixis.reasoning.grounding.evidence.properties.labels import category_of
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 
 ONTOLOGY = default_ontology()

@@ -11,7 +11,7 @@ from ontologies import CUTLERY, core, ntriples, triple, triples
 from deixis.deadline import Deadline
 from deixis.reasoning.description_logic.axioms import Axiom, split_axioms
 from deixis.reasoning.description_logic.justification import Justification, denial, justify, justify_all
-from deixis.reasoning.description_logic.materialisation import Materialisation
+from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
 from deixis.reasoning.description_logic.reasoners import first_inconsistent
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 from deixis.reasoning.errors import LimitError, NotEntailedError, SettingError

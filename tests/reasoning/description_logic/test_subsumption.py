@@ -7,13 +7,13 @@ import random
 import pyoxigraph as ox
 import pytest
 
-from deixis.learning.inferred_graph import everything_by_hermit, everything_that_follows, origin
+from deixis.learning.inference.inferred_graph import everything_by_hermit, everything_that_follows, origin
 from deixis.memory.semantic.rdf.after import After
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.rdf.package import packaged_quads
+from deixis.ontology.rdf.triples import iri, skolem
+from deixis.ontology.rdf.vocabulary import BASE, DX, W3C
 from deixis.ontology.tbox import default_ontology
-from deixis.ontology.triples import iri, skolem
-from deixis.ontology.vocabulary import BASE, DX, W3C
 from deixis.reasoning.description_logic.subsumption import (
     NOTHING,
     BeyondLessonsError,

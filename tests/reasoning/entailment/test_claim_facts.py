@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.grammar.layout.parser import parse_script
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.claim_facts import COMPARATIVES, ROWS, facts_of_claims
 from deixis.workflows.layouts.infer import infer, verdict_of

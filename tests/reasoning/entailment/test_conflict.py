@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.conflict import Conflict, compatible, find_conflict
 from deixis.reasoning.entailment.implications import Implications

@@ -8,7 +8,7 @@ import networkx as nx
 from hypothesis import given, settings
 from stated_facts import BA, FLAT, NODES, MakeGraph, R, Triple, atoms, axioms, facts, implications, some_facts
 
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.bounds import Order, meaning
 from deixis.reasoning.entailment.conflict import find_conflict

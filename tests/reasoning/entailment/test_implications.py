@@ -14,8 +14,8 @@ from pictures import bears, satisfying
 from stated_facts import BA, FLAT, NODES, ORDERED, MakeGraph, R, Triple, atoms, axioms, facts, implications, some_facts
 
 import deixis.reasoning.entailment.closed as module
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Relation, Relations
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.allen import ALL_ALLEN
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading, Relation
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.allen import ALL_ALLEN
+from deixis.ontology.relations.relation import Reading, Relation
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.conflict import compatible
 from deixis.reasoning.entailment.implications import Implications

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.allen import Allen
+from deixis.ontology.relations.allen import Allen
 from deixis.reasoning.geometry.allen import allen_relations
 
 Interval = tuple[int, int]

@@ -8,7 +8,7 @@ from operator import or_
 from hypothesis import given
 from hypothesis import strategies as st
 
-from deixis.ontology.allen import ALL_ALLEN, Allen
+from deixis.ontology.relations.allen import ALL_ALLEN, Allen
 from deixis.reasoning.geometry.allen import EndOrder, admitted, convex_hull, convex_pieces, convex_sets
 
 MASKS = st.integers(1, ALL_ALLEN)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.reasoning.geometry.rectangle import box_relations, scene_relations
 
 Boxes = NDArray[np.float64]

@@ -16,14 +16,14 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.perception.scene import Scene
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.answer import Grounding, Outcome
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding, Outcome
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DECIDED
 
 MakeGraph = Callable[..., RelationGraph]
@@ -252,7 +252,7 @@ def test_the_names_of_the_pairs_are_worked_out_once(
     graph_of: MakeGraph, full_script: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import deixis.reasoning.geometry.rectangle as rectangle
-    import deixis.reasoning.grounding.evidence.facts as facts
+    import deixis.reasoning.grounding.evidence.facts.facts as facts
 
     related, counts = rectangle.scene_relations, []
 

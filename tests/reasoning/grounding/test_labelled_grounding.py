@@ -9,15 +9,15 @@ from groundings import R, pairs
 from numpy.typing import NDArray
 
 from deixis.experiments.place_settings import formal_setting
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
-from deixis.reasoning.grounding.evidence.labels import Label
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.evidence.unary import LABEL_ERROR, UnaryWeights
+from deixis.reasoning.grounding.evidence.properties.labels import Label
+from deixis.reasoning.grounding.evidence.properties.unary import LABEL_ERROR, UnaryWeights
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.reasoning.grounding.ground import ground
 
 MakeGraph = Callable[..., RelationGraph]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.allen import Allen, allen_mask
+from deixis.ontology.relations.allen import Allen, allen_mask
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.chronology import TemporalOrder, Window

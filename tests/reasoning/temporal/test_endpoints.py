@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import ALL_ALLEN, Allen, members
+from deixis.ontology.relations.allen import ALL_ALLEN, Allen, members
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.endpoints import (

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.allen import ALL_ALLEN, Allen, allen_mask
+from deixis.ontology.relations.allen import ALL_ALLEN, Allen, allen_mask
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.temporal.bounds import Bounds

@@ -24,7 +24,7 @@ from deixis.cli.output import note_change
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.models.words import LearnedWords
     from deixis.perception.scene import Scene
     from deixis.session import Session
 
@@ -144,8 +144,8 @@ def _fitted(
     Raises DeixisError where no example teaches anything.
     """
     from deixis.errors import DeixisError
-    from deixis.learning.recollection import Recollection
-    from deixis.learning.words import example_pairs, fit, teaching
+    from deixis.learning.lessons.recollection import Recollection
+    from deixis.learning.models.words import example_pairs, fit, teaching
 
     taught, left_out = teaching(examples)
     recollection = Recollection(()) if no_memory else session.recollection()

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from deixis.perception.scene import Scene
     from deixis.reasoning.attributes.attribute import Attribute
     from deixis.reasoning.grounding.reference.answer import Question
-    from deixis.reasoning.grounding.reference.model import Model
+    from deixis.reasoning.grounding.reference.model.model import Model
     from deixis.workflows.descriptions.refer import Answerer
 
 

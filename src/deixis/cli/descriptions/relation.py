@@ -36,7 +36,7 @@ def relation(
 ) -> None:
     """Print the meaning of a relation word: both literal readings, and the graded model, learned or shipped."""
     from deixis.errors import UnknownTermError
-    from deixis.ontology.relation import nearest, plain_phrase
+    from deixis.ontology.relations.relation import nearest, plain_phrase
     from deixis.ontology.tbox import default_ontology
     from deixis.report.descriptions.relation import relation_lines, relation_to_dict
 
@@ -62,7 +62,7 @@ def relation(
 
 def _in_force(memory: Path | None, no_memory: bool) -> RelationModels:
     """Return the models of the memory, or the shipped ones where it has none; raise where a named memory is missing."""
-    from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
     from deixis.session import Session
 
     if no_memory:
@@ -77,7 +77,7 @@ def read_models(path: Path | None) -> RelationModels:
     """Return the shipped models, replaced by those of a Turtle file; raise OntologyError where the file has none."""
     from deixis.errors import OntologyError
     from deixis.ontology.models.relation_triples import models_from_turtle
-    from deixis.reasoning.grounding.evidence.meaning import shipped_models
+    from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
     if path is None:
         return shipped_models()

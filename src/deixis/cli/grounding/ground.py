@@ -32,8 +32,8 @@ from deixis.reasoning.grounding.options import EngineName, Select, ViewpointName
 
 if TYPE_CHECKING:
     from deixis.reasoning.attributes.attribute import Attribute
-    from deixis.reasoning.grounding.answer import Grounding
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.answers.answer import Grounding
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
     from deixis.workflows.grounding.dialogue import Ask
 
 
@@ -115,7 +115,7 @@ def ground(
 def _learned(memory: Path | None) -> tuple[Meaning, dict[str, Attribute]]:
     """Return the words and sizes that a memory has learned, or the shipped ones without a memory, and adjectives."""
     from deixis.memory.episodes.blackboard import has_episodes
-    from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+    from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
     from deixis.session import Session
 
     if memory is None:

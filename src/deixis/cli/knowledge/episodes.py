@@ -73,8 +73,8 @@ def add(
 ) -> None:
     """Add a statement with its times; without times it is a plain triple."""
     from deixis.errors import DeixisError
-    from deixis.memory.episodes.changes import Add
-    from deixis.memory.episodes.episode import Origin, Source, episodic
+    from deixis.memory.episodes.fluents.changes import Add
+    from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
     from deixis.reasoning.temporal.fluent import Statement
 
     if len(words) not in (2, 3):
@@ -97,9 +97,9 @@ def import_(
 ) -> None:
     """Add all fluents of a file, or nothing."""
     from deixis.grammar.files import read_text
-    from deixis.memory.episodes.changes import Add
-    from deixis.memory.episodes.episode import Origin, Source
     from deixis.memory.episodes.experiences import put_episode
+    from deixis.memory.episodes.fluents.changes import Add
+    from deixis.memory.episodes.fluents.episode import Origin, Source
     from deixis.workflows.knowledge.episodes import fluents_of_text, span_of
 
     fluents = fluents_of_text(read_text(file, str(file)), str(file), Source(Origin(origin.value), by))
@@ -120,7 +120,7 @@ def finish_(
     memory: MemoryDir = None,
 ) -> None:
     """State when fluents ceased to hold, by their ids or by a pattern."""
-    from deixis.memory.episodes.changes import Finish
+    from deixis.memory.episodes.fluents.changes import Finish
 
     with _board(memory) as board:
         before, time = board.sequence, board.seconds() if at is None else at
@@ -143,7 +143,7 @@ def update(
     memory: MemoryDir = None,
 ) -> None:
     """Give fluents new values, by their ids or by a pattern and a window."""
-    from deixis.memory.episodes.changes import Update
+    from deixis.memory.episodes.fluents.changes import Update
 
     with _board(memory) as board:
         before = board.sequence
@@ -164,7 +164,7 @@ def delete(
     memory: MemoryDir = None,
 ) -> None:
     """Remove fluents as if they had never been stated, by their ids or by a pattern and a window."""
-    from deixis.memory.episodes.changes import Delete
+    from deixis.memory.episodes.fluents.changes import Delete
 
     with _board(memory) as board:
         before = board.sequence

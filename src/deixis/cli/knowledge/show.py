@@ -16,7 +16,7 @@ from deixis.cli.common import (
 from deixis.cli.completion import complete_layouts
 
 if TYPE_CHECKING:
-    from deixis.learning.concept import CountedConcept
+    from deixis.learning.layouts.concept import CountedConcept
 
 
 class LayoutFormat(StrEnum):
@@ -56,14 +56,14 @@ def show(
     if as_json:
         print_json(_to_json(found, text))
     else:
-        from deixis.ontology.triples import turtle
+        from deixis.ontology.rdf.triples import turtle
 
         sys.stdout.write(turtle(found.shapes() if format is LayoutFormat.SHACL else found.owl(relations)))
 
 
 def _to_json(found: CountedConcept, text: str) -> dict[str, Any]:
-    from deixis.ontology.export import fact_to_dict
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.export import fact_to_dict
+    from deixis.ontology.graph.facts import Fact
 
     concept = found.layout
     counts = [

@@ -11,7 +11,7 @@ import typer
 from deixis.cli.common import NO, UNDECIDED, AsJson, Script, TimeLimit, print_json, print_line, print_lines
 
 if TYPE_CHECKING:
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
     from deixis.workflows.layouts.infer import Inference
 
 
@@ -75,7 +75,7 @@ def _verdict(script: str, time_limit: float, as_json: bool) -> int:
 
 
 def _explain(inference: Inference, fact: Fact, as_json: bool) -> None:
-    from deixis.ontology.export import fact_to_dict
+    from deixis.ontology.graph.export import fact_to_dict
     from deixis.report.json_answers import derivation_to_dict
     from deixis.workflows.layouts.infer import require_names
 

@@ -38,7 +38,7 @@ def parse(
 
         print_lines(script_lines(parsed))
     else:
-        from deixis.ontology.export import graph_to_dot, graph_to_turtle
+        from deixis.ontology.graph.export import graph_to_dot, graph_to_turtle
 
         written = graph_to_turtle if format is GraphFormat.TURTLE else graph_to_dot
         sys.stdout.write(written(parsed.graph()))

@@ -24,7 +24,7 @@ from deixis.deadline import Deadline
 
 if TYPE_CHECKING:
     from deixis.reasoning.description_logic.justification import Justification
-    from deixis.reasoning.description_logic.materialisation import InferenceStep
+    from deixis.reasoning.description_logic.owl_rl.materialisation import InferenceStep
     from deixis.reasoning.description_logic.terms import Triple
 
 
@@ -153,7 +153,7 @@ def _explain(stated: list[Triple], asked: Triple, every: bool, turtle: bool, tim
 
 def _steps(found: Justification) -> tuple[InferenceStep, ...]:
     """Return the rule steps from a justification's axioms to its conclusion; none where the rules do not reach it."""
-    from deixis.reasoning.description_logic.materialisation import Materialisation
+    from deixis.reasoning.description_logic.owl_rl.materialisation import Materialisation
     from deixis.reasoning.description_logic.terms import read_ntriples
 
     known = Materialisation(read_ntriples(found.ntriples))

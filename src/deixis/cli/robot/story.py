@@ -18,9 +18,9 @@ from deixis.perception.scene import Scene
 from deixis.plots.check import plot_check
 from deixis.plots.figure import require_picture
 from deixis.plots.grounding import plot_grounding
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.evidence.meaning import Meaning
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.report.grounding.ground import grounding_lines
 from deixis.report.layouts.script import check_lines, inference_lines, learned_lines, script_lines
 from deixis.report.scenes.seen import answer_words

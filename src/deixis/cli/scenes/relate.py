@@ -64,7 +64,7 @@ def relate(
     related = Related(calculus, seen.ids, codes)
     fitting = None
     if words:
-        from deixis.reasoning.grounding.evidence.scene_words import scene_words
+        from deixis.reasoning.grounding.evidence.claims.scene_words import scene_words
 
         fitting = scene_words(seen.boxes, seen.poses)
     subject, other = (*chosen, None, None)[:2]

@@ -152,7 +152,7 @@ def _lines(found: Simulation) -> Iterator[str]:
 
 def simulation_to_dict(found: Simulation, view: CameraSetup, seed: int) -> dict[str, Any]:
     """Return a simulation without its points as plain data: the camera with its pose, and each thing with its label."""
-    from deixis.ontology.export import fact_to_dict
+    from deixis.ontology.graph.export import fact_to_dict
     from deixis.perception.formats.scene_json import scene_to_dict
 
     camera, sensor = found.camera, view.sensor

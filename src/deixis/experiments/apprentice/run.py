@@ -21,7 +21,7 @@ from deixis.experiments.apprentice.scoring import Count, TableScore, score, tota
 from deixis.experiments.apprentice.tables import Tampered, lay_tampered
 from deixis.extras import require
 from deixis.grammar.utterances import Utterance
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.simulator.cameras.depth import DepthSensor
 from deixis.perception.simulator.teacher import Teacher

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from deixis.experiments.apprentice.tables import Tampered, TrueMistake
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import MistakeKind
 from deixis.robot.looking import Fault, Look

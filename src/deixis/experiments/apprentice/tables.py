@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.grammar.script import Script
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.simulator.laying import LaidTable, LaidThing, Placement, lay, top_under
 from deixis.perception.simulator.meshes.tableware import make
 from deixis.reasoning.comparison.explanation import MistakeKind

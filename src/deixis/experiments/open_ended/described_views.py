@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
 from deixis.perception.clouds.cloud import PointCloud
-from deixis.perception.features.d2_extents import D2ExtentsDescriber
 from deixis.perception.features.describer import Describer
-from deixis.perception.features.good import GoodDescriber
-from deixis.perception.features.spin_images import SpinImageDescriber
-from deixis.perception.features.upright import UprightDescriber
+from deixis.perception.features.descriptors.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.descriptors.good import GoodDescriber
+from deixis.perception.features.descriptors.spin_images import SpinImageDescriber
+from deixis.perception.features.descriptors.upright import UprightDescriber
 from deixis.perception.recognition.learners.view_features import ViewFeatures, features_of
 
 DESCRIBERS: tuple[Describer, ...] = (

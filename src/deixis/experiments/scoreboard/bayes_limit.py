@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.experiments.generated_tables import GeneratedTable, nearest, neighbours
-from deixis.ontology.relation import Reading
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import box_relations
-from deixis.reasoning.grounding.matching.exact import exact, maps_within
 from deixis.reasoning.grounding.matching.problem import Problem
+from deixis.reasoning.grounding.matching.search.exact import exact, maps_within
 
 MAX_MAPS = 1_000_000
 IMPOSSIBLE_VALUE = -1e3  # value of an impossible fact

@@ -16,11 +16,11 @@ from deixis.experiments.scoreboard.calibration import Forecasts
 from deixis.experiments.scoreboard.cases import Case, Group, Setting
 from deixis.experiments.scoreboard.contestants import Contestant, ContestantAnswer
 from deixis.experiments.scoreboard.statistics import Interval, holm, interval, paired_p
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.reasoning.grounding.answers.symmetry import interchangeable
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
-from deixis.reasoning.grounding.symmetry import interchangeable
 
 MEASURES = ("right", "grouped", "facts", "value")
 ALPHA = 0.05

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from deixis.experiments.cross_validation import learned_meanings
 from deixis.experiments.generated_tables import GeneratedTable, generate
 from deixis.experiments.photographs import photographs
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.evidence.evidence import Evidence, evidence_from
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 PHOTOGRAPHS = 0
 """Number of objects that stands for photographs, which have any number."""

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.experiments.scoreboard.cases import Case
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED, Meaning
-from deixis.reasoning.grounding.evidence.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.properties.unary import UnaryWeights
+from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED, Meaning
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.options import EngineName
 

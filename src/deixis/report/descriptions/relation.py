@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import exp
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.allen import SYMBOLS
 from deixis.ontology.models.relations import RelationModel, RelationModels
-from deixis.ontology.relation import Relation, Relations
+from deixis.ontology.relations.allen import SYMBOLS
+from deixis.ontology.relations.relation import Relation, Relations
 
 if TYPE_CHECKING:
-    from deixis.learning.words import LearnedWords
+    from deixis.learning.models.words import LearnedWords
     from deixis.workflows.descriptions.learn_reference import LearnedReference
 
 

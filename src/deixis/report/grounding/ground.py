@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from deixis.grammar.script import Script
     from deixis.ontology.lessons.types import Alternative, Match
-    from deixis.reasoning.grounding.answer import FactOutcome, Grounding, LeftOut, Member, Pivotal
+    from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding, LeftOut, Member, Pivotal
 
 MAX_LISTED = 12
 """Maximum number of names, and of pivotal facts, to list one by one."""
@@ -39,7 +39,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     list of str
         A line for each match and each finding; doubtful and violated ones carry a mark.
     """
-    from deixis.reasoning.grounding.answer import Outcome
+    from deixis.reasoning.grounding.answers.answer import Outcome
 
     objects = found.object_matches
     lines = [line for match in objects.values() for line in match_lines(match)] or ["No object was found."]
@@ -178,7 +178,7 @@ def kinds_lines(script: Script) -> list[str]:
 
 def _standing_line(found: Grounding) -> str:
     """Return whether the answer is proved the best, by which engine, how long it took, and the error of sampling."""
-    from deixis.reasoning.grounding.answer import Standing
+    from deixis.reasoning.grounding.answers.answer import Standing
     from deixis.reasoning.grounding.options import EngineName
 
     if found.proved_best:

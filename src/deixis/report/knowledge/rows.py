@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.memory.semantic.queries.results import QueryResult
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
     from deixis.perception.scene import Scene
-    from deixis.reasoning.grounding.answer import Grounding
+    from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.retrieve import Retrieval
     from deixis.workflows.layouts.imagine import Imagination

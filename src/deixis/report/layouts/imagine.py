@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from deixis.answers import share
-from deixis.ontology.export import fact_to_dict
-from deixis.ontology.facts import Fact
-from deixis.ontology.sizes import Extent
+from deixis.ontology.graph.export import fact_to_dict
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.things.sizes import Extent
 from deixis.perception.formats.scene_json import scene_to_dict
 from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.report.json_answers import claim_outcome_to_dict

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.claims import Claim
-from deixis.ontology.export import claim_to_dict, fact_to_dict
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.export import claim_to_dict, fact_to_dict
 from deixis.report.json_answers import script_to_dict
 from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
     from deixis.grammar.reading import Reading, ReadSentence, StatedFact
     from deixis.grammar.script import Script
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.facts import Fact
 
 
 def reading_lines(script: Script) -> list[str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence, Sized
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from deixis.ontology.kinds import with_article
+from deixis.ontology.things.kinds import with_article
 from deixis.report.grounding.ground import left_out_lines, violation_text
 from deixis.report.marks import doubt, violation
 
@@ -18,8 +18,8 @@ MAX_INFERRED_LISTED = 20_000
 
 if TYPE_CHECKING:
     from deixis.grammar.script import Script
-    from deixis.ontology.claims import Claim
-    from deixis.ontology.facts import Fact
+    from deixis.ontology.graph.claims import Claim
+    from deixis.ontology.graph.facts import Fact
     from deixis.reasoning.comparison.checking import RoleCheck
     from deixis.reasoning.comparison.claims import ClaimOutcome
     from deixis.reasoning.entailment.why_not import WhyNot

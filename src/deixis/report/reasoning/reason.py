@@ -9,7 +9,7 @@ from typing import Any
 from deixis.memory.semantic.rdf.files import short
 from deixis.reasoning.description_logic.entailment import Entailment
 from deixis.reasoning.description_logic.justification import Justification
-from deixis.reasoning.description_logic.materialisation import InferenceStep
+from deixis.reasoning.description_logic.owl_rl.materialisation import InferenceStep
 from deixis.reasoning.description_logic.terms import Triple, iri_of
 from deixis.reasoning.description_logic.verbalisation import Words
 from deixis.report.marks import violation

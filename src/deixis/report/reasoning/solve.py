@@ -149,7 +149,7 @@ def _constraint(network: Network, c: Constraint) -> dict[str, Any]:
 
 
 def _step(step: Step, networks: Sequence[Network]) -> dict[str, Any]:
-    from deixis.ontology.facts import Source
+    from deixis.ontology.graph.facts import Source
 
     return {
         "first": step.claim.first,

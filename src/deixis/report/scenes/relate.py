@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding.evidence.scene_words import SceneWords
+    from deixis.reasoning.grounding.evidence.claims.scene_words import SceneWords
     from deixis.reasoning.qualitative.relate import Related
 
 

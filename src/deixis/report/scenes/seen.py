@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Recognised, Taught
+    from deixis.learning.views.views import Recognised, Taught
     from deixis.perception.recognition.recogniser import Candidate, Recognition
     from deixis.perception.scene import Scene
 

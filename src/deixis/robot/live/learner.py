@@ -11,9 +11,9 @@ from typing import ClassVar
 
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
-from deixis.memory.episodes.changes import Add, Logged
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
+from deixis.memory.episodes.fluents.changes import Add, Logged
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import EpisodicFluent
+from deixis.memory.episodes.fluents.episode import EpisodicFluent
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import CALLED, FAULT, LAYOUT, NOT_CALLED
 from deixis.robot.live.learner import SAYS

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from deixis.errors import DeixisError
-from deixis.memory.episodes.changes import Change
+from deixis.memory.episodes.fluents.changes import Change
 from deixis.memory.errors import MemoryWriteError
 from deixis.printable import printed_line
 from deixis.robot.modules import Board
@@ -17,8 +17,8 @@ class Outbox:
     Examples
     --------
     >>> from deixis.memory.episodes.blackboard import Blackboard
-    >>> from deixis.memory.episodes.changes import Add, Finish
-    >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+    >>> from deixis.memory.episodes.fluents.changes import Add, Finish
+    >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
     >>> from deixis.robot.modules import Module, ModuleBoard
     >>> from deixis.reasoning.temporal.fluent import Pattern
     >>> class Greeter(Module):

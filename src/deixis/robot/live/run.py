@@ -10,9 +10,9 @@ from pathlib import Path
 
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Finish, Logged
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import put_episode
+from deixis.memory.episodes.fluents.changes import Add, Finish, Logged
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern

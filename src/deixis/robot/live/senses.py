@@ -28,8 +28,8 @@ from numpy.typing import NDArray
 from deixis.errors import DeixisError
 from deixis.grammar.activities import announced_thing
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
-from deixis.memory.episodes.changes import Add, Change, Delete, Finish, Logged, Update
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Change, Delete, Finish, Logged, Update
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.aim import SURE, Pointing, pointed_at

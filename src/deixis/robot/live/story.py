@@ -365,7 +365,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     >>> [words.text for words in story.words]
     ['First the plate.', 'Finally the cup.']
     """
-    from deixis.ontology.kinds import plain_name
+    from deixis.ontology.things.kinds import plain_name
     from deixis.perception.simulator.cameras.camera import chair_camera
     from deixis.perception.simulator.films.camera_paths import camera_path
     from deixis.perception.simulator.films.motion import Bring, Rest, Stage

@@ -14,7 +14,7 @@ from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.reasoning.attributes.attribute import Attribute, Example
 from deixis.reasoning.errors import DescriptionError
-from deixis.reasoning.grounding.reference.properties import LIGHTNESS, MIDDLE, SIDES, SIZES
+from deixis.reasoning.grounding.reference.features.properties import LIGHTNESS, MIDDLE, SIDES, SIZES
 
 DETERMINERS = frozenset(
     ["the", "a", "an", "this", "that", "these", "those", "my", "your", "his", "her", "our", "their"]

@@ -23,8 +23,8 @@ from deixis.workflows.descriptions.refer import (
 )
 
 if TYPE_CHECKING:
-    from deixis.reasoning.grounding.reference.fitting import Example
-    from deixis.reasoning.grounding.reference.model import Model
+    from deixis.reasoning.grounding.reference.model.fitting import Example
+    from deixis.reasoning.grounding.reference.model.model import Model
 
 Array = NDArray[np.float64]
 
@@ -83,10 +83,10 @@ def learn_reference(
     Notes
     -----
     Penalised maximum likelihood, as for the shipped weights
-    (:func:`deixis.reasoning.grounding.reference.fitting.fit`). Weights of words that no description has stay.
+    (:func:`deixis.reasoning.grounding.reference.model.fitting.fit`). Weights of words that no description has stay.
     """
     from deixis.ontology.tbox import default_ontology
-    from deixis.reasoning.grounding.reference.fitting import fit, initial_weights
+    from deixis.reasoning.grounding.reference.model.fitting import fit, initial_weights
 
     if not 0 < strength < np.inf:
         raise SettingError(f"the strength of the shipped weights must be above 0, got {strength:g}")
@@ -118,7 +118,7 @@ def _examples(lines: Iterable[str], folder: Path) -> tuple[list[Example], list[s
 
 
 def _example(line: str, folder: Path, scenes: dict[str, Scene]) -> Example:
-    from deixis.reasoning.grounding.reference.fitting import Example
+    from deixis.reasoning.grounding.reference.model.fitting import Example
 
     data = line_of_batch(line, ("text", "scene", "target"))
     scene, query = scene_of_line(data, folder, scenes), read_description(data["text"])
@@ -152,7 +152,7 @@ def write_reference(model: Model, file: Path, source: str) -> None:
         If the file cannot be written.
     """
     from deixis.ontology.tbox import default_ontology
-    from deixis.reasoning.grounding.reference.fitting import named_weights
+    from deixis.reasoning.grounding.reference.model.fitting import named_weights
 
     data = {"source": source, "weights": named_weights(model.weights, default_ontology().colours)}
     try:
@@ -191,7 +191,7 @@ def read_reference(file: Path) -> Model:
 
 def _weights(data: Any, file: Path) -> dict[str, Array]:
     from deixis.ontology.tbox import default_ontology
-    from deixis.reasoning.grounding.reference.fitting import weight_names
+    from deixis.reasoning.grounding.reference.model.fitting import weight_names
 
     blocks = data.get("weights") if isinstance(data, dict) else None
     if not isinstance(blocks, dict) or not all(isinstance(values, dict) for values in blocks.values()):

@@ -22,8 +22,8 @@ from deixis.workflows.layouts.read import as_scene
 
 if TYPE_CHECKING:
     from deixis.reasoning.attributes.attribute import Attribute
-    from deixis.reasoning.grounding.reference.model import Model
-    from deixis.reasoning.grounding.reference.room import Room
+    from deixis.reasoning.grounding.reference.features.room import Room
+    from deixis.reasoning.grounding.reference.model.model import Model
 
 Array = NDArray[np.float64]
 Answerer = Callable[[Question], bool | None]
@@ -85,7 +85,7 @@ def refer(
     Notes
     -----
     The model is log-linear with latent landmarks and viewers
-    (:mod:`deixis.reasoning.grounding.reference.model`).
+    (:mod:`deixis.reasoning.grounding.reference.model.model`).
 
     Examples
     --------
@@ -307,8 +307,8 @@ def model_with(weights: Mapping[str, Array]) -> Model:
         The model.
     """
     from deixis.ontology.tbox import default_ontology
-    from deixis.reasoning.grounding.reference.model import Lexis, Model
-    from deixis.reasoning.grounding.reference.nouns import Nouns
+    from deixis.reasoning.grounding.reference.features.nouns import Nouns
+    from deixis.reasoning.grounding.reference.model.model import Lexis, Model
 
     ontology = default_ontology()
     nouns = Nouns(ontology.lexicon)
@@ -336,7 +336,7 @@ def _oracle(target: str) -> Answerer:
 def _answer(
     text: str, query: Query, scene: Scene, probabilities: Array, question: Question | None, turns: tuple[Turn, ...]
 ) -> Reference:
-    from deixis.reasoning.grounding.reference.frames import frame_of
+    from deixis.reasoning.grounding.reference.model.frames import frame_of
     from deixis.reasoning.grounding.reference.wording import paraphrase
 
     paraphrased = paraphrase(query)

@@ -14,9 +14,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Delete
-from deixis.memory.episodes.episode import Origin, Source, episodic
-from deixis.ontology.triples import content_key
+from deixis.memory.episodes.fluents.changes import Add, Delete
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
+from deixis.ontology.rdf.triples import content_key
 from deixis.perception.scene import Scene
 from deixis.reasoning.attributes.attribute import MEASURES, Attribute, Example
 from deixis.reasoning.errors import DescriptionError

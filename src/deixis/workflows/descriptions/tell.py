@@ -10,8 +10,8 @@ from deixis.deadline import Deadline
 from deixis.grammar.read import is_english
 from deixis.grammar.reading import StatedFact, joined_choices
 from deixis.grammar.script import Declaration, Script
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.reasoning.errors import OutOfTimeError
 from deixis.workflows.descriptions.telling import (
     NOT_READ,
@@ -166,7 +166,7 @@ def _without_numbers(stated: Sequence[StatedFact]) -> list[StatedFact]:
 
 def _implied(script: Script, stated: Sequence[StatedFact], deadline: Deadline) -> tuple[list[int], bool]:
     """Return the places of facts that follow from the others, and whether all were examined in time."""
-    from deixis.ontology.graph import RelationGraph
+    from deixis.ontology.graph.graph import RelationGraph
     from deixis.reasoning.entailment.closing import consistent
     from deixis.reasoning.entailment.demands import demands_of
     from deixis.reasoning.entailment.redundant import redundant_facts

@@ -15,11 +15,11 @@ from deixis.errors import DeixisError
 from deixis.grammar.english.telling.telling import MAX_NUMBERED, Designation, ToldSentence
 from deixis.grammar.english.telling.wording import relation_words
 from deixis.grammar.reading import StatedFact
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
-from deixis.reasoning.grounding.evidence.aims import stated_direction
-from deixis.reasoning.grounding.evidence.colours import colour_terms
+from deixis.reasoning.grounding.evidence.claims.aims import stated_direction
+from deixis.reasoning.grounding.evidence.properties.colours import colour_terms
 from deixis.reasoning.grounding.reference.expressions import (
     Attributes,
     Description,

@@ -14,8 +14,8 @@ from deixis.grammar.english.telling.telling import MAX_NUMBERED, Designation, To
 from deixis.grammar.english.vocabulary.adjectives import adjectives
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.reading import Reading, StatedFact, joined_choices
-from deixis.ontology.claims import Claim
-from deixis.ontology.facts import Fact
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.facts import Fact
 from deixis.ontology.tbox import Ontology, default_ontology
 
 ROUNDS = 8

@@ -9,8 +9,8 @@ from typing import Any, TextIO
 
 from deixis.grammar.script import Script
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.reasoning.grounding.questions.inquiry import Exchange
 from deixis.reasoning.grounding.questions.situation import Situation

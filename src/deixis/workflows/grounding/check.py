@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.scene_evidence import (
+from deixis.learning.lessons.scene_evidence import (
     conflict_notes,
     graph_evidence,
     scene_labels,
@@ -26,9 +26,9 @@ from deixis.reasoning.comparison.claims import violated
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.engines import engine_named
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED
-from deixis.reasoning.grounding.hypotheses import AS_IT_STANDS
+from deixis.reasoning.grounding.engines.registry import engine_named
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
+from deixis.reasoning.grounding.hypotheses.hypotheses import AS_IT_STANDS
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.workflows.layouts.read import as_scene, as_script, is_script_file
 
@@ -127,7 +127,7 @@ def check(
     >>> [one.role for one in found.table.roles if one.verdict == "missing"]
     ['water_glass']
     """
-    from deixis.learning.lesson import layout_concept
+    from deixis.learning.lessons.lesson import layout_concept
     from deixis.reasoning.comparison.checking import checked_table
 
     if not isinstance(layout, str | Path | Script):

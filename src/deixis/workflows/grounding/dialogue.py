@@ -13,7 +13,7 @@ from typing import Any, Protocol, TextIO
 import numpy as np
 
 from deixis.errors import DeixisError
-from deixis.ontology.relation import nearest
+from deixis.ontology.relations.relation import nearest
 from deixis.printable import shortened, visible_line
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.inquiry import ExchangeOutcome, Inquiry

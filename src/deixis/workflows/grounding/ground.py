@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.learning.attributes import attribute_ratios
-from deixis.learning.scene_evidence import (
+from deixis.learning.lessons.scene_evidence import (
     conflict_notes,
     graph_evidence,
     shortlisted_evidence,
@@ -27,16 +27,16 @@ from deixis.learning.scene_evidence import (
     unit_notes,
     viewpoint_notes,
 )
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.lessons.types import Match
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.conflict import Conflict, find_conflict
 from deixis.reasoning.entailment.implications import TIME_LIMIT, Implications
 from deixis.reasoning.errors import LimitError, OutOfTimeError, SettingError, require_time_limit
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
-from deixis.reasoning.grounding.evidence.meaning import SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED, Meaning
 from deixis.reasoning.grounding.ground import ground as ground_evidence
 from deixis.reasoning.grounding.memory_budget import (
     DEFAULT_MEMORY_LIMIT,

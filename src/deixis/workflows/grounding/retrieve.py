@@ -18,11 +18,11 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.likeness import ComparedScene, Comparison, Described, Likeness, compared_scene
 from deixis.reasoning.comparison.retrieval import Progress, rank_layouts, rank_scenes
-from deixis.reasoning.grounding.evidence.labels import category_of
-from deixis.reasoning.grounding.evidence.meaning import Meaning
+from deixis.reasoning.grounding.evidence.properties.labels import category_of
+from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 if TYPE_CHECKING:
-    from deixis.learning.recollection import Recollection
+    from deixis.learning.lessons.recollection import Recollection
     from deixis.ontology.lessons.types import LayoutConcept
 
 MIN_LABEL_CONFIDENCE = 0.5

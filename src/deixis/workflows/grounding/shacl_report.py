@@ -7,18 +7,18 @@ from itertools import product
 
 import pyoxigraph as ox
 
-from deixis.ontology.claims import Claim
+from deixis.ontology.graph.claims import Claim
 from deixis.ontology.lessons.shapes import layout_shapes, scene_data
 from deixis.ontology.lessons.types import LayoutConcept
-from deixis.ontology.relation import Relation, Relations
-from deixis.ontology.triples import with_blank_nodes
+from deixis.ontology.rdf.triples import with_blank_nodes
+from deixis.ontology.relations.relation import Relation, Relations
 from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.checking import TableCheck
 from deixis.reasoning.comparison.claims import ClaimVerdict
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import WordDegrees
 from deixis.reasoning.grounding.evidence.evidence import HELD_FROM
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.degrees import WordDegrees
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 
 def shacl_report(layout: LayoutConcept, scene: Scene, check: TableCheck, relations: Relations) -> tuple[bool, str]:

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
 from deixis.perception.scene import Scene
-from deixis.reasoning.grounding.answer import Grounding
-from deixis.reasoning.grounding.engines import engine_named
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.registry import engine_named
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.ground import ground as ground_evidence
-from deixis.reasoning.grounding.hypotheses import Side, side_text
+from deixis.reasoning.grounding.hypotheses.hypotheses import Side, side_text
+from deixis.reasoning.grounding.hypotheses.viewpoint import Viewpoint, Viewpoints, recover_viewpoint
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
 from deixis.reasoning.grounding.options import DECIDED, Select
-from deixis.reasoning.grounding.viewpoint import Viewpoint, Viewpoints, recover_viewpoint
 
 MIN_VIEWPOINT_PROBABILITY, MAX_VIEWPOINTS = 0.005, 8
 """Least probability of a viewpoint that contributes to the probabilities of matches, and the most such viewpoints."""

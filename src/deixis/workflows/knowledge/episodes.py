@@ -16,12 +16,12 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Change, Logged
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, Experience, Holding, episode, experiences
+from deixis.memory.episodes.fluents.changes import Add, Change, Logged
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.episodes.subscription import Subscription
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -316,10 +316,10 @@ def _spatial(
 def _logical(fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: Deadline) -> Iterator[str]:
     import pyoxigraph as ox
 
-    from deixis.memory.episodes.rdf import TYPE, statement_triple, thing_iri
+    from deixis.memory.episodes.rdf.observations import TYPE, statement_triple, thing_iri
     from deixis.memory.semantic.rdf.graphs import GraphName
     from deixis.memory.semantic.rdf.package import packaged
-    from deixis.ontology.triples import with_blank_nodes
+    from deixis.ontology.rdf.triples import with_blank_nodes
     from deixis.reasoning.description_logic.entailment import LogicEngine, entail
 
     triples = set(packaged()[GraphName.ONTOLOGY])

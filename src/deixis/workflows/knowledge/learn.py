@@ -13,7 +13,7 @@ from deixis.knowledge_store import KnowledgeStore
 from deixis.ontology.lessons.types import ANONYMOUS
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import InconsistencyError, NothingFoundError, SettingError
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
 from deixis.reasoning.grounding.options import DEFAULT_TIME_LIMIT
 from deixis.version import VERSION
 from deixis.view_store import ViewStore, views_of_matches
@@ -22,7 +22,7 @@ from deixis.workflows.layouts.read import as_scene, as_script
 from deixis.workflows.scenes.views_of_lessons import keep_lessons
 
 if TYPE_CHECKING:
-    from deixis.learning.views import KeptName, Taught
+    from deixis.learning.views.views import KeptName, Taught
     from deixis.memory.journal import Part
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson
@@ -137,7 +137,7 @@ def _lesson(
     events: Sequence[str],
 ) -> tuple[Learned, list[View]]:
     """Return the lesson that a script and a scene are, not kept yet, and its views; put its id among those taken."""
-    from deixis.learning.lesson import Occasion, layout_name, lesson_of
+    from deixis.learning.lessons.lesson import Occasion, layout_name, lesson_of
     from deixis.ontology.lessons.types import next_lesson_id
 
     script, scene = as_script(script, knowledge.ontology), as_scene(scene)

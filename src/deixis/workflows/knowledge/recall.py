@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 
 from deixis.answers import Answer
 from deixis.grammar.recall.questions import Moment, RecallQuestion, RecallQuestionError, When, read_question
-from deixis.memory.episodes.episode import EpisodicFluent, Origin
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin
 from deixis.memory.episodes.search import Edge, Event, FluentSearch, Pick
 from deixis.ontology.inflection import singular
-from deixis.ontology.kinds import plain_name
 from deixis.ontology.tbox import Ontology, default_ontology
+from deixis.ontology.things.kinds import plain_name
 from deixis.reasoning.errors import SettingError
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Recall(Answer):
     Examples
     --------
     >>> from deixis.memory.episodes.blackboard import Blackboard
-    >>> from deixis.memory.episodes.episode import Origin, Source, episodic
+    >>> from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
     >>> board, seen = Blackboard.transient(datetime(2026, 5, 1, 12, tzinfo=UTC)), Source(Origin.SEEN, "tracker")
     >>> facts = (("t1", "isA", "fork"), ("t2", "isA", "plate"), ("t1", "left", "t2"))
     >>> for fact in facts:

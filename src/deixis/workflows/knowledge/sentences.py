@@ -20,7 +20,7 @@ from deixis.grammar.layout.format import format_script
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Script, Statement
-from deixis.learning.lesson import Occasion, lesson_of
+from deixis.learning.lessons.lesson import Occasion, lesson_of
 from deixis.perception.formats.scene_json import read_scene
 from deixis.version import VERSION
 from deixis.workflows.grounding.ground import GroundingRequest, answer
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.read import Provenance
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.ontology.tbox import Ontology
-    from deixis.reasoning.grounding.evidence.meaning import Meaning
+    from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 
 def plain(text: str) -> str:

@@ -21,13 +21,13 @@ from typing import TYPE_CHECKING, Any
 from deixis.answers import Answer, count
 from deixis.errors import DeixisError
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
+from deixis.learning.views.teachings import Teaching, Teachings, boxes_key, prevailing, teachings_of, written
 from deixis.memory.episodes.blackboard import open_episodes
-from deixis.memory.episodes.changes import Change, Delete, Update
-from deixis.memory.episodes.episode import EVENT, EpisodicFluent, Origin
 from deixis.memory.episodes.experiences import without_lessons
+from deixis.memory.episodes.fluents.changes import Change, Delete, Update
+from deixis.memory.episodes.fluents.episode import EVENT, EpisodicFluent, Origin
 from deixis.memory.journal import Part, write_together
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.things.kinds import plain_name
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.fluent import Statement
@@ -375,7 +375,7 @@ def _revised(chosen: _Chosen, knowledge: KnowledgeStore, lessons: Sequence[str])
 
 def _teachings(memory: LevelMemory, knowledge: KnowledgeStore) -> dict[str, Teachings]:
     """Return all teachings of all views."""
-    from deixis.memory.perceptual import keys
+    from deixis.memory.perceptual.database import keys
     from deixis.memory.semantic.rdf.links import all_links
 
     stored, lessons = memory.teachings(), memory.lessons_of_views()
@@ -434,7 +434,7 @@ def _write(
     episodes: Part | None,
 ) -> None:
     """Write what is left of the teachings of views, remove the lessons, and change the episodes."""
-    from deixis.learning.views import batch_without
+    from deixis.learning.views.views import batch_without
     from deixis.memory.semantic.rdf.links import Link
 
     gone = [view for view, turns in after.items() if not turns]

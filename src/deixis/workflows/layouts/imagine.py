@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from deixis.answers import Answer, count
 from deixis.deadline import Deadline
 from deixis.grammar.script import Script
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.kinds import Kind, Kinds, with_article
-from deixis.ontology.sizes import SizeRange
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.things.kinds import Kind, Kinds, with_article
+from deixis.ontology.things.sizes import SizeRange
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict
 from deixis.reasoning.entailment.claim_facts import facts_of_claims, with_facts_of_claims

@@ -12,8 +12,8 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.layout.parser import parse_script
 from deixis.grammar.script import Script
-from deixis.ontology.facts import Fact
-from deixis.ontology.relation import Relation, nearest
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.relations.relation import Relation, nearest
 from deixis.reasoning.constraints.proof import Proof, Rule
 from deixis.reasoning.entailment.claim_facts import ClaimFact, facts_of_claims, with_facts_of_claims
 from deixis.reasoning.entailment.closing import consistent

@@ -14,10 +14,10 @@ from deixis.deadline import Deadline
 from deixis.errors import DeixisError
 from deixis.extras import require
 from deixis.grammar.script import Script
-from deixis.ontology.facts import Fact
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relation
-from deixis.ontology.sizes import Extent, Outline, SizeRange
+from deixis.ontology.graph.facts import Fact
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relation
+from deixis.ontology.things.sizes import Extent, Outline, SizeRange
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.laying import (

@@ -14,10 +14,10 @@ from deixis.errors import DeixisError
 from deixis.grammar.layout.names import key_of
 from deixis.grammar.reading import Reading
 from deixis.grammar.script import Mention, RelationStatement, Script, mentions
-from deixis.ontology.claims import Claim
-from deixis.ontology.export import ON_SURFACE
-from deixis.ontology.facts import Fact, Source
-from deixis.ontology.kinds import plain_name
+from deixis.ontology.graph.claims import Claim
+from deixis.ontology.graph.export import ON_SURFACE
+from deixis.ontology.graph.facts import Fact, Source
+from deixis.ontology.things.kinds import plain_name
 from deixis.workflows.layouts.read import as_script
 
 LINT_TIME_LIMIT = 5.0

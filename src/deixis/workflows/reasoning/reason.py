@@ -11,7 +11,7 @@ import pyoxigraph as ox
 from deixis.memory.semantic.rdf.files import PREFIXES, read_quads
 from deixis.memory.semantic.rdf.graphs import GraphName
 from deixis.memory.semantic.store import SemanticMemory
-from deixis.ontology.triples import with_blank_nodes
+from deixis.ontology.rdf.triples import with_blank_nodes
 from deixis.reasoning.description_logic.terms import Triple, read_ntriples
 
 _PREFIX = re.compile(r"^\s*@?prefix\s+([\w.-]*):\s*<([^<>\s]*)>", re.IGNORECASE | re.MULTILINE)

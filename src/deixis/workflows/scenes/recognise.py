@@ -11,7 +11,7 @@ from deixis.view_store import ViewStore
 from deixis.workflows.layouts.read import as_scene
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Recognised
+    from deixis.learning.views.views import Recognised
     from deixis.memory.perceptual.protocol import Progress
 
 
@@ -44,7 +44,7 @@ def recognise(
     SceneError
         If a file is not a cloud.
     """
-    from deixis.learning.views import recognise as recognise_clouds
+    from deixis.learning.views.views import recognise as recognise_clouds
 
     scene = as_scene(scene)
     clouds = [scene.cloud_of(thing.id) if thing.cloud is not None else None for thing in scene.objects]

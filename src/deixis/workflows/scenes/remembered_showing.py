@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import EpisodicFluent, Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.workflows.scenes.point import Shown
 
 MIN_CERTAINTY = 1e-6

@@ -13,7 +13,7 @@ from deixis.workflows.layouts.read import as_scene
 from deixis.workflows.scenes.views_of_lessons import keep_view
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Taught
+    from deixis.learning.views.views import Taught
     from deixis.memory.journal import Part
 
 
@@ -50,8 +50,8 @@ def teach(
     settles
         Id of a lesson and a role in it, of which this is the thing.
     event
-        Event in which the teacher showed it (:func:`deixis.memory.episodes.episode.event_of`); None where the episodes
-        do not have it.
+        Event in which the teacher showed it (:func:`deixis.memory.episodes.fluents.episode.event_of`); None where the
+        episodes do not have it.
     episodes
         What the blackboard says of it, which is written in the same step; None for nothing.
 

@@ -12,14 +12,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from deixis.knowledge_store import KnowledgeStore
-from deixis.learning.teachings import each_changed
+from deixis.learning.views.teachings import each_changed
 from deixis.memory.journal import Part, write_together
 from deixis.memory.perceptual.records import Batch
 from deixis.view_store import ViewStore
 
 if TYPE_CHECKING:
-    from deixis.learning.views import Taught
-    from deixis.memory.perceptual.handle import WriteBatch
+    from deixis.learning.views.views import Taught
+    from deixis.memory.perceptual.database.handle import WriteBatch
     from deixis.memory.perceptual.level import LevelMemory
     from deixis.memory.perceptual.records import View
     from deixis.ontology.lessons.types import Lesson

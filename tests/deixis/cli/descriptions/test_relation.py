@@ -15,7 +15,7 @@ from deixis.errors import DeixisError
 from deixis.ontology.models.relation_triples import models_to_turtle
 from deixis.ontology.tbox import default_ontology
 from deixis.plots.relation import field
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 
 APP = typer.Typer(pretty_exceptions_enable=False)
 APP.command()(relation)

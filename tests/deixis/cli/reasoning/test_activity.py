@@ -8,8 +8,8 @@ import pytest
 from commands import deixis
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin, Source, episodic
 from deixis.memory.episodes.experiences import put_episode, start_recording
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 
 ORDERS = {"monday": ("saucer", "cup", "spoon"), "tuesday": ("saucer", "spoon", "cup")}
 

@@ -146,7 +146,7 @@ def test_what_a_teacher_named_is_not_overruled_by_a_grounding(tables: Path, tmp_
 
 
 def test_the_stored_model_of_a_category_matches_its_views(tables: Path, tmp_path: Path) -> None:
-    from deixis.learning.views import DISTANCES, UPRIGHT, instances_of
+    from deixis.learning.views.views import DISTANCES, UPRIGHT, instances_of
     from deixis.perception.recognition.instances import InstanceCategory
 
     with Session(tmp_path / "memory") as session:
@@ -262,7 +262,7 @@ def test_an_impossible_camera_is_refused_before_a_table_is_laid(monkeypatch: pyt
 def test_a_calibration_is_kept_while_a_tenth_of_the_views_stays(
     tables: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from deixis.learning.views import recogniser_of
+    from deixis.learning.views.views import recogniser_of
     from deixis.perception.recognition.held_out import HeldOut
     from deixis.perception.recognition.joint import JointRecogniser
 

@@ -15,8 +15,8 @@ from timing import BUSY_SECONDS, until
 
 from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add, Change, Finish
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add, Change, Finish
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton

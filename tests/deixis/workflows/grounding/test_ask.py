@@ -18,19 +18,19 @@ import deixis as deixis_package
 from deixis.deadline import Deadline
 from deixis.examples_data import example
 from deixis.experiments.generated_tables import generate
-from deixis.learning.scene_evidence import evidence_of
+from deixis.learning.lessons.scene_evidence import evidence_of
 from deixis.perception.formats.scene_json import read_scene
 from deixis.reasoning.geometry.turning import turned
-from deixis.reasoning.grounding.answer import Grounding
+from deixis.reasoning.grounding.answers.answer import Grounding
+from deixis.reasoning.grounding.engines.map_engines import ExactEngine
 from deixis.reasoning.grounding.evidence.evidence import Evidence
 from deixis.reasoning.grounding.ground import ground
-from deixis.reasoning.grounding.map_engines import ExactEngine
+from deixis.reasoning.grounding.hypotheses.viewpoint import Viewpoint, Viewpoints
 from deixis.reasoning.grounding.questions.candidates import Candidates
 from deixis.reasoning.grounding.questions.inquiry import begin
 from deixis.reasoning.grounding.questions.refinement import narrowed
 from deixis.reasoning.grounding.questions.selection import questions
 from deixis.reasoning.grounding.questions.situation import situation_of
-from deixis.reasoning.grounding.viewpoint import Viewpoint, Viewpoints
 from deixis.workflows.grounding.dialogue import Oracle
 from deixis.workflows.grounding.viewpoint import ViewpointScene
 from deixis.workflows.layouts.read import read_script

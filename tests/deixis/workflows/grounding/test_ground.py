@@ -16,7 +16,7 @@ from deixis.perception.formats.scene_json import read_scene
 from deixis.perception.scene import Scene
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.hypotheses import STATED_SIDES
+from deixis.reasoning.grounding.hypotheses.hypotheses import STATED_SIDES
 from deixis.reasoning.grounding.questions.selection import Question
 from deixis.reasoning.grounding.questions.situation import Situation
 from deixis.report.json_answers import grounding_to_dict
@@ -169,7 +169,7 @@ def test_graph_closure_and_relations_are_computed_once(monkeypatch: pytest.Monke
 
     package.ground(SCRIPT1, SCENE)  # whatever is compiled first
     monkeypatch.setattr(module, "Implications", Counted)
-    monkeypatch.setattr("deixis.reasoning.grounding.similarity.Implications", Counted)
+    monkeypatch.setattr("deixis.reasoning.grounding.engines.similarity.Implications", Counted)
     monkeypatch.setattr("deixis.reasoning.grounding.questions.situation.Implications", Counted)
     monkeypatch.setattr(rectangle, "scene_relations", counted)
     monkeypatch.setattr("deixis.reasoning.grounding.evidence.evidence.scene_relations", counted)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from deixis.grammar.script import Script
-from deixis.learning.scene_evidence import surface_thing
+from deixis.learning.lessons.scene_evidence import surface_thing
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.comparison.claims import ClaimOutcome, ClaimVerdict

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from deixis.perception.scene import PerceivedObject, Scene
-from deixis.reasoning.grounding.viewpoint import Viewpoint
+from deixis.reasoning.grounding.hypotheses.viewpoint import Viewpoint
 from deixis.workflows.grounding.viewpoint import scene_from
 
 

@@ -13,9 +13,9 @@ from timing import BUSY_SECONDS
 from deixis.grammar.formats.fluents import parse_fluents
 from deixis.grammar.script import Script
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import episodic
 from deixis.memory.episodes.experiences import finish_recording, start_recording
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import episodic
 from deixis.memory.journal import write_together
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.changes import Add
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.session import Session

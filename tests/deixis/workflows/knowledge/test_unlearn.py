@@ -20,10 +20,10 @@ from hypothesis import strategies as st
 import deixis
 from deixis.learning.update import stale
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin, Source, episodic
+from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError, UnknownLessonError
 from deixis.memory.journal import MARKS
-from deixis.memory.perceptual.handle import Handle
+from deixis.memory.perceptual.database.handle import Handle
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import ORDER, GraphName, graph_iri
 from deixis.memory.semantic.store import SemanticMemory

@@ -13,7 +13,7 @@ from source_tree import ROOT
 import deixis
 from deixis.grammar.utterances import Utterance
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.episode import Origin
+from deixis.memory.episodes.fluents.episode import Origin
 from deixis.perception.scene import Scene
 from deixis.perception.simulator.teacher import Recording, Teacher
 from deixis.reasoning.temporal.fluent import Pattern

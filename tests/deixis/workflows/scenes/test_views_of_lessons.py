@@ -15,7 +15,7 @@ from read_only import make_read_only
 from deixis.errors import DeixisError
 from deixis.memory.errors import MemoryWriteError, ReadOnlyMemoryError
 from deixis.memory.journal import JOURNAL
-from deixis.memory.perceptual.handle import Handle
+from deixis.memory.perceptual.database.handle import Handle
 from deixis.memory.semantic.rdf import ledger
 from deixis.session import Session
 

@@ -15,7 +15,7 @@ from deixis.memory.semantic.store import SemanticMemory
 from deixis.ontology.models.relation_triples import model_triples
 from deixis.ontology.models.relations import Provenance, RelationModel, Term
 from deixis.ontology.models.sizes import SizeModel, size_triples
-from deixis.ontology.vocabulary import BASE
+from deixis.ontology.rdf.vocabulary import BASE
 
 PAGE = Path(__file__).parents[4] / "docs" / "guides" / "queries.md"
 SECTIONS = re.findall(r"^## (.+?)\n\n(.+?)\n\n```sparql\n(.+?)```", PAGE.read_text(encoding="utf-8"), re.M | re.S)

@@ -6,8 +6,8 @@ import pyoxigraph as ox
 
 from deixis.memory.semantic.rdf import ledger
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri, lesson_graph
-from deixis.ontology.triples import learned_iri
-from deixis.ontology.vocabulary import PROV
+from deixis.ontology.rdf.triples import learned_iri
+from deixis.ontology.rdf.vocabulary import PROV
 
 
 def test_lessons_are_ordered_by_time_despite_dropped_zeros() -> None:

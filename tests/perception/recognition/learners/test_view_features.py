@@ -7,8 +7,8 @@ import pytest
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.errors import RecognitionError
-from deixis.perception.features.d2_extents import D2ExtentsDescriber
-from deixis.perception.features.good import GoodDescriber
+from deixis.perception.features.descriptors.d2_extents import D2ExtentsDescriber
+from deixis.perception.features.descriptors.good import GoodDescriber
 from deixis.perception.recognition.learners.view_features import ViewFeatures, features_of, pooled
 
 

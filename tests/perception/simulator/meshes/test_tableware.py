@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from solid_checks import is_closed, volume
 
-from deixis.ontology.sizes import Extent, Outline
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.sizes import Extent, Outline
 from deixis.perception.clouds.mesh import Mesh
 from deixis.perception.errors import SimulationError
 from deixis.perception.simulator.meshes.rays import RayCaster

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.ontology.allen import Allen, mask_array
-from deixis.ontology.graph import Fact
+from deixis.ontology.graph.graph import Fact
+from deixis.ontology.relations.allen import Allen, mask_array
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.entailment.realisation.pieces import Piece, X, Y, choice, region
 from deixis.reasoning.geometry.allen import EndOrder

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
-from deixis.ontology.relation import Reading
-from deixis.ontology.sizes import Extent, Outline, SizeRange
+from deixis.ontology.graph.graph import Fact, RelationGraph
+from deixis.ontology.relations.relation import Reading
 from deixis.ontology.tbox import default_ontology
+from deixis.ontology.things.sizes import Extent, Outline, SizeRange
 from deixis.reasoning.entailment.realisation.picture import MAX_PICTURED, Impossible, Picture, Undecided, realise
 from deixis.reasoning.entailment.realisation.verification import facts_that_are_named, facts_that_hold
 from deixis.reasoning.errors import LimitError

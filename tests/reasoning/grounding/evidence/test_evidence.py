@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from deixis.errors import GraphError
-from deixis.ontology.graph import RelationGraph
-from deixis.ontology.relation import Relations
+from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import Relations
 from deixis.reasoning.geometry.rectangle import SceneRelations, scene_relations
 from deixis.reasoning.grounding.evidence.evidence import Evidence, absence, no_unary_evidence
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

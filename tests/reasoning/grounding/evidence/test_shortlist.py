@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.errors import OutOfMemoryError, OutOfTimeError
 from deixis.reasoning.geometry.pairs import Surroundings, pair_geometry
 from deixis.reasoning.geometry.rectangle import scene_relations
-from deixis.reasoning.grounding.evidence import literalness
 from deixis.reasoning.grounding.evidence.evidence import no_unary_evidence, without_facts
-from deixis.reasoning.grounding.evidence.facts import fact_tables
-from deixis.reasoning.grounding.evidence.meaning import LITERAL, SHIPPED, Meaning
+from deixis.reasoning.grounding.evidence.facts import literalness
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
 from deixis.reasoning.grounding.evidence.shortlist import Shortlist, _Messages, _Weighing, shortlist
-from deixis.reasoning.grounding.matching.posterior import posterior
+from deixis.reasoning.grounding.evidence.words.meaning import LITERAL, SHIPPED, Meaning
+from deixis.reasoning.grounding.matching.posterior.posterior import posterior
 
 RELATIONS = default_ontology().relations
 

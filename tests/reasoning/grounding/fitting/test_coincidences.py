@@ -7,7 +7,7 @@ import pytest
 
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.fitting.coincidences import JudgedTable, fit_coincidences
-from deixis.reasoning.grounding.matching.coincidences import SHIPPED_WEIGHTS, Coincidences
+from deixis.reasoning.grounding.matching.posterior.coincidences import SHIPPED_WEIGHTS, Coincidences
 
 
 def drawn(rng: np.random.Generator, power: float, count: int = 400) -> JudgedTable:

@@ -7,14 +7,14 @@ import pytest
 from scipy.optimize import check_grad
 
 from deixis.errors import GraphError
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.models.relations import SAYING, RelationModels, Trend
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.pairs import pair_geometry
-from deixis.reasoning.grounding.evidence.degrees import relation_evidence, saying_degree, word_degree
-from deixis.reasoning.grounding.evidence.facts import fact_tables
-from deixis.reasoning.grounding.evidence.meaning import shipped_models
+from deixis.reasoning.grounding.evidence.facts.facts import fact_tables
+from deixis.reasoning.grounding.evidence.words.degrees import relation_evidence, saying_degree, word_degree
+from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
 from deixis.reasoning.grounding.fitting.fit import (
     FEW_SCENES,
     FitSettings,

@@ -7,7 +7,7 @@ import pytest
 
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.grounding.fitting.fits import ACCUSED, fit_powers, likeliest_powers
-from deixis.reasoning.grounding.hypotheses import ANOTHER_PRIOR, FitEvidence
+from deixis.reasoning.grounding.hypotheses.hypotheses import ANOTHER_PRIOR, FitEvidence
 
 
 def test_powers_come_back_from_pairs_drawn_by_them() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from deixis.grammar.layout.parser import read_layout
 from deixis.perception.formats.scene_json import read_scene
-from deixis.reasoning.grounding.evidence.facts import crisp_tables, fact_tables
+from deixis.reasoning.grounding.evidence.facts.facts import crisp_tables, fact_tables
 from deixis.reasoning.grounding.matching.problem import Problem
 from deixis.reasoning.grounding.questions.candidates import candidates_of
 from deixis.reasoning.grounding.questions.inquiry import Inquiry, begin

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from matching_problems import problems, reordered
 
 from deixis.reasoning.errors import SettingError
-from deixis.reasoning.grounding.matching.exact import maps_within
-from deixis.reasoning.grounding.matching.exchangeable import exchangeable
+from deixis.reasoning.grounding.matching.posterior.exchangeable import exchangeable
 from deixis.reasoning.grounding.matching.problem import UNMATCHED, Problem
+from deixis.reasoning.grounding.matching.search.exact import maps_within
 from deixis.reasoning.grounding.questions.candidates import Candidates, candidates_of
 
 

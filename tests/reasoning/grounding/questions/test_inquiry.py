@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from deixis.ontology.graph import Fact, RelationGraph
+from deixis.ontology.graph.graph import Fact, RelationGraph
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.reasoning.grounding.matching.problem import UNMATCHED

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from deixis.reasoning.grounding.reference.answer import Question
+from deixis.reasoning.grounding.reference.features.room import Room
 from deixis.reasoning.grounding.reference.questions import _questions, answered, best_question, fewest_questions
-from deixis.reasoning.grounding.reference.room import Room
 
 
 def row_of_chairs(labels: tuple[str | None, ...] = ("chair", "chair", "chair", "door")) -> Room:

@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from deixis.ontology.allen import SYMBOLS
+from deixis.ontology.relations.allen import SYMBOLS
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 from deixis.reasoning.qualitative.calculi.registry import calculus
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from deixis.ontology.allen import SYMBOLS
+from deixis.ontology.relations.allen import SYMBOLS
 from deixis.reasoning.errors import UnknownAtomError, UnknownCalculusError
 from deixis.reasoning.qualitative.calculi.registry import CALCULI, calculus
 

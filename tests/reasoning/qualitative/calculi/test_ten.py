@@ -6,7 +6,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from deixis.ontology.relation import Reading, Relations
+from deixis.ontology.relations.relation import Reading, Relations
 from deixis.ontology.tbox import default_ontology
 from deixis.reasoning.geometry.allen import allen_relations
 from deixis.reasoning.qualitative.calculi.bridges import names_to_boxes, to_ra

@@ -6,7 +6,7 @@ from itertools import combinations, product
 
 import pytest
 
-from deixis.ontology.allen import ALL_ALLEN
+from deixis.ontology.relations.allen import ALL_ALLEN
 from deixis.reasoning.qualitative.calculi.calculus import Subclass
 from deixis.reasoning.qualitative.calculi.registry import calculus
 from deixis.reasoning.qualitative.calculi.tractable import (

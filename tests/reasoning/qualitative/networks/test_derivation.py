@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from timing import processor_time_below
 
 from deixis.deadline import Deadline
-from deixis.ontology.graph import Source
+from deixis.ontology.graph.graph import Source
 from deixis.reasoning.constraints.proof import Rule
 from deixis.reasoning.qualitative.calculi.calculus import ProductCalculus
 from deixis.reasoning.qualitative.calculi.registry import calculus

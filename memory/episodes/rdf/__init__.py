@@ -1,0 +1,1 @@
+"""Fluents as RDF, and the check of changes by SHACL."""

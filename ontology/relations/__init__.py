@@ -1,0 +1,1 @@
+"""Relation words and their meaning, and Allen's relations of intervals."""

@@ -1,0 +1,1 @@
+"""Tables of numbers in files: compiled parsers, and the clouds that named columns make."""

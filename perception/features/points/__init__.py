@@ -1,0 +1,1 @@
+"""Keypoints and normals, which descriptors are made from, and compiled kernels on neighbourhoods of points."""

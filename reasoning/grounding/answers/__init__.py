@@ -1,0 +1,1 @@
+"""The answer of a grounding: matches, alternatives, groups, interchangeable objects, and sensitivity to each fact."""

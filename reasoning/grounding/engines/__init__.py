@@ -1,0 +1,1 @@
+"""Engines that align a description with a scene: their protocol, and those that there are, by name."""

@@ -1,0 +1,1 @@
+"""Evidence of claims: places, sizes, orders, distances, arrangements and directions."""

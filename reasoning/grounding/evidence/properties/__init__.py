@@ -1,0 +1,1 @@
+"""Evidence of what single things are like: their labels, sizes and colours."""

@@ -1,0 +1,1 @@
+"""Hypotheses about a description: the side from which it is spoken, mirror images, and other scenes."""

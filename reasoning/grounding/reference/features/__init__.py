@@ -1,0 +1,1 @@
+"""Features of objects for the words of a description: nouns, properties and relations in a room."""

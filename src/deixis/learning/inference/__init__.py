@@ -1,0 +1,1 @@
+"""Inference from learned layouts: statements about them that follow without being stated, as triples."""

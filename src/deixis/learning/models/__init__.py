@@ -1,0 +1,1 @@
+"""Models learned from all lessons: relation words, and sizes of kinds of things."""
