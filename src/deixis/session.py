@@ -804,9 +804,7 @@ class Session(Closing):
 
         if self.knowledge_store.count_of_tables(name) < 2:
             return layout_script(self.layout(name), self.ontology)
-        found = self.concept(name)
-        script = layout_script(found.layout, self.ontology)
-        return script + "\n" + "".join(f"# {line}\n" for line in found.lines())
+        return self.concept(name).script(self.ontology)
 
     @_one_at_a_time
     def query(
