@@ -779,7 +779,9 @@ class Robot:
         """
         lesson = self.lessons[question.lesson]
         if question.role not in lesson.waiting:
-            raise RobotError(f"`question` must be about a role that waits, and '{question.role}' does not any more")
+            raise RobotError(
+                f"`question` must be about a role that still waits for an answer; '{question.role}' does not"
+            )
         if thing is None:
             self._settle(lesson, question.role, None)
             return
