@@ -58,9 +58,7 @@ class Candidates:
         if self.assignments.ndim != 2 or self.weights.shape != self.assignments.shape[:1]:
             raise SettingError("`assignments` must have shape (k, n1), and `weights` shape (k,)")
         if not len(self.weights) or not (self.weights >= 0).all() or not 0 < self.weights.sum() < np.inf:
-            raise SettingError(
-                "there must be at least one candidate, and `weights` must be at least 0, with a sum above 0"
-            )
+            raise SettingError("`weights` must have at least one entry, each at least 0, and a sum above 0")
         members = [i for group in self.groups for i in group]
         if len(set(members)) != len(members) or any(not 0 <= i < self.assignments.shape[1] for i in members):
             raise SettingError("`groups` must be disjoint sets of objects")
