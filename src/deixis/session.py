@@ -951,12 +951,13 @@ class Session(Closing):
 
         Examples
         --------
+        >>> sparql = "SELECT ?name { ?kind rdfs:subClassOf* dx:Fork ; dx:learnedIn [] ; rdfs:label ?name }"
         >>> import tempfile
         >>> from deixis.examples_data import example
         >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
         >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
         ...     learned = session.learn(script, scene)
-        ...     found = session.query("SELECT ?name { ?kind rdfs:subClassOf* dx:Fork ; dx:learnedIn [] ; rdfs:label ?name }")
+        ...     found = session.query(sparql)
         >>> sorted(row.name.value for row in found.rows)
         ['dessert fork', 'dinner fork', 'salad fork']
         """
