@@ -228,7 +228,7 @@ SeenRelation = tuple[str, Relation, str]
 """Exact relation of a pair of perceived objects: subject id, relation, object id."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Lesson:
     """The learning of one layout, and of the objects in its roles, from one script and one scene.
 
@@ -252,6 +252,9 @@ class Lesson:
     scene_file: str = ""
     told_text: str | None = None  # the words of a person, where the script was made from them
     events: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Lesson {self.id}: {count(len(self.layout.roles), 'role')}, {len(self.matches)} matched>"
 
     @property
     def id(self) -> str:

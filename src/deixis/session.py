@@ -120,6 +120,9 @@ class Session(Closing):
         self.knowledge_store = KnowledgeStore(self.path, ontology)
         self.view_store = ViewStore(self.path)
 
+    def __repr__(self) -> str:
+        return f"<Session {self.path}>"
+
     def __enter__(self) -> Self:
         self.knowledge_store.require_usable()
         return super().__enter__()
