@@ -4,7 +4,7 @@ A folder has clouds (see :class:`~deixis.perception.tracking.stream.FolderSource
 (``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds. Skeletons
 are in the frame of the camera.
 
-A live story does not wait for the robot: a thread reads its frames, and those that come too fast are dropped and
+A live story does not wait for the robot: a thread reads its frames, and frames that come too fast are dropped and
 counted.
 """
 
@@ -45,7 +45,7 @@ BREAK = 5.0
 
 @dataclass(frozen=True, eq=False)
 class StoryTruth:
-    """Truth about a simulated story, by which a robot is judged.
+    """True state of a simulated story, for scoring a robot.
 
     Attributes
     ----------
@@ -167,7 +167,7 @@ class StorySettings:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames as a source."""
+    """Source of given frames."""
 
     given: Iterable[Frame]
 
@@ -183,7 +183,7 @@ class Frames:
 
 
 class AtOwnSpeed(Frames):
-    """Frames as a source that yields each when its time has come."""
+    """Source that yields each frame when its time has come."""
 
     def frames(self) -> Iterator[Frame]:
         """Yield the frames.
@@ -272,7 +272,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     rng = np.random.default_rng(seed)
     first, second = (lay_script(script, seed=seed + k).table for k in (0, 1))
     scene = truth_scene(first)
-    free = [k for k, thing in enumerate(first.things) if not _bears(thing, first.things)]
+    free = [k for k, thing in enumerate(first.things) if not _supports_another(thing, first.things)]
     shown = sorted(rng.permutation(free)[:2].tolist())
     others = [k for k in free if k not in shown] or free
     forgotten, brought = (int(k) for k in (*rng.permutation(others), *shown)[:2])
@@ -312,7 +312,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     return Story(frames(), tuple(words), tuple(_as_seen(one, camera) for one in recording.skeletons), truth)
 
 
-def _bears(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
+def _supports_another(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
     """Return True if another thing lies on a thing, at least in part."""
     from deixis.perception.simulator.laying import overlap_in_plan, plan_box
 
