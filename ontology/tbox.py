@@ -27,7 +27,7 @@ TBOX_FILES = tuple(Path(__file__).with_name(name) for name in ("deixis.ttl", "ev
 """Turtle files of one ontology: the vocabulary with the kinds of tableware, and the everyday kinds around them."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Ontology:
     """The content of the TBox: relations, kinds of things, usual sizes, colours, and hedges with their weights."""
 
@@ -36,6 +36,9 @@ class Ontology:
     hedges: dict[str, float]
     sizes: Sizes
     colours: Colours
+
+    def __repr__(self) -> str:
+        return f"<Ontology {len(self.relations)} relations, {len(self.kinds)} kinds>"
 
     @cached_property
     def lexicon(self) -> Lexicon:

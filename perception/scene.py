@@ -547,12 +547,25 @@ class Scene(Answer):
         -------
         dict
             The fields as dictionaries and lists, in metres.
+
+        Examples
+        --------
+        >>> scene = Scene.from_boxes(min=np.zeros((1, 3)), max=np.full((1, 3), 0.1), labels=["cup"])
+        >>> detection, = scene.to_detections3d()["detections"]
+        >>> detection["bbox"]["size"]
+        {'x': 0.1, 'y': 0.1, 'z': 0.1}
         """
         write: Callable[[Scene], dict[str, Any]] = _format("detections3d").scene_to_detections3d
         return write(self)
 
     def summary(self) -> str:
-        """Return one line with the file, the number of objects and the viewpoint."""
+        """Return one line with the file, the number of objects and the viewpoint.
+
+        Examples
+        --------
+        >>> Scene.from_boxes(np.zeros((2, 3)), np.ones((2, 3)), labels=["cup", None]).summary()
+        '<scene>: 2 objects, 1 labelled, 3-D boxes in m, seen from the chair'
+        """
         labelled = sum(thing.label is not None for thing in self.objects)
         axes = f", {len(self.objects[0].minimum)}-D boxes in {self.unit}" if self.objects else ""
         labels = f", {labelled} labelled" if labelled else ""
@@ -563,12 +576,24 @@ class Scene(Answer):
 
     @property
     def ids(self) -> tuple[str, ...]:
-        """Ids of the objects, in the order of the scene."""
+        """Ids of the objects, in the order of the scene.
+
+        Examples
+        --------
+        >>> Scene.from_boxes(np.zeros((2, 3)), np.ones((2, 3)), ids=[4, 7]).ids
+        ('4', '7')
+        """
         return tuple(thing.id for thing in self.objects)
 
     @cached_property
     def boxes(self) -> NDArray[np.float64]:
-        """Lower and upper corners of the objects, shape (n, 2, d); d is 2 for an empty scene."""
+        """Lower and upper corners of the objects, shape (n, 2, d); d is 2 for an empty scene.
+
+        Examples
+        --------
+        >>> Scene.from_boxes(np.zeros((2, 3)), np.ones((2, 3))).boxes.shape
+        (2, 2, 3)
+        """
         if not self.objects:
             return np.zeros((0, 2, 2))
         return np.array([(thing.minimum, thing.maximum) for thing in self.objects], dtype=np.float64)
@@ -758,6 +783,12 @@ class Scene(Answer):
         ------
         SceneError
             If a cloud file cannot be read.
+
+        Examples
+        --------
+        >>> scene = Scene.from_boxes(np.zeros((2, 3)), np.ones((2, 3)))
+        >>> [shape.get_max_bound().tolist() for shape in scene.to_open3d()]
+        [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]]
         """
         shapes: list[Any] = []
         for thing in self.objects:
@@ -826,6 +857,13 @@ class Scene(Answer):
         -------
         RelationGraph
             A graph with a node for each object and an edge for each ordered pair.
+
+        Examples
+        --------
+        >>> from deixis.ontology.tbox import default_ontology
+        >>> scene = Scene.from_boxes(min=[[0, 0], [2, 0]], max=[[1, 1], [3, 1]], ids=["cup", "jug"])
+        >>> [str(fact) for fact in scene.graph(default_ontology().relations).facts()]
+        ['exactly_left(cup, jug)', 'exactly_right(jug, cup)']
         """
         return self.relations(vocabulary, tolerance).graph()
 
@@ -836,6 +874,12 @@ class Scene(Answer):
         -------
         Scene
             The scene; boxes, clouds and colours are kept.
+
+        Examples
+        --------
+        >>> scene = Scene.from_boxes(np.zeros((1, 3)), np.ones((1, 3)), labels=["cup"])
+        >>> scene.without_labels()["o1"].label is None
+        True
         """
         bare = (replace(thing, label=None, confidence=1.0, candidates=()) for thing in self.objects)
         return replace(self, objects=tuple(bare))

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import count
 from deixis.errors import GraphError
 from deixis.ontology.graph.facts import OPTIONAL_WEIGHT, Fact, Source, dispensable
 from deixis.ontology.relations.relation import Reading, Relations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["OPTIONAL_WEIGHT", "Fact", "PaperGraph", "RelationGraph", "Source", "dispensable"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RelationGraph:
     """A weighted directed multigraph over named objects (n nodes, m edges).
 
@@ -38,6 +39,8 @@ class RelationGraph:
     >>> relations = default_ontology().relations
     >>> facts = [Fact("fork", (relations["left"],), "plate"), Fact("napkin", (relations["on"],), "plate")]
     >>> graph = RelationGraph.from_facts(relations, ["fork", "napkin", "plate"], facts)
+    >>> graph
+    <RelationGraph 3 nodes, 2 edges>
     >>> graph.index("plate"), graph.subjects.tolist(), graph.objects.tolist()
     (2, [0, 1], [2, 2])
     >>> [str(fact) for fact in graph.facts()]
@@ -58,7 +61,10 @@ class RelationGraph:
     kinds: tuple[str | None, ...] = ()  # (n,) class IRIs, or empty
     colours: tuple[str | None, ...] = ()  # (n,) IRIs of described colours, or empty
     boxes: NDArray[np.float64] | None = None  # (n, 2, d): least and greatest corner, metres
-    _index: dict[str, int] = field(init=False, repr=False)
+    _index: dict[str, int] = field(init=False)
+
+    def __repr__(self) -> str:
+        return f"<RelationGraph {count(len(self.nodes), 'node')}, {count(len(self.subjects), 'edge')}>"
 
     def __post_init__(self) -> None:
         index = {name: i for i, name in enumerate(self.nodes)}

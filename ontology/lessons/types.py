@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Protocol
 
-from deixis.answers import Answer
+from deixis.answers import Answer, count
 from deixis.ontology.graph.claims import Claim
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import singular
@@ -37,8 +37,8 @@ class Role:
     is_group: bool = False
 
 
-@dataclass(frozen=True)
-class LayoutConcept:
+@dataclass(frozen=True, repr=False)
+class LayoutConcept(Answer):
     """A learned layout: its roles, the facts between them and the claims about them, as stated in one script.
 
     Examples
@@ -46,8 +46,15 @@ class LayoutConcept:
     >>> import deixis
     >>> from deixis.learning.lessons.lesson import layout_concept
     >>> layout = layout_concept(deixis.read_script(text="layout tea; cup on saucer; spoon right of cup"), "tea-1")
-    >>> layout.name, [role.name for role in layout.roles]
-    ('tea', ['cup', 'saucer', 'spoon'])
+    >>> layout, layout.summary()
+    (<LayoutConcept 'tea' of lesson tea-1: 3 roles, 2 facts>, "'tea' of lesson tea-1: 3 roles, 2 facts")
+    >>> [role.name for role in layout.roles], layout.to_dict()["lesson"]
+    (['cup', 'saucer', 'spoon'], 'tea-1')
+    >>> print(layout.to_text())
+    layout tea
+    <BLANKLINE>
+    cup on saucer
+    spoon right of cup
     >>> relations = layout.graph(deixis.read_script(text="cup on saucer").ontology.relations)
     >>> relations.nodes
     ('cup', 'saucer', 'spoon')
@@ -62,6 +69,12 @@ class LayoutConcept:
     interchangeable: tuple[tuple[str, ...], ...] = ()
     claims: tuple[Claim, ...] = ()
     surface: str | None = None  # what everything stands on, which is not a role
+
+    def summary(self) -> str:
+        """Return the name of the layout, its lesson, and the numbers of its roles and statements."""
+        parts = [count(len(self.roles), "role"), count(len(self.facts), "fact")]
+        parts += [count(len(self.claims), "claim")] if self.claims else []
+        return f"'{self.name}' of lesson {self.lesson}: {', '.join(parts)}"
 
     def graph(self, vocabulary: Relations) -> RelationGraph:
         """Return the layout as a relation graph over its roles.
@@ -215,7 +228,7 @@ SeenRelation = tuple[str, Relation, str]
 """Exact relation of a pair of perceived objects: subject id, relation, object id."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Lesson:
     """The learning of one layout, and of the objects in its roles, from one script and one scene.
 
@@ -239,6 +252,9 @@ class Lesson:
     scene_file: str = ""
     told_text: str | None = None  # the words of a person, where the script was made from them
     events: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Lesson {self.id}: {count(len(self.layout.roles), 'role')}, {len(self.matches)} matched>"
 
     @property
     def id(self) -> str:

@@ -167,11 +167,14 @@ MODEL_OF_WORD: Mapping[str, str] = {**FAMILIES, **GRADED_FAMILIES}
 """Model of every word that has one."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RelationModels:
     """All graded models, by name."""
 
     models: Mapping[str, RelationModel]
+
+    def __repr__(self) -> str:
+        return f"<RelationModels {', '.join(self.models)}>"
 
     def __post_init__(self) -> None:
         missing = {*FAMILIES.values(), SAYING} - set(self.models)

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import count
 from deixis.perception.errors import CloudError
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PointCloud:
     """Points in metres, in one frame, with their colours, labels and normals.
 
@@ -40,6 +41,8 @@ class PointCloud:
     Examples
     --------
     >>> cloud = PointCloud(np.array([[0, 0, 1], [np.nan, 0, 0]], np.float32), organised=(1, 2))
+    >>> cloud
+    <PointCloud 2 points, image of 1 row by 2 columns>
     >>> len(cloud), cloud.finite.tolist()
     (2, [True, False])
     >>> len(cloud.take(cloud.finite))
@@ -52,6 +55,14 @@ class PointCloud:
     normals: NDArray[np.float32] | None = None  # (n, 3): unit vectors
     organised: tuple[int, int] | None = None
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __repr__(self) -> str:
+        arrays = [name for name in ("colours", "labels", "normals") if getattr(self, name) is not None]
+        parts = [count(len(self.points), "point"), *(["with " + ", ".join(arrays)] if arrays else [])]
+        if self.organised is not None:
+            rows, columns = self.organised
+            parts.append(f"image of {count(rows, 'row')} by {count(columns, 'column')}")
+        return f"<PointCloud {', '.join(parts)}>"
 
     def __post_init__(self) -> None:
         n = len(self.points)

@@ -309,7 +309,8 @@ def _numbers(data: Any, where: str, scale: float, counts: Sequence[int]) -> tupl
     if isinstance(data, np.ndarray):
         data = data.tolist()
     if not isinstance(data, list | tuple) or len(data) not in counts:
-        raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers")
+        given = f"a list of {len(data)}" if isinstance(data, list | tuple) else json_type(data)
+        raise SceneError(f"{where} must be a list of {' or '.join(map(str, counts))} numbers, got {given}")
     return tuple(number(value, where) * scale for value in data)
 
 

@@ -1,4 +1,7 @@
-"""Pipeline of one tracked thing: its model, its pose, and its particle filter, which start and end with it."""
+"""Pipeline of one tracked thing: its model, its pose, and its particle filter, which start and end with it.
+
+The particle filter is that of :mod:`deixis.perception.tracking.particles` (KLD sampling; Fox 2003).
+"""
 
 from __future__ import annotations
 

@@ -258,7 +258,7 @@ class Surroundings:
         for start in range(0, len(boxes), rows):
             if start and deadline.passed:
                 raise OutOfTimeError(
-                    f"the time limit passed while {len(boxes)} things were compared; raise it, or look at fewer"
+                    f"time limit reached while {len(boxes)} things were compared; raise it, or pass fewer things"
                 )
             some = PairGeometry(boxes[start : start + rows], spread, np.zeros((0, 0)))
             distances[start : start + rows] = np.sort(some.distance.astype(np.float32), axis=1)

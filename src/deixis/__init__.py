@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from deixis.errors import DeixisError
     from deixis.grammar.layout.format import format_script
     from deixis.grammar.script import Script
-    from deixis.learning.views.views import Recognised
+    from deixis.learning.layouts.concept import CountedConcept
+    from deixis.learning.models.words import LearnedWords
+    from deixis.learning.views.views import Recognised, Taught
     from deixis.memory.semantic.queries.results import QueryResult
     from deixis.ontology.graph.facts import Fact
     from deixis.ontology.lessons.types import LayoutConcept, Match
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
     from deixis.workflows.grounding.ground import ground
     from deixis.workflows.grounding.retrieve import Retrieval, retrieve
     from deixis.workflows.knowledge.habits import Placements, habits
+    from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.knowledge.recall import Recall
     from deixis.workflows.knowledge.unlearn import Unlearned
     from deixis.workflows.layouts.imagine import Imagination, imagine
@@ -60,12 +63,15 @@ __version__ = VERSION
 __all__ = [
     "ActivityGrounding",
     "Check",
+    "CountedConcept",
     "DeixisError",
     "Fact",
     "Grounding",
     "Imagination",
     "Inference",
     "LayoutConcept",
+    "Learned",
+    "LearnedWords",
     "Lint",
     "Match",
     "OrientedBox",
@@ -84,6 +90,7 @@ __all__ = [
     "Script",
     "Session",
     "Shown",
+    "Taught",
     "Telling",
     "Unlearned",
     "ask",
@@ -109,12 +116,15 @@ _HOMES = {
     "ActivityGrounding": "deixis.reasoning.activities.grounding",
     "Prediction": "deixis.reasoning.activities.prediction",
     "Check": "deixis.workflows.grounding.check",
+    "CountedConcept": "deixis.learning.layouts.concept",
     "DeixisError": "deixis.errors",
     "Fact": "deixis.ontology.graph.facts",
     "Grounding": "deixis.reasoning.grounding.answers.answer",
     "Imagination": "deixis.workflows.layouts.imagine",
     "Inference": "deixis.workflows.layouts.infer",
     "LayoutConcept": "deixis.ontology.lessons.types",
+    "Learned": "deixis.workflows.knowledge.learn",
+    "LearnedWords": "deixis.learning.models.words",
     "Lint": "deixis.workflows.layouts.lint",
     "Match": "deixis.ontology.lessons.types",
     "OrientedBox": "deixis.perception.scene",
@@ -132,6 +142,7 @@ _HOMES = {
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
     "Shown": "deixis.workflows.scenes.point",
+    "Taught": "deixis.learning.views.views",
     "Telling": "deixis.workflows.descriptions.telling",
     "Unlearned": "deixis.workflows.knowledge.unlearn",
     "ask": "deixis.workflows.grounding.ask",

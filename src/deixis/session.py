@@ -120,6 +120,9 @@ class Session(Closing):
         self.knowledge_store = KnowledgeStore(self.path, ontology)
         self.view_store = ViewStore(self.path)
 
+    def __repr__(self) -> str:
+        return f"<Session {self.path}>"
+
     def __enter__(self) -> Self:
         self.knowledge_store.require_usable()
         return super().__enter__()
@@ -170,6 +173,15 @@ class Session(Closing):
         ------
         DeixisError
             For bad input, as :func:`deixis.ground`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     session.ground(script, scene)
+        <Grounding 12 of 12 objects matched, 12 decided, 11 of 11 facts satisfied, fits 1.00>
         """
         from deixis.workflows.grounding.ground import ground
         from deixis.workflows.layouts.read import as_script
@@ -254,6 +266,15 @@ class Session(Closing):
         ------
         DeixisError
             The script contradicts itself or earlier lessons. Nothing was changed.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     session.learn(script, scene, teacher="Ada")
+        <Learned 'formal_dinner' as lesson formal_dinner-1: 12 categories>
         """
         (learned,) = self.learn_all([(script, scene)], engine, time_limit, None, teacher, events, episodes)
         return learned
@@ -357,6 +378,16 @@ class Session(Closing):
         -------
         Check
             The missing, misplaced and additional things, and the facts that do not hold.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     session.check("formal_dinner", example("second_table.scene.json"))
+        <Check of 'formal_dinner': not as described, 9 correct, 2 misplaced, 1 missing, 1 extra, 2 violated facts>
         """
         from deixis.workflows.grounding.check import check
 
@@ -551,6 +582,16 @@ class Session(Closing):
             If there is nothing to learn from; nothing is changed then.
         SettingError
             If ``strength`` is not above 0.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     session.learn_relations()
+        <LearnedWords 5 models from 1 lesson>
         """
         return self.knowledge_store.learn_relations(examples, strength)
 
@@ -574,6 +615,17 @@ class Session(Closing):
         ------
         UnknownLessonError
             If there is no such lesson.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     session.forget(learned.lesson.id)
+        ...     session.layouts()
+        ()
         """
         from deixis.workflows.scenes.views_of_lessons import forget_lesson
 
@@ -602,6 +654,19 @@ class Session(Closing):
         ------
         UnknownLessonError
             If the selected lesson is not in the memory.
+
+        Examples
+        --------
+        >>> from deixis.workflows.knowledge.unlearn import Selection
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene, teacher="Ada")
+        ...     session.unlearn(Selection(teacher="Ada"), dry_run=True)
+        ...     session.unlearn(Selection(teacher="Ada")).lessons
+        <Unlearned 1 lesson taken back, 0 views forgotten, 0 views changed>
+        ('formal_dinner-1',)
         """
         from deixis.workflows.knowledge.unlearn import unlearn
 
@@ -695,6 +760,16 @@ class Session(Closing):
         -------
         tuple of LayoutConcept
             One layout for each lesson; empty without a memory.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     session.layouts()
+        (<LayoutConcept 'formal_dinner' of lesson formal_dinner-1: 12 roles, 11 facts>,)
         """
         return self.knowledge_store.layouts()
 
@@ -716,6 +791,17 @@ class Session(Closing):
         ------
         UnknownTermError
             If there is neither.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     layout = session.layout("formal_dinner")
+        >>> str(layout.facts[0])
+        'on(napkin, dinner_plate)'
         """
         return self.knowledge_store.layout(name)
 
@@ -732,6 +818,17 @@ class Session(Closing):
         -------
         tuple of TaughtTable
             The tables in the order learned, each with the things that are known by now; empty without a memory.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     table, = session.tables("formal_dinner")
+        >>> table.lesson, table.things["napkin"]
+        ('formal_dinner-1', 'o2')
         """
         from deixis.learning.layouts.tables import taught_tables
 
@@ -772,6 +869,17 @@ class Session(Closing):
         ------
         UnknownTermError
             If there is neither.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     lessons = session.learn_all([(script, scene), (script, scene)])
+        ...     concept = session.concept("formal_dinner")
+        >>> concept
+        <CountedConcept 'formal_dinner' on 2 tables: 12 roles, 11 statements>
         """
         from deixis.learning.layouts.concept import CountedConcept, concept_of
 
@@ -799,14 +907,23 @@ class Session(Closing):
         ------
         UnknownTermError
             If there is neither.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     text = session.show("formal_dinner")
+        >>> print(text.splitlines()[2])
+        napkin on dinner_plate
         """
         from deixis.grammar.layout.format import layout_script
 
         if self.knowledge_store.count_of_tables(name) < 2:
             return layout_script(self.layout(name), self.ontology)
-        found = self.concept(name)
-        script = layout_script(found.layout, self.ontology)
-        return script + "\n" + "".join(f"# {line}\n" for line in found.lines())
+        return self.concept(name).script(self.ontology)
 
     @_one_at_a_time
     def query(
@@ -834,6 +951,18 @@ class Session(Closing):
             The query is refused or malformed.
         QueryTimeoutError, QueryMemoryError
             A limit was reached. No part of the answer is returned.
+
+        Examples
+        --------
+        >>> sparql = "SELECT ?name { ?kind rdfs:subClassOf* dx:Fork ; dx:learnedIn [] ; rdfs:label ?name }"
+        >>> import tempfile
+        >>> from deixis.examples_data import example
+        >>> script, scene = example("formal_dinner.layout"), example("place_setting.scene.json")
+        >>> with tempfile.TemporaryDirectory() as folder, Session(folder + "/memory") as session:
+        ...     learned = session.learn(script, scene)
+        ...     found = session.query(sparql)
+        >>> sorted(row.name.value for row in found.rows)
+        ['dessert fork', 'dinner fork', 'salad fork']
         """
         return self.knowledge_store.query(sparql, time_limit, memory_limit)
 

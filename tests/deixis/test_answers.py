@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import get_type_hints
 
 import pytest
@@ -20,12 +19,17 @@ PNG = b"\x89PNG"
 
 
 @pytest.fixture(scope="module")
-def answers() -> dict[str, Answer]:
+def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
     """One answer of each type that needs no views."""
     found = deixis.ground(SCRIPT, SCENE)
-    with deixis.Session(memory=Path("/nonexistent/deixis")):
-        pass
+    with deixis.Session(memory=tmp_path_factory.mktemp("answers") / "memory") as session:
+        learned = session.learn(SCRIPT, SCENE)
+        words, concept, layout = session.learn_relations(), session.concept("formal_dinner"), session.layouts()[0]
     return {
+        "Learned": learned,
+        "LearnedWords": words,
+        "CountedConcept": concept,
+        "LayoutConcept": layout,
         "Script": SCRIPT,
         "Scene": SCENE,
         "Grounding": found,
@@ -68,7 +72,8 @@ def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
         match.perceived for match in deixis.ground(SCRIPT, SCENE).matches.values()
     ]
     assert len(rows["Script"]) == len(SCRIPT.facts)
-    assert len(rows["Scene"]) == len(rows["Imagination"]) == 12
+    assert len(rows["Scene"]) == len(rows["Imagination"]) == len(rows["Learned"]) == 12
+    assert len(rows["LayoutConcept"]) == len(rows["CountedConcept"]) == len(SCRIPT.facts)
     assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
     assert all(len(set(map(tuple, table))) >= 1 for table in rows.values())
 
@@ -108,7 +113,7 @@ def test_pictures_go_into_given_axes(answers: dict[str, Answer]) -> None:
 
 def test_pictures_are_png_in_notebooks(answers: dict[str, Answer]) -> None:
     pytest.importorskip("matplotlib")
-    for name in ("Grounding", "Scene", "Check", "Imagination"):
+    for name in ("Grounding", "Scene", "Check", "Imagination", "Learned"):
         shown = answers[name]._repr_png_()
         assert shown is not None
         assert shown.startswith(PNG)

@@ -135,7 +135,7 @@ def test_a_scene_takes_the_place_of_no_device(seen: Scene, tmp_path: Path) -> No
     [
         (lambda wrong: deixis.perceive(wrong), "`cloud` must be a PointCloud or a file, got"),
         (lambda wrong: deixis.perceive("x.pcd", settings=wrong), "`settings` must be DetectionSettings, got"),
-        (lambda wrong: deixis.perceive("x.pcd", viewpoint=wrong), "a viewpoint is a word such as 'chair', not"),
+        (lambda wrong: deixis.perceive("x.pcd", viewpoint=wrong), "`viewpoint` must be a word such as 'chair', got"),
         (lambda wrong: deixis.write_scene(wrong, "x.scene.json"), "`scene` must be a Scene, got"),
         (lambda wrong: deixis.write_scene(Scene(()), wrong), "`file` must be the name of a file, got"),
         (lambda wrong: deixis.check(wrong, {"objects": []}), "`layout` must be a script, its file or"),

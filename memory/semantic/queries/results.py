@@ -46,13 +46,14 @@ class QueryKind(StrEnum):
 class Row(tuple[Term | None, ...]):
     """One solution of a SELECT query: a tuple of terms that are also read by the names of their variables.
 
-    None stands for a variable without a value.
+    None stands for a variable without a value. ``row.name`` reads a variable too, as with rdflib's rows, except for the
+    names of the methods of a tuple (``count``, ``index``).
 
     Examples
     --------
     >>> row = Row((ox.Literal("fork"), None), ("name", "size"))
-    >>> row["name"].value, row["size"], len(row)
-    ('fork', None, 2)
+    >>> row["name"].value, row.name.value, row["size"], len(row)
+    ('fork', 'fork', None, 2)
     >>> row.asdict()["name"].value
     'fork'
     >>> row
@@ -76,6 +77,12 @@ class Row(tuple[Term | None, ...]):
         except ValueError:
             known = ", ".join(self.variables)
             raise KeyError(f"the query selects no variable '{key}'; it selects {known}") from None
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the term of a variable that is not the name of a method."""
+        if name.startswith("_") or name == "variables" or name not in self.variables:
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'")
+        return self[name]
 
     def __repr__(self) -> str:
         """Return the names of the variables with their terms as SPARQL writes them."""

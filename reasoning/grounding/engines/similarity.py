@@ -1,5 +1,8 @@
 """Node similarity of the paper (equations 5 to 9) in batches of sub-graphs, and the assignment by its matrix.
 
+The assignment is the one with the largest sum of similarities (the Hungarian method; Kuhn 1955), which scipy finds by
+shortest augmenting paths (Crouse 2016).
+
 The description is first completed with the facts that inverses and transitivity imply. The whole calculus
 (:mod:`deixis.reasoning.entailment.implications`) implies more facts, but in the wide reading, which names no exact
 relation: with these facts, equations 5 to 9 found fewer objects.

@@ -1,7 +1,7 @@
 """Shortlist of the things of a large scene that the objects of a short description may be, without comparing all pairs.
 
 Labels, sizes and colours select the candidates of each object. Each fact is compared with the pairs of its objects'
-candidates only, which are its block. Messages between facts, objects and things (belief propagation; see
+candidates only, which are its block. Messages between facts, objects and things (belief propagation, Pearl 1988; see
 :mod:`deixis.reasoning.grounding.matching.search.belief_propagation`) then give approximate probabilities of the
 candidates.
 

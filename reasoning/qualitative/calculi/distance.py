@@ -191,7 +191,7 @@ def direction_distance_calculus(ranges: Ranges = DEFAULT_RANGES) -> TableCalculu
     """
     reaches = len(ranges.names)
     if reaches > MAX_RANGES:
-        raise SettingError(f"direction with distance takes at most {MAX_RANGES} ranges, not {reaches}")
+        raise SettingError(f"direction with distance must have at most {MAX_RANGES} ranges, got {reaches}")
     codes = [(tile, reach) for tile in range(8) for reach in range(reaches)]
     here = len(codes)
     converses = [((tile + 4) % 8) * reaches + reach for tile, reach in codes]

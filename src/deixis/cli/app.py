@@ -86,6 +86,17 @@ MAX_WIDTH = 1000
 """Maximum width of a help text in characters, above that of any terminal, so that the terminal's width is used."""
 
 
+class FullSummaries(TyperGroup):
+    """A group of commands whose help gives the whole summary of each command, wrapped to the terminal's width."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the commands with their summaries."""
+        commands = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        rows = [(name, command.get_short_help_str(MAX_WIDTH)) for name, command in commands if command is not None]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
 class CommandsOnDemand(TyperGroup):
     """The commands of COMMANDS, each imported only when it is called, so that small commands start fast."""
 
@@ -105,7 +116,7 @@ class CommandsOnDemand(TyperGroup):
         command = getattr(import_module(f"deixis.cli.{module}"), function)
         alone = typer.Typer(rich_markup_mode=None)
         if isinstance(command, typer.Typer):
-            alone.add_typer(command, name=cmd_name)
+            alone.add_typer(command, name=cmd_name, cls=FullSummaries)
         else:
             alone.command(cmd_name)(command)
         return typer.main.get_group(alone).commands[cmd_name]

@@ -75,7 +75,7 @@ def require_picture(path: str | Path) -> Path:
     require("matplotlib", f"{path}: drawing a picture")
     target = Path(path)
     if target.suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise DeixisError(f"{target}: a picture's name ends in .png, .svg or .pdf")
+        raise DeixisError(f"{target}: the name of a picture must end in .png, .svg or .pdf")
     if target.is_dir():
         raise DeixisError(f"{target}: this is a folder; name a file for the picture")
     try:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.patches import Rectangle
 
     from deixis.ontology.lessons.types import Match
+    from deixis.workflows.knowledge.learn import Learned
 
 GROUP_COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#f0e442")
 """Colours of groups of interchangeable objects, from Okabe and Ito's palette."""
@@ -130,6 +131,24 @@ def answer_figure(found: Grounding, axes: Axes | None = None, title: str | None 
     if side.angle or side.mirrored:
         title = ", ".join(filter(None, (title, f"scene {side_text(side.angle, side.mirrored)}")))
     return grounding_figure(found, scene_from(found.scene, side), title, axes=axes)
+
+
+def learned_figure(learned: Learned, axes: Axes | None = None) -> Figure:
+    """Draw the grounding of a lesson in its scene.
+
+    Parameters
+    ----------
+    learned
+        Answer of ``deixis learn``.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return answer_figure(learned.grounding, axes)
 
 
 def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:

@@ -108,6 +108,28 @@ RENDERERS = {
         "report.grounding.retrieve:retrieval_lines",
         "report.knowledge.rows:retrieval_rows",
     ),
+    "Learned": Renderer(
+        "report.json_answers:learned_to_dict",
+        "report.layouts.script:learned_lines",
+        "report.knowledge.rows:learned_rows",
+        "plots.grounding:learned_figure",
+    ),
+    "LearnedWords": Renderer(
+        "report.descriptions.relation:learned_words_to_dict",
+        "report.descriptions.relation:learned_words_lines",
+        "report.descriptions.relation:learned_words_rows",
+    ),
+    "Taught": Renderer("report.scenes.seen:taught_to_dict", "report.scenes.seen:taught_lines"),
+    "LayoutConcept": Renderer(
+        "report.knowledge.concept:layout_to_dict",
+        "report.knowledge.concept:layout_lines",
+        "report.knowledge.concept:layout_rows",
+    ),
+    "CountedConcept": Renderer(
+        "report.knowledge.concept:concept_to_dict",
+        "report.knowledge.concept:concept_lines",
+        "report.knowledge.concept:concept_rows",
+    ),
     "QueryResult": Renderer(
         "report.knowledge.rows:query_to_dict", "report.knowledge.rows:query_lines", "report.knowledge.rows:query_rows"
     ),

@@ -1,4 +1,4 @@
-"""The robot's fluents on the blackboard: what it saw, what persons told and showed it, and what it concluded.
+"""The robot's fluents on the blackboard: what it saw, what people told and showed it, and what it concluded.
 
 Each fluent says how it became known: seen by the robot, shown or said by a person, or inferred. What was said of an
 expected object holds until the object is seen (``sameAs`` then names the thing) or contradicted.
@@ -148,7 +148,7 @@ class Diary:
     # ---- seeing
 
     def saw(self, scene: Scene, at: float) -> None:
-        """Write which things came, went and stayed; nothing where a tracker does.
+        """Write which things came, went and stayed, unless a tracker writes it.
 
         A thing is one of the previous scene if it lies where that one lay.
 
@@ -274,7 +274,7 @@ class Diary:
     def concluded(
         self, found: Collection[Found], predicates: Collection[str], at: float, certainties: Mapping[Found, float]
     ) -> None:
-        """Make these the conclusions with these predicates that hold.
+        """Write the present conclusions with some predicates, and end the earlier ones that no longer hold.
 
         Parameters
         ----------

@@ -96,7 +96,7 @@ def angle_between(first: float, second: float) -> float:
 
 @dataclass(frozen=True, eq=False)
 class LearnedLayout:
-    """A layout: the script that tells it, and the experience of the tables that were laid so.
+    """A layout: the script that describes it, and the experience of its tables.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class LearnedLayout:
 
     @classmethod
     def told(cls, script: Script) -> LearnedLayout:
-        """Return the layout of a script, of which nothing was seen.
+        """Return the layout of a script, without experience.
 
         Parameters
         ----------
@@ -355,7 +355,7 @@ class LearnedLayout:
 
 
 def _fullness(script: Script) -> tuple[int, int, str]:
-    """Return what says how full a description is, the same for equal ones."""
+    """Return a sort key of how much a description states; equal descriptions have equal keys."""
     from deixis.grammar.layout.format import format_script
 
     graph = script.graph()

@@ -1,7 +1,7 @@
 """Lessons of a robot: tables on which a teacher described a layout, what each taught, and what still waits.
 
-A match that is decided is taught at once. The others wait: for an answer, a pointing, or what further tables teach of
-the layout and of its things. What waits is then taught in hindsight, since a lesson keeps its table.
+A decided match is learned at once. The others wait for an answer, for a person who points, or for what further tables
+teach of the layout and of its things. They are then learned in hindsight, because a lesson keeps its table.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ class TableLesson:
         return replace(self, settled=settled, waiting=waiting, roles=roles, present=table.present)
 
     def questions(self) -> tuple[Question, ...]:
-        """Return the questions about the roles that wait, the one that tells most first.
+        """Return the questions about the roles that wait, the most informative first.
 
         Returns
         -------

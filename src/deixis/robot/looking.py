@@ -1,8 +1,8 @@
-"""Look at a table with what was learned: which layout lies there, what each thing is, and what is wrong.
+"""Explain a table by what was learned: its layout, the name of each thing, and the mistakes.
 
 The looks of the things (recognition, sizes) and the layouts are one posterior: each layout explains the table with as
-few mistakes as it can (:mod:`deixis.reasoning.comparison.explanation`), its share is that of the sum of all its
-explanations, and the name of a thing is that of its role, averaged over all of them.
+few mistakes as it can (:mod:`deixis.reasoning.comparison.explanation`). The probability of a layout is that of all its
+explanations together, and the name of a thing is that of its role, averaged over all of them.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Fault:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """A table as it was understood.
+    """Explanation of a table: its layouts, the names of its things, and the mistakes.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Look:
 
     @property
     def layout(self) -> str | None:
-        """Name of the layout that lies here; None if it is probably none that is known."""
+        """Name of the layout of the table; None if probably no known layout explains it."""
         best = next(iter(self.layouts.items()), None)
         return best[0] if best is not None and best[1] >= 0.5 else None
 
@@ -150,7 +150,7 @@ class Look:
 
 @dataclass(frozen=True, eq=False)
 class TableKnowledge:
-    """Learned knowledge, as far as looking at a table needs it; no store is open.
+    """Learned knowledge that the explanation of a table needs, without an open store.
 
     Attributes
     ----------
@@ -224,7 +224,7 @@ class TableKnowledge:
         return recognise(self.known, scene, clouds).scene
 
     def look(self, scene: Scene, shown: Mapping[str, tuple[str, float]] | None = None) -> Look:
-        """Understand a table.
+        """Explain a table.
 
         Parameters
         ----------

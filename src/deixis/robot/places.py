@@ -131,7 +131,7 @@ def _grid(scene: Scene) -> Array:
 
 
 def _visible(centres: Array, scene: Scene) -> NDArray[np.bool_]:
-    """Return which places are in view; all if nothing tells where the camera is."""
+    """Return which places are in view; all if the position of the camera is unknown."""
     clouds = (scene.cloud_of(thing.id) for thing in scene.objects if isinstance(thing.cloud, PointCloud | str))
     eye = next((np.array(cloud.origin, dtype=np.float64) for cloud in clouds), None)
     if eye is None or eye[2] < MIN_EYE:

@@ -1,7 +1,7 @@
-"""The robot: it sees tables, is shown things and told layouts, learns from it, and says what is wrong with the next.
+"""The robot: it sees tables, learns things that people show and layouts that they describe, and checks the next table.
 
-One session is its memory. A text that it reads is grounded in the table that it sees; what is decided is taught at
-once, and what is doubtful waits. Every table of a layout adds to the experience of that layout.
+A session is its memory. A text is grounded in the table that the robot sees; decided matches are learned at once, and
+doubtful ones wait. Every table of a layout adds to the experience of that layout.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class RobotError(DeixisError, ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Told:
-    """Result of a text: the lesson with its grounding, the roles that it taught, and those that wait."""
+    """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait."""
 
     lesson: TableLesson
     learned: Learned
@@ -91,14 +91,14 @@ class Robot:
     memory
         The session, or the folder of its memory.
     board
-        Board on which it writes, for a robot whose things are tracked: the ids of things are then those of the board,
-        and others write where things are and what persons say and show. By default it writes all of this itself to the
-        blackboard of its memory.
+        Board to write to, for a robot whose things a tracker follows. The ids of things are then those of the board,
+        and other modules write where things are, and what people say and show. By default, the robot writes all of this
+        itself, to the blackboard of its memory.
 
     Notes
     -----
-    Things are named by their ids in the scene that is seen now. Times are in seconds since the origin of the
-    blackboard; without one, it is now. Methods are called by one thread at a time.
+    Things are identified by their ids in the present scene. Times are in seconds since the origin of the blackboard;
+    None is the present. Only one thread at a time may call a method.
 
     Examples
     --------
@@ -184,7 +184,7 @@ class Robot:
     def remember(self) -> None:
         """Read the layouts from the memory, with the counts of all their tables.
 
-        A new robot does this itself. Call it after something else than the robot changed the memory.
+        A new robot does this itself. Call it after another program or session has changed the memory.
         """
         from deixis.grammar.layout.parser import parse_script
 
@@ -202,7 +202,7 @@ class Robot:
         self._forget_look()
 
     def _remember_expected(self) -> None:
-        """Read the expected objects from the blackboard; those that were taken back are expected no more."""
+        """Read the expected objects from the blackboard; those that were taken back are no longer expected."""
         assert self._diary is not None
         held = {each.statement.subject: each for each in self._diary.board.now(Pattern(predicate=EXPECTED))}
         self.expected = [one for one in self.expected if one.standing is not Standing.EXPECTED or one.id in held]
@@ -244,12 +244,12 @@ class Robot:
 
     @property
     def sees_a_table(self) -> bool:
-        """True once a scene was seen."""
+        """True once the robot has seen a scene."""
         return self._scene is not None
 
     @property
     def scene(self) -> Scene:
-        """The scene that is seen now.
+        """The present scene.
 
         Raises RobotError before the first one.
         """
@@ -258,7 +258,7 @@ class Robot:
         return self._scene
 
     def sees(self, scene: Scene | PointCloud, at: float | None = None) -> Scene:
-        """Take a scene as the present situation.
+        """Take a scene as the present one, and look in it for expected objects.
 
         Parameters
         ----------
@@ -294,7 +294,7 @@ class Robot:
         return scene
 
     def watches(self, at: float | None = None) -> None:
-        """Take note that the table was in view and did not change since it was last seen.
+        """Record that the table has been in view, without a change, since the robot last saw it.
 
         Parameters
         ----------
@@ -309,20 +309,20 @@ class Robot:
         """Keep a table with those that are alike, if no layout explains it and no person described it."""
         found = self._kind(scene)
         if found is not None:
-            place, kind = found
+            index, kind = found
             id = self.diary.keeps(kind.tables[-1].scene, self._seen_at)
-            self.unnamed[place : place + 1] = [kind if id is None else kind.with_kept(id)]
+            self.unnamed[index : index + 1] = [kind if id is None else kind.with_kept(id)]
 
     def _remember_unnamed(self) -> None:
         """Read the tables that an earlier run kept."""
         assert self._diary is not None
         for id, (scene, nameless) in self._diary.kept().items():
-            place, kind = place_among(self.unnamed, scene, self.session.ontology, self.session.meaning())
-            self.unnamed[place : place + 1] = [replace(kind.with_kept(id), asked=kind.asked or nameless)]
+            index, kind = place_among(self.unnamed, scene, self.session.ontology, self.session.meaning())
+            self.unnamed[index : index + 1] = [replace(kind.with_kept(id), asked=kind.asked or nameless)]
             self._resumed = scene
 
     def _kind(self, scene: Scene) -> tuple[int, UnnamedKind] | None:
-        """Return the kind of a table with it, and its place among the unnamed ones; None for a known one."""
+        """Return the kind of a table with it, and its index in :attr:`unnamed`; None for a known one."""
         if len(scene.objects) < MIN_THINGS or any(lesson.scene is scene for lesson in self.lessons):
             return None
         if len(scene.objects[0].minimum) < 3 or (self._resumed is not None and is_same_table(self._resumed, scene)):
@@ -334,7 +334,7 @@ class Robot:
         return place_among(self.unnamed, look.scene, knowledge.ontology, knowledge.meaning)
 
     def knowledge(self) -> TableKnowledge:
-        """Return what was learned so far, as far as looking at a table needs it.
+        """Return the learned knowledge that the explanation of a table needs.
 
         Returns
         -------
@@ -349,12 +349,12 @@ class Robot:
         return self._knowledge
 
     def look(self) -> Look:
-        """Return how the present scene is understood.
+        """Explain the present scene by what was learned.
 
         Returns
         -------
         Look
-            Layouts, names and mistakes.
+            The probable layouts, the names of the things, and the mistakes.
         """
         if self._look is None:
             self._look = self.knowledge().look(self.scene, self._names_shown())
@@ -368,7 +368,7 @@ class Robot:
         return {thing: (meant(new_category_name(name)), certainty) for thing, (name, certainty) in shown.items()}
 
     def _conclude(self, look: Look) -> None:
-        """Write what the things of the table are, and how it is laid."""
+        """Write the categories of the things, the layout and the faults to the blackboard."""
         certain = {
             (self.diary.id_of(thing), IS_A, best): min(shares[best], 1.0)
             for thing, shares in look.names.items()
@@ -392,12 +392,12 @@ class Robot:
         return self.look().names
 
     def layout(self) -> str | None:
-        """Return the layout that lies here.
+        """Return the name of the layout of the present table.
 
         Returns
         -------
         str or None
-            Its name; None if it is probably none that is known.
+            Name of the most probable layout; None if probably no known layout explains the table.
         """
         return self.look().layout
 
@@ -407,7 +407,7 @@ class Robot:
         Parameters
         ----------
         layout
-            Name of the layout to compare with; None for the one that lies here.
+            Name of the layout to compare with; None for that of the present table.
 
         Returns
         -------
@@ -429,7 +429,7 @@ class Robot:
     def shown(
         self, label: str, thing: str, by: str = "user", at: float | None = None, event: str | None = None
     ) -> Taught:
-        """Learn what a thing looks like that a person points at and names.
+        """Learn the look of a thing that a person points at and names.
 
         Parameters
         ----------
@@ -484,15 +484,15 @@ class Robot:
     def told(
         self, text: str | Script, by: str = "user", at: float | None = None, event: str | None = None
     ) -> Told | tuple[ExpectedObject, ...]:
-        """Learn the layout that a text describes from the table that is seen, or expect the objects that it introduces.
+        """Learn the layout that a text describes from the present table, or expect the objects that it introduces.
 
-        *There is a red ball on the left* is about what is there: each object that it introduces is expected until a
-        thing is seen that fits, or until its place was in view and empty for long enough (:attr:`expected`).
+        *There is a red ball on the left* states what is present. The robot expects each object that such a text
+        introduces until it sees a thing that fits, or has seen the place empty for long enough (:attr:`expected`).
 
         Parameters
         ----------
         text
-            A script in the layout language or in English, as text or parsed. A parsed one is a layout.
+            A script in the layout language or in English, as text or parsed. A parsed script is always a layout.
         by
             Name of the person.
         at
@@ -503,15 +503,15 @@ class Robot:
         Returns
         -------
         Told or tuple of ExpectedObject
-            The layout, the grounding, and what was taught and what waits; or the objects that are expected, of which
-            some may be seen already.
+            The lesson, with the roles that are known and those that wait; or the expected objects, some of which may be
+            seen already.
 
         Raises
         ------
         ScriptError
             If the text is not understood.
         RobotError
-            If it describes a layout before a table was seen.
+            If it describes a layout before the robot has seen a table.
         """
         if isinstance(text, str) and (presence := self._presence(text)) is not None:
             return self._told_presence(presence, text, by, self._time(at), event)
@@ -652,28 +652,28 @@ class Robot:
     def consolidate(self) -> Consolidation:
         """Learn from the finished experiences on the blackboard, each once.
 
-        A described experience is a lesson, which adds to the counts of its layout. The table of one in which nothing
-        was said is kept with those that are alike, if no layout explains it.
+        An experience with a description is a lesson, which adds to the counts of its layout. If nothing was said in an
+        experience and no layout explains its table, the table is kept with those that are like it.
 
         Returns
         -------
         Consolidation
             The lessons, and the reasons why other experiences taught nothing.
         """
-        return consolidate(self.diary.board, _Pupil(self), RobotModule.name, self._keep_unnamed)
+        return consolidate(self.diary.board, _RobotLearner(self), RobotModule.name, self._keep_unnamed)
 
     # ---- what waits
 
     @property
     def questions(self) -> tuple[Question, ...]:
-        """Questions about the present table that are worth their cost, the one that tells most first."""
+        """Questions about the present table whose information is worth their cost, the most informative first."""
         questions = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
         worth = [question for question in questions if question.gain > QUESTION_COST]
         return tuple(sorted(worth, key=lambda question: -question.gain))
 
     @property
     def layout_question(self) -> LayoutQuestion | None:
-        """Question for the name of a layout that has none and lies here again; None if there is nothing to ask."""
+        """Question for the name of a layout that came up several times without a name; None if there is no question."""
         found = None if self._scene is None else self._kind(self._scene)
         if found is None or len(found[1].tables) < NOTICED_FROM or found[1].asked:
             return None
@@ -682,14 +682,14 @@ class Robot:
     def name_layout(
         self, question: LayoutQuestion, name: str | None, by: str = "user", event: str | None = None
     ) -> tuple[TableLesson, ...]:
-        """Take the name of a layout that came again, and learn the layout from all tables of its kind.
+        """Name a layout that came up several times, and learn it from all of its tables.
 
         Parameters
         ----------
         question
             The question.
         name
-            Name of the layout; None if it has none, so that it is not asked again.
+            Name of the layout; None if it has no name, so that the robot does not ask again.
         by
             Name of the person who answers.
         event
@@ -726,12 +726,12 @@ class Robot:
         """
         kind = question.kind
         kept = [table.kept for table in kind.tables if table.kept is not None]
-        place = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
+        index = next((n for n, known in enumerate(self.unnamed) if known.layout.script is kind.layout.script), None)
         event = event or self.diary.board.new_id("sentence")
         if name is None:
             self.diary.named(kept, None, by, self._time(None), event)
-            if place is not None:
-                self.unnamed[place] = replace(self.unnamed[place], asked=True)
+            if index is not None:
+                self.unnamed[index] = replace(self.unnamed[index], asked=True)
             return ()
         script = kind.script(category_name(name), self.session.ontology)
         examples = [(script, table.labelled) for table in kind.tables]
@@ -741,12 +741,12 @@ class Robot:
             examples, teacher=by, events=(event,) if changes else (), episodes=lambda _: self._part(changes)
         )
         lessons = [self._learned(script, table.scene, one) for table, one in zip(kind.tables, learned, strict=True)]
-        if place is not None:
-            del self.unnamed[place]
+        if index is not None:
+            del self.unnamed[index]
         return tuple(lessons)
 
     def answers(self, question: Question, thing: str | None, by: str = "user") -> None:
-        """Take the answer to a question, and teach what it settles.
+        """Take the answer to a question, and learn from it which thing the role is, and how the thing looks.
 
         Parameters
         ----------
@@ -760,7 +760,7 @@ class Robot:
         Raises
         ------
         RobotError
-            If the scene has no such thing, or the role does not wait any more.
+            If the scene has no such thing, or the role no longer waits.
 
         Examples
         --------
@@ -788,24 +788,26 @@ class Robot:
         """
         lesson = self.lessons[question.lesson]
         if question.role not in lesson.waiting:
-            raise RobotError(f"`question` must be about a role that waits, and '{question.role}' does not any more")
+            raise RobotError(f"`question` must be about a role that still waits, and '{question.role}' does not")
         if thing is None:
             self._settle(lesson, question.role, None)
             return
         if thing not in lesson.scene.ids:
-            raise RobotError(f"`thing` must be a thing of the scene, got '{thing}'; {', '.join(lesson.scene.ids)}")
+            raise RobotError(
+                f"`thing` must be a thing of the scene, got '{thing}'; there are: {', '.join(lesson.scene.ids)}"
+            )
         self.session.teach(lesson.scene, thing, plain_name(question.role), by, (lesson.id, question.role))
         self._settle(lesson, question.role, Settled(thing, SettledBy.ANSWER, 1.0))
 
     def reconsider(self) -> tuple[tuple[int, str], ...]:
-        """Look at all lessons again with what was learned since, and teach in hindsight what is clear now.
+        """Explain the tables of all lessons again with what was learned since, and learn what has become clear.
 
-        A name that only words or hindsight gave, and that is now clearly that of another thing, is corrected.
+        A name that came from words or hindsight only is corrected if it now clearly belongs to another thing.
 
         Returns
         -------
         tuple of tuple
-            Number of the lesson and role of everything that was taught.
+            Number of the lesson and name of the role, for each view that was learned.
         """
         done = []
         for number in range(len(self.lessons)):
@@ -816,14 +818,14 @@ class Robot:
             knowledge = self.knowledge()
             seen = knowledge.recognised(lesson.scene)
             found = explain(layout.evidence(seen, knowledge.ontology, knowledge.meaning))
-            for place, role in enumerate(layout.roles):
+            for index, role in enumerate(layout.roles):
                 known = lesson.settled.get(role)
                 if role not in lesson.waiting and known is None:
                     continue
                 if known is not None and known.by in (SettledBy.ANSWER, SettledBy.POINTING):
                     continue
-                best = int(found.roles_of[place].argmax())
-                share, thing = float(found.roles_of[place, best]), lesson.scene.ids[best]
+                best = int(found.roles_of[index].argmax())
+                share, thing = float(found.roles_of[index, best]), lesson.scene.ids[best]
                 if share < SETTLED or (known is not None and known.thing == thing):
                     continue
                 if any(other != role and each.thing == thing for other, each in lesson.settled.items()):
@@ -852,8 +854,8 @@ class Robot:
         self._look = self._knowledge = None
 
 
-class _Pupil:
-    """A robot as the learner of a consolidation."""
+class _RobotLearner:
+    """Adapter that lets a consolidation learn with a robot instead of a session."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
@@ -872,7 +874,7 @@ class _Pupil:
 
 
 def perceived(cloud: PointCloud, frame: NDArray[np.float64] | None = None) -> Scene:
-    """Return the things in a cloud; parts of a thing that another thing hides in the middle are one thing.
+    """Detect the things in a cloud, and join the parts of a thing whose middle another thing hides.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tables whose layout has no name: noticed when they come again, and made a layout by a person who names it.
+"""Tables whose layout has no name: the robot notices when they come up again, and asks a person for the name.
 
 The first table of a kind is described by the relations that hold on it. A later table is of that kind if this
 description explains it, as a known layout would (:mod:`deixis.reasoning.comparison.explanation`).
@@ -195,7 +195,7 @@ class UnnamedKind:
 def place_among(
     kinds: Sequence[UnnamedKind], scene: Scene, ontology: Ontology, meaning: Meaning
 ) -> tuple[int, UnnamedKind]:
-    """Return the kind of a table with the table, and its place among the known kinds; the end for a new one.
+    """Return the kind of a table, with the table added, and its index among the known kinds; their number if new.
 
     Parameters
     ----------

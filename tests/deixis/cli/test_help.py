@@ -37,6 +37,15 @@ def test_all_groups_share_one_column() -> None:
     assert len({re.match(r"  [a-z-]+ +", line).end() for line in entries}) == 1  # type: ignore[union-attr]
 
 
+@pytest.mark.parametrize("group", ["category", "episodes", "memory", "experiment"])
+def test_groups_print_whole_summaries(group: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, _ = deixis(group, "--help")
+    assert sections(out)["Commands"]
+    assert "..." not in out.partition("Commands:")[2]
+    assert max(map(len, out.splitlines())) <= 80
+
+
 @pytest.mark.parametrize("command", [(), ("check",), ("memory", "export")])
 def test_help_uses_the_width_of_the_terminal(command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     longest = {}

@@ -1,9 +1,10 @@
 """Search for tractable relations: choose one, close, and learn a nogood from every contradiction.
 
-The loops are in :mod:`deixis.reasoning.qualitative.networks.search.search_kernels`; this module prepares their data.
-Only edges with a stated relation are decided. An edge is *settled* when a tractable relation within the stated one
-contains the remaining relation: the stated network with these relations instead is tractable, and its closure is not
-empty, because it contains the present closed network. So the search may stop with most pairs undetermined.
+Branching on tractable relations follows Nebel (1997), and learning follows Marques-Silva and Sakallah (1999). The loops
+are in :mod:`deixis.reasoning.qualitative.networks.search.search_kernels`; this module prepares their data. Only edges
+with a stated relation are decided. An edge is *settled* when a tractable relation within the stated one contains the
+remaining relation: the stated network with these relations instead is tractable, and its closure is not empty, because
+it contains the present closed network. So the search may stop with most pairs undetermined.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ def tell(
 ) -> None:
     """Say a layout or a scene in English, in few words.
 
-    Exit 0 if the text is read as what it says, and singles out each object of a scene, 1 if not.
+    Exit 0 if the text, read again, gives the same facts, and singles out each object of a scene; 1 if not.
     """
     from deixis.workflows.descriptions.tell import holds_facts
     from deixis.workflows.descriptions.tell import tell as run

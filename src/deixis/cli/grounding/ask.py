@@ -25,7 +25,7 @@ def ask(
     teacher: Annotated[str, typer.Option(metavar="NAME", help="Name of the person who answers.")] = "user",
     memory: MemoryDir = None,
 ) -> None:
-    """Have the robot ask which object a word refers to; the object of the answer becomes the first view of the word.
+    """Have the robot ask which object a word means; the answer teaches the word its first view.
 
     For a known word, print the objects that it is recognised in, and ask nothing; --points-at adds one more view.
     Exit 1 without an answer.

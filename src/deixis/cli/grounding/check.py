@@ -44,7 +44,7 @@ def check(
     no_memory: NoMemory = False,
     as_json: AsJson = False,
 ) -> None:
-    """Print what is missing, misplaced, miscoloured and extra on a table; exit 1 where anything is."""
+    """Print what is missing, misplaced, miscoloured and extra on a table; exit 1 if anything is."""
     from deixis.report.json_answers import check_to_dict
     from deixis.report.layouts.script import check_lines
     from deixis.session import Session

@@ -24,7 +24,7 @@ category_app = typer.Typer(help="List, rename, merge or forget taught categories
 
 @category_app.command("list")
 def list_categories(memory: MemoryDir = None, as_json: AsJson = False) -> None:
-    """List the taught categories with their number of views; exit 2 where damaged ones are left out."""
+    """List the taught categories with their number of views; exit 2 if damaged ones are left out."""
     from deixis.session import Session
 
     require_memory(memory)

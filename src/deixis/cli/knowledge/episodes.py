@@ -35,7 +35,7 @@ ANY = "*"
 
 By = Annotated[str, typer.Option(metavar="NAME", help="The person or module that states it.")]
 Triple = Annotated[
-    tuple[str, str, str], typer.Option("--pattern", metavar="S P O", help="Only statements with this; * is any.")
+    tuple[str, str, str], typer.Option("--pattern", metavar="S P O", help="Only statements like this; * is anything.")
 ]
 Window = Annotated[
     tuple[float, float] | None, typer.Option(metavar="FROM TO", help="Only what may hold in this time, in seconds.")
@@ -114,7 +114,7 @@ def import_(
 @episodes_app.command("finish")
 def finish_(
     ids: Annotated[list[str] | None, typer.Argument(metavar="[ID]...", help="Fluents.")] = None,
-    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When they finish; now by default.")] = None,
+    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When they finish; default: now.")] = None,
     pattern: Triple = (ANY, ANY, ANY),
     by: By = "user",
     memory: MemoryDir = None,
@@ -235,7 +235,7 @@ def export(
 def record(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the experience.")],
     stop: Annotated[bool, typer.Option("--stop", help="Finish the recording instead of starting it.")] = False,
-    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When; now by default.")] = None,
+    at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it starts or stops; default: now.")] = None,
     by: By = "user",
     memory: MemoryDir = None,
 ) -> None:
@@ -302,7 +302,7 @@ def classes(
 
 @episodes_app.command("memory")
 def memory_(
-    name: Annotated[MemoryName, typer.Argument(help="The memory.")],
+    name: Annotated[MemoryName, typer.Argument(metavar="NAME", help=f"The memory: {', '.join(MemoryName)}.")],
     memory: MemoryDir = None,
 ) -> None:
     """Print the content of one of the five memories."""

@@ -115,7 +115,7 @@ def import_(
     dump: Annotated[Path, typer.Argument(metavar="FILE", help="An exported file, or triples in another format.")],
     memory: MemoryDir = None,
 ) -> None:
-    """Add exported content to the memory, and keep what is already there."""
+    """Add exported content to the memory; what the memory has stays."""
     from deixis.errors import DeixisError
     from deixis.memory.episodes.exchange import has_ending, import_file
     from deixis.memory.on_demand import default_memory

@@ -42,7 +42,7 @@ def query(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run a SPARQL query over the memory; exit 3 without any rows where a limit is reached."""
+    """Run a SPARQL query over the memory; if it reaches a limit, exit 3 and print no rows."""
     from deixis.cli.output import read_text
     from deixis.errors import DeixisError
     from deixis.session import Session

@@ -12,14 +12,14 @@ from deixis.cli.common import NO, AsJson, MemoryDir, print_json, print_line, pri
 def recall(
     question: Annotated[str, typer.Argument(metavar="QUESTION", help="Such as 'where was the fork before?'.")],
     at: Annotated[
-        str | None, typer.Option(metavar="TIME", help="Answer as at this time, as in 2026-11-23T12:30; now by default.")
+        str | None, typer.Option(metavar="TIME", help="Time of asking, such as 2026-11-23T12:30; default: now.")
     ] = None,
     speaker: Annotated[str | None, typer.Option(metavar="NAME", help="The person who says 'I'.")] = None,
     sparql: Annotated[bool, typer.Option("--sparql", help="Print the query that finds the same fluents.")] = False,
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Answer a question about then and now; exit 1 where it is not known, with the reason."""
+    """Answer a question about then and now; if it is not known, print the reason and exit 1."""
     from deixis.report.knowledge.recall import recall_lines, recall_to_dict
     from deixis.session import Session
     from deixis.workflows.knowledge.recall import moment_of

@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import sys
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-from deixis.cli.common import (
-    AsJson,
-    MemoryDir,
-    print_json,
-)
+from deixis.cli.common import AsJson, MemoryDir, print_json
 from deixis.cli.completion import complete_layouts
-
-if TYPE_CHECKING:
-    from deixis.learning.layouts.concept import CountedConcept
 
 
 class LayoutFormat(StrEnum):
@@ -45,6 +38,7 @@ def show(
     A name stands for all tables of the layout: told facts that did not hold on all of them are hedged by their share,
     and what held on all of them is added. The id of a lesson stands for that lesson.
     """
+    from deixis.report.knowledge.concept import concept_to_dict
     from deixis.session import Session
 
     with Session(memory) as session:
@@ -54,36 +48,8 @@ def show(
         found, text = session.concept(layout), session.show(layout)
         relations = session.ontology.relations
     if as_json:
-        print_json(_to_json(found, text))
+        print_json(concept_to_dict(found, text))
     else:
         from deixis.ontology.rdf.triples import turtle
 
         sys.stdout.write(turtle(found.shapes() if format is LayoutFormat.SHACL else found.owl(relations)))
-
-
-def _to_json(found: CountedConcept, text: str) -> dict[str, Any]:
-    from deixis.ontology.graph.export import fact_to_dict
-    from deixis.ontology.graph.facts import Fact
-
-    concept = found.layout
-    counts = [
-        {
-            "statement": str(each.statement),
-            "claim": not isinstance(each.statement, Fact),
-            "told": each.told,
-            "held": each.tally.held,
-            "of": each.tally.of,
-        }
-        for each in found.statements
-    ]
-    return {
-        "name": concept.name,
-        "title": concept.title,
-        "viewpoint": concept.viewpoint,
-        "lesson": concept.lesson,
-        "lessons": list(found.lessons),
-        "facts": [fact_to_dict(fact) for fact in concept.facts],
-        "counts": counts,
-        "roles": [{"role": role, "present": tally.held, "of": tally.of} for role, tally in found.filled.items()],
-        "text": text,
-    }

@@ -31,7 +31,7 @@ def unlearn(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Take back what matches all given options, with everything that came only from it; exit 1 where nothing does."""
+    """Take back what matches all given options, and all that came only from it; exit 1 if nothing matches."""
     from deixis.memory.episodes.blackboard import has_episodes
     from deixis.memory.on_demand import default_memory
     from deixis.report.knowledge.unlearn import unlearned_lines

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from deixis.answers import count
 from deixis.cli.common import NO, AsJson, MemoryDir, TimeLimit, print_json, print_line, print_lines
 
 if TYPE_CHECKING:
@@ -76,7 +77,8 @@ def learn(
     else:
         with _episodes(memory) as board:
             activity = run(name, sequences_of_experiences(board, experiences or ()), known)
-    print_line(f"Learned '{name}' from {activity.examples} examples: {len(activity.steps)} steps; in {known}")
+    steps = count(len(activity.steps), "step")
+    print_line(f"Learned '{name}' from {count(activity.examples, 'example')}: {steps}; in {known}")
 
 
 @activity_app.command("recognise")

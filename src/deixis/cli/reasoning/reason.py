@@ -56,7 +56,7 @@ def reason(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Infer what an ontology entails; exit 1, with the reasons, where it or one of its classes is unsatisfiable."""
+    """Infer what an ontology entails; exit 1, with the reasons, if it or one of its classes is unsatisfiable."""
     from deixis.errors import DeixisError
     from deixis.reasoning.errors import LimitError, NotEntailedError
     from deixis.workflows.reasoning.reason import read_ontology, read_remembered

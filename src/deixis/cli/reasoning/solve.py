@@ -47,7 +47,7 @@ def solve(
     time_limit: TimeLimit = 60.0,
     as_json: AsJson = False,
 ) -> None:
-    """Decide whether constraint networks are consistent; exit 1 where one is not, 3 where one stays undecided."""
+    """Decide whether constraint networks are consistent; exit 1 if one is not, 3 if one stays undecided."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.networks import read_networks
     from deixis.report.reasoning.solve import reason_lines

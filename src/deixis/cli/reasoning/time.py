@@ -36,12 +36,12 @@ def time_command(
     ] = None,
     pattern: Annotated[
         tuple[str, str, str],
-        typer.Option(metavar="S P O", help="Only statements with this subject, predicate and object; * is any."),
+        typer.Option(metavar="S P O", help="Only statements with this subject, predicate and object; * is anything."),
     ] = (ANY, ANY, ANY),
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Print the known bounds of when things held, and what follows; exit 1 where the statements contradict."""
+    """Print the known bounds of when things held, and what follows; exit 1 if the statements contradict."""
     from deixis.errors import DeixisError
     from deixis.grammar.formats.fluents import read_fluents
     from deixis.reasoning.temporal.errors import TemporalConflictError

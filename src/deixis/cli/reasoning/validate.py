@@ -27,7 +27,7 @@ def validate(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Check data against SHACL shapes; exit 1 where it does not conform, and print the violations."""
+    """Check data against SHACL shapes; print the violations and exit 1 if there are any."""
     from deixis.errors import DeixisError
     from deixis.reasoning.errors import LimitError
     from deixis.workflows.reasoning.validate import validate_files, validate_memory

@@ -113,7 +113,7 @@ def apprentice(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show a robot four things, tell it six layouts on first tables, and let it check further tables."""
+    """Show a robot four things, describe six layouts on example tables, and have it check further tables."""
     from deixis.experiments.apprentice.report import lines, to_dict
     from deixis.experiments.apprentice.run import ApprenticePlan, run
 

@@ -36,7 +36,7 @@ def recognise(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Name the things of a scene that look like taught categories; exit 1 where none is recognised."""
+    """Name the things of a scene that look like taught categories; exit 1 if none is recognised."""
     from deixis.report.scenes.seen import recognised_lines, recognised_to_dict
     from deixis.session import Session
     from deixis.workflows.layouts.read import load_scene

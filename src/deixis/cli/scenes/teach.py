@@ -23,7 +23,7 @@ def teach(
     as_json: AsJson = False,
 ) -> None:
     """Teach one more view of a category; teaching the same view again corrects its category."""
-    from deixis.report.scenes.seen import meant_lines, taught_line
+    from deixis.report.scenes.seen import meant_lines, taught_line, taught_to_dict
     from deixis.session import Session
     from deixis.view_store import category_name
 
@@ -31,6 +31,6 @@ def teach(
         taught = session.teach(scene, object, label, teacher)
         note_change(session.path)
     if as_json:
-        print_json({"view": taught.view, "category": taught.category, "views": taught.views, "before": taught.before})
+        print_json(taught_to_dict(taught))
     else:
         print_lines([*meant_lines(category_name(label), taught.category), taught_line(taught, object)])

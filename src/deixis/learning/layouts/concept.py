@@ -14,6 +14,8 @@ from functools import cached_property
 import numpy as np
 import pyoxigraph as ox
 
+from deixis.answers import Answer, count
+from deixis.grammar.layout.format import layout_script
 from deixis.learning.layouts.experience import COMPARED, TOLERANCE, Experience, Tally
 from deixis.learning.layouts.tables import TaughtTable
 from deixis.ontology.graph.claims import Claim
@@ -23,6 +25,7 @@ from deixis.ontology.lessons.shapes import layout_shapes
 from deixis.ontology.lessons.types import LayoutConcept, Role
 from deixis.ontology.lessons.write import layout_triples
 from deixis.ontology.relations.relation import Reading, Relation, Relations
+from deixis.ontology.tbox import Ontology
 from deixis.perception.scene import PerceivedObject
 from deixis.reasoning.entailment.implications import Implications
 from deixis.reasoning.geometry.rectangle import box_relations
@@ -50,9 +53,9 @@ class Counted:
         return f"{self.statement}: {counted}{'' if self.told else ', not told'}"
 
 
-@dataclass(frozen=True, eq=False)
-class CountedConcept:
-    """A layout as its tables have it.
+@dataclass(frozen=True, eq=False, repr=False)
+class CountedConcept(Answer):
+    """A layout with the counts of what held on its tables.
 
     Attributes
     ----------
@@ -63,7 +66,31 @@ class CountedConcept:
     statements
         Facts and claims of the layout, in its order, with their counts.
     filled
-        On how many tables each role was filled.
+        Number of tables on which each role was filled.
+
+    Examples
+    --------
+    >>> import deixis
+    >>> from deixis.learning.lessons.lesson import layout_concept
+    >>> script = deixis.read_script(text="layout tea; cup on saucer")
+    >>> fact, = script.facts
+    >>> on_both = Counted(fact, Tally(2, 2), told=True)
+    >>> roles = {"cup": Tally(2, 2), "saucer": Tally(2, 2)}
+    >>> concept = CountedConcept(layout_concept(script, "tea-1"), ("tea-1", "tea-2"), (on_both,), roles)
+    >>> concept, concept.summary(), concept.optional
+    (<CountedConcept 'tea' on 2 tables: 2 roles, 1 statement>, "'tea' on 2 tables: 2 roles, 1 statement", frozenset())
+    >>> print(concept.script(script.ontology).strip())
+    layout tea
+    <BLANKLINE>
+    cup on saucer
+    <BLANKLINE>
+    # 2 tables: tea-1, tea-2
+    # on(cup, saucer): held on 2 of 2 tables
+    >>> list(concept.lines())[1]
+    'on(cup, saucer): held on 2 of 2 tables'
+    >>> shapes, axioms = list(concept.shapes()), list(concept.owl(script.ontology.relations))
+    >>> len(shapes) > 10, len(axioms) > 10
+    (True, True)
     """
 
     layout: LayoutConcept
@@ -71,10 +98,33 @@ class CountedConcept:
     statements: tuple[Counted, ...]
     filled: Mapping[str, Tally]
 
+    def summary(self) -> str:
+        """Return the name of the layout, and the numbers of its tables, roles and statements."""
+        roles, statements = count(len(self.layout.roles), "role"), count(len(self.statements), "statement")
+        return f"'{self.layout.name}' on {count(len(self.lessons), 'table')}: {roles}, {statements}"
+
     @property
     def optional(self) -> frozenset[str]:
         """Roles that were not on every table."""
         return frozenset(role for role, tally in self.filled.items() if tally.held < tally.of)
+
+    def script(self, ontology: Ontology) -> str:
+        """Return the layout as a script; with several tables, comments at its end give the counts.
+
+        Parameters
+        ----------
+        ontology
+            Words of the language.
+
+        Returns
+        -------
+        str
+            The text of the script.
+        """
+        text = layout_script(self.layout, ontology)
+        if len(self.lessons) < MIN_TABLES:
+            return text
+        return text + "\n" + "".join(f"# {line}\n" for line in self.lines())
 
     def lines(self) -> Iterator[str]:
         """Yield the counts as lines of text.

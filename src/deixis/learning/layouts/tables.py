@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.learning.layouts.experience import Experience
 from deixis.learning.views.teachings import boxes_key
@@ -31,7 +32,7 @@ SettledRoles = Mapping[tuple[str, str], Mapping[str, str]]
 """Thing of each role that was settled after its lesson, by role, by the id of the lesson and the key of its boxes."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TaughtTable:
     """A table of a layout.
 
@@ -57,6 +58,9 @@ class TaughtTable:
     scene: Scene
     things: Mapping[str, str]
     present: frozenset[str]
+
+    def __repr__(self) -> str:
+        return f"<TaughtTable {self.lesson}: {count(len(self.things), 'known thing')}>"
 
     @property
     def is_measured(self) -> bool:

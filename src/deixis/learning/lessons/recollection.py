@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pyoxigraph as ox
 
+from deixis.answers import count
 from deixis.errors import DeixisError
 from deixis.memory.semantic.rdf.graphs import GraphName, graph_iri
 from deixis.memory.semantic.rdf.ledger import place
@@ -47,12 +48,16 @@ class Remembered:
     texts: tuple[str, str]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recollection:
     """All lessons that can be read, and a line for each other lesson with the reason."""
 
     lessons: tuple[Remembered, ...]
     unreadable: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        left = f", {len(self.unreadable)} unreadable" if self.unreadable else ""
+        return f"<Recollection {count(len(self.lessons), 'lesson')}{left}>"
 
     def of(self, ids: Iterable[str]) -> Recollection:
         """Return some of the lessons.

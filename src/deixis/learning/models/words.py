@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
+from deixis.answers import Answer, count
 from deixis.grammar.layout.format import layout_script
 from deixis.grammar.script import Script
 from deixis.learning.lessons.lesson import Occasion, layout_concept, layout_name
@@ -22,14 +23,35 @@ from deixis.reasoning.grounding.fitting.likelihood import SaidPairs, said_pairs
 from deixis.version import VERSION
 
 
-@dataclass(frozen=True)
-class LearnedWords:
+@dataclass(frozen=True, repr=False)
+class LearnedWords(Answer):
     """Models of relation words after learning, and what they were learned from.
 
-    ``taught`` has the names of the models that changed, ``lessons`` the ids of the lessons that taught them, ``kept``
-    those of the lessons that were new. ``left_out`` has a line for each lesson or example that taught nothing, with the
-    reason. ``statistics`` are the sums that a lesson can be removed from; ``texts`` maps the id of each lesson to a key
-    that equal lessons share.
+    Attributes
+    ----------
+    models
+        All models, those that changed included.
+    taught
+        Names of the models that changed.
+    lessons
+        Ids of the lessons that taught them.
+    kept
+        Ids under which the examples of this call were kept as lessons.
+    left_out
+        A line for each lesson or example that taught nothing, with the reason.
+    statistics
+        Sums that a lesson can be subtracted from.
+    texts
+        A key by the id of each lesson; lessons with equal texts share it.
+
+    Examples
+    --------
+    >>> from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
+    >>> words = LearnedWords(shipped_models(), ("horizontal",), ("tea-1", "tea-2"))
+    >>> words, words.summary()
+    (<LearnedWords 1 model from 2 lessons>, '1 model from 2 lessons')
+    >>> [model.name for model in words.changed], words.to_dict()["lessons"]
+    (['horizontal'], ['tea-1', 'tea-2'])
     """
 
     models: RelationModels
@@ -39,6 +61,11 @@ class LearnedWords:
     left_out: tuple[str, ...] = ()
     statistics: FitStatistics | None = None
     texts: Mapping[str, str] = field(default_factory=dict)
+
+    def summary(self) -> str:
+        """Return the number of models that changed, and of the lessons behind them."""
+        left = f", {len(self.left_out)} left out" if self.left_out else ""
+        return f"{count(len(self.taught), 'model')} from {count(len(self.lessons), 'lesson')}{left}"
 
     @property
     def changed(self) -> tuple[RelationModel, ...]:

@@ -104,12 +104,29 @@ Pack = Callable[[Iterable[tuple[str, NDArray[np.float32]]]], PackedViews]
 """A function that stores the descriptors of views; it reads all of them before it returns."""
 
 
-@dataclass(frozen=True)
-class Taught:
+@dataclass(frozen=True, repr=False)
+class Taught(Answer):
     """A view that was stored.
 
-    ``before`` is its earlier category, where a teacher corrects an earlier word. ``again`` is True if the view was in
-    this category already.
+    Attributes
+    ----------
+    view
+        Id of the view.
+    category
+        Its category.
+    views
+        Number of views of the category, this one included.
+    before
+        Earlier category of the view, if a teacher corrects an earlier word.
+    again
+        True if the view was in this category already.
+
+    Examples
+    --------
+    >>> Taught("a1", "mug", 3, before="cup")
+    <Taught a view of 'mug', no longer of 'cup'; 'mug' has 3 views>
+    >>> Taught("a1", "mug", 3, before="cup").to_dict()["before"]
+    'cup'
     """
 
     view: str
@@ -117,6 +134,11 @@ class Taught:
     views: int
     before: str | None
     again: bool = False
+
+    def summary(self) -> str:
+        """Return the category of the view, and how many views the category has."""
+        corrected = f", no longer of '{self.before}'" if self.before else ""
+        return f"a view of '{self.category}'{corrected}; '{self.category}' has {count(self.views, 'view')}"
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import exp
 from typing import TYPE_CHECKING, Any
 
@@ -139,7 +140,7 @@ def learned_words_lines(learned: LearnedWords) -> list[str]:
     return lines
 
 
-def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
+def learned_words_to_dict(learned: LearnedWords, where: str | None = None) -> dict[str, Any]:
     """Return learned words as plain data, with the parameters of their models.
 
     Parameters
@@ -147,7 +148,7 @@ def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
     learned
         Result of learning words from lessons or scenes.
     where
-        File or memory that the models were written to.
+        File or memory that the models were written to; None if unknown.
 
     Returns
     -------
@@ -161,6 +162,24 @@ def learned_words_to_dict(learned: LearnedWords, where: str) -> dict[str, Any]:
         "left_out": list(learned.left_out),
         "written": where,
     }
+
+
+def learned_words_rows(learned: LearnedWords) -> Iterator[dict[str, Any]]:
+    """Yield a row for each model that changed.
+
+    Parameters
+    ----------
+    learned
+        Result of learning words from lessons or scenes.
+
+    Yields
+    ------
+    dict
+        ``model``, the number of ``facts`` that taught it, weighted by their certainty, and the time when it was
+        ``made``.
+    """
+    for model in learned.changed:
+        yield {"model": model.name, "facts": model.provenance.examples, "made": model.provenance.made}
 
 
 MAX_LISTED = 10

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.workflows.grounding.check import Check
     from deixis.workflows.grounding.retrieve import Retrieval
+    from deixis.workflows.knowledge.learn import Learned
     from deixis.workflows.layouts.imagine import Imagination
     from deixis.workflows.layouts.infer import Inference
 
@@ -33,7 +34,23 @@ def script_rows(script: Script) -> Iterator[Row]:
     dict
         The fact, and its ``line`` in the file, counted from 1.
     """
-    for fact in script.facts:
+    return facts_rows(script.facts)
+
+
+def facts_rows(facts: Iterable[Fact]) -> Iterator[Row]:
+    """Yield a row for each of some facts.
+
+    Parameters
+    ----------
+    facts
+        The facts.
+
+    Yields
+    ------
+    dict
+        The fact, and its ``line`` in its file, counted from 1; None if it comes from no file.
+    """
+    for fact in facts:
         yield _fact_row(fact) | {"line": fact.source.line if fact.source else None}
 
 
@@ -118,6 +135,22 @@ def grounding_rows(found: Grounding) -> Iterator[Row]:
     for left in found.unmatched_objects:
         others = ", ".join(other.perceived or "absent" for other in left.alternatives)
         yield {"object": left.name, "perceived": None, "probability": None, "decided": False, "alternatives": others}
+
+
+def learned_rows(learned: Learned) -> Iterator[Row]:
+    """Yield a row for each object of the script that a lesson was learned from.
+
+    Parameters
+    ----------
+    learned
+        Answer of ``deixis learn``.
+
+    Yields
+    ------
+    dict
+        The row of its grounding (:func:`grounding_rows`).
+    """
+    return grounding_rows(learned.grounding)
 
 
 def check_rows(checked: Check) -> Iterator[Row]:

@@ -165,7 +165,7 @@ def why_not_lines(found: WhyNot) -> list[str]:
     return [*lines, "What follows about the two:", *(known or ["    nothing"])]
 
 
-def learned_lines(learned: Learned, memory: str) -> list[str]:
+def learned_lines(learned: Learned, memory: str | None = None) -> list[str]:
     """Return what a lesson taught, and what it left open.
 
     Parameters
@@ -173,7 +173,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     learned
         Answer of ``deixis learn``.
     memory
-        Name of the memory for the first line.
+        Name of the memory for the first line; None leaves it out.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def learned_lines(learned: Learned, memory: str) -> list[str]:
     claims = f", {_count(layout.claims, 'claim')}" if layout.claims else ""
     lines = [
         f"Learned '{layout.name}' as lesson {layout.lesson}: {_count(layout.roles, 'role')}, "
-        f"{_count(layout.facts, 'fact')}{claims}; in {memory}"
+        f"{_count(layout.facts, 'fact')}{claims}" + (f"; in {memory}" if memory else "")
     ]
     if learned.categories:
         lines.append("Decided, each an example of its category: " + ", ".join(learned.categories))

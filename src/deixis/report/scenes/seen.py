@@ -80,6 +80,39 @@ def taught_line(taught: Taught, name: str) -> str:
     return f"{name} is a view of '{taught.category}'{corrected}; {taught.views} in all."
 
 
+def taught_to_dict(taught: Taught) -> dict[str, Any]:
+    """Return a taught view as plain data.
+
+    Parameters
+    ----------
+    taught
+        Result of teaching a view.
+
+    Returns
+    -------
+    dict
+        Data for JSON with the keys ``view``, ``category``, ``views`` and ``before``.
+    """
+    return {"view": taught.view, "category": taught.category, "views": taught.views, "before": taught.before}
+
+
+def taught_lines(taught: Taught) -> list[str]:
+    """Return a line about a taught view, without the id of its object, which the view does not have.
+
+    Parameters
+    ----------
+    taught
+        Result of teaching a view.
+
+    Returns
+    -------
+    list of str
+        One line: the category, the earlier category of a corrected view, and the number of views.
+    """
+    summary = taught.summary()
+    return [f"{summary[0].upper()}{summary[1:]}."]
+
+
 def meant_lines(given: str, known: str) -> list[str]:
     """Return a line that names the category of a word where their spelling differs by case.
 

@@ -1,4 +1,4 @@
-"""The module that learns: it looks at the tables that the senses write, is shown and told, and says what it found."""
+"""The module that learns from the tables that the senses write and from people, and says what it found."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class Learner(Module):
         self._outbox.flush(board)
 
     def _then(self, *steps: Callable[[], None]) -> None:
-        """Do steps after what was learned; if the disk is full, they come again, and what was learned does not."""
+        """Take steps that follow a lesson; if the disk is full, repeat the steps later, but not the lesson."""
         self._rest.extend(steps)
 
     def _react(self, change: Logged, fluent: EpisodicFluent, board: Board) -> None:
@@ -162,7 +162,7 @@ class Learner(Module):
             self._then(partial(self._shown, fluent, board))
 
     def _understand(self, board: Board, at: float) -> None:
-        """Look at the table, which writes what its things are, and say what became of expected objects."""
+        """Explain the table, write the categories of its things, and announce changes of expected objects."""
         if self.robot.scene.objects:
             self.robot.look()
         else:
@@ -176,7 +176,7 @@ class Learner(Module):
             self._say(f"The experience '{name}' is lesson {lesson}.", at, board)
 
     def _ask_name(self, at: float, board: Board) -> None:
-        """Ask for the name of a layout that came again."""
+        """Ask for the name of a layout that came up several times."""
         if self._asked is None and self._named is None:
             self._named = self.robot.layout_question
             if self._named is not None:
@@ -204,7 +204,7 @@ class Learner(Module):
         return True
 
     def _announce(self, at: float, board: Board) -> None:
-        """Say which expected objects were seen, or are not expected any more."""
+        """Say which expected objects were seen, or are no longer expected."""
         for one in self.robot.expected:
             if one.standing is self._announced.get(one.id, Standing.EXPECTED):
                 continue
@@ -269,7 +269,7 @@ class Learner(Module):
         self._announce(at, board)
 
     def _ask(self, at: float, board: Board) -> None:
-        """Ask the question that tells most, if one is worth asking."""
+        """Ask the most informative question, if it is worth its cost."""
         self._asked = next(iter(self.robot.questions), None)
         if self._asked is not None:
             self._say(f"{self._asked.text} {self._asked.why}", at, board)

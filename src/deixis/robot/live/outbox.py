@@ -1,4 +1,4 @@
-"""Changes that a module of the live robot has decided on, until the blackboard has them: each once, in order."""
+"""Queue of changes that a module of the live robot has decided on: each is written to the blackboard once, in order."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from deixis.robot.modules import Board
 
 
 class Outbox:
-    """Changes that wait to be written.
+    """Queue of changes to be written.
 
     A full disk leaves them waiting, so that nothing is lost, and nothing is written twice when there is room again.
 
@@ -63,7 +63,7 @@ class Outbox:
         return len(self._waiting)
 
     def cut(self, length: int) -> None:
-        """Drop the last changes that wait, since what led to them is done again.
+        """Drop the last queued changes, because the step that led to them will be repeated.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Outbox:
         del self._waiting[length:]
 
     def add(self, *changes: Change) -> None:
-        """Let changes wait.
+        """Queue changes.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class Outbox:
         self._waiting.extend(changes)
 
     def flush(self, board: Board) -> tuple[str, ...]:
-        """Write all that waits: as one write, or one by one where the blackboard refuses a part.
+        """Write all queued changes: together, or one by one if the blackboard refuses a part.
 
         Parameters
         ----------

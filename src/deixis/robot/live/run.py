@@ -1,4 +1,4 @@
-"""Run the live robot on one memory, and tell what it sees, hears, says and learns as lines or as a table."""
+"""Run the live robot on one memory, and print what it sees, hears, says and learns as lines or as a table."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Report = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class SeenThing:
-    """A thing on the table: its id, its category and the probability of it, and the time since when it is there."""
+    """A thing on the table: its id, its category with its probability, and the time since which it has been there."""
 
     id: str
     name: str | None

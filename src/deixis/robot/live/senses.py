@@ -129,7 +129,7 @@ class Senses(Module):
         self._events: Iterator[Event] | None = None
 
     def story(self) -> Story:
-        """Return the story that the senses take in.
+        """Return the story to process.
 
         Returns
         -------
@@ -152,7 +152,7 @@ class Senses(Module):
             self._typed.put(change.after)
 
     def run(self, board: Board, stopped: threading.Event) -> None:
-        """Take in the story until it ends, and then what is typed.
+        """Process the story until it ends, and typed words after that.
 
         Parameters
         ----------
@@ -173,7 +173,7 @@ class Senses(Module):
         self._tracker.close()
 
     def _take_in(self, writer: _Writer, stopped: threading.Event) -> None:
-        """Take in what is left of the story; what is typed meanwhile is heard between its events."""
+        """Process the rest of the story; typed words are heard between its events."""
         try:
             if self._story is None or self._events is None:
                 self._story = self.story()
@@ -228,7 +228,7 @@ class _Writer:
         self._at = 0.0
 
     def take(self, event: Event, dropped: int = 0) -> None:
-        """Take in one event; one that cannot be used is named in a note, and the robot goes on.
+        """Process one event; write a note about an event that cannot be used, and go on.
 
         ``dropped`` is the number of frames that came too late.
         """
@@ -237,7 +237,7 @@ class _Writer:
         self.flush()
 
     def hear(self, typed: EpisodicFluent, at_once: bool = False) -> None:
-        """Take in typed words, which are said at the present time of the story."""
+        """Process typed words as said at the present time of the story."""
         self._begin()
         utterance = Utterance(
             printed_line(typed.statement.object or "", MAX_CHARACTERS), self._at, speaker=typed.statement.subject
@@ -248,7 +248,7 @@ class _Writer:
         self.flush()
 
     def finish(self) -> None:
-        """Write what waits for the end of the story."""
+        """Take the steps that were held back until the end of the story, and write the end."""
         self._begin()
         while self._last_steps:
             self._attempt(self._last_steps.popleft(), "the end of the story could not be used")
@@ -260,7 +260,7 @@ class _Writer:
         self._end(printed_line(reason))
 
     def flush(self) -> None:
-        """Write what waits; after a full disk, also what was seen and decided before."""
+        """Write all queued changes, also those that a full disk held up."""
         work, self._undone = self._undone, None
         if work is not None:
             self._attempt(work, "what was seen before could not be used")
@@ -309,7 +309,7 @@ class _Writer:
         self._see(situation)
 
     def _begin(self) -> None:
-        """Write the beginning of the story before all else."""
+        """Write the beginning of the story before any other fluent."""
         if self._origin is None:
             self._outbox.add(self._add(("story", BEGAN), 0.0, Source(Origin.SEEN, "senses")))
 
@@ -341,7 +341,7 @@ class _Writer:
     # ---- seeing
 
     def _see(self, situation: Situation) -> None:
-        """Write where things are; look at the whole table once it lies still."""
+        """Write where things are, and detect the whole table once nothing moves."""
         self._undone = lambda: self._see(situation)
         self._name(situation)
         self._undone = None
@@ -366,7 +366,7 @@ class _Writer:
             self._id(thing.id)
 
     def _take(self, situation: Situation) -> None:
-        """Take a situation as the present one."""
+        """Set the present situation."""
         scene = situation.scene()
         named = tuple(replace(thing, id=self._id(thing.id)) for thing in scene.objects)
         self._situation, self._things = situation, replace(scene, objects=named)
@@ -405,15 +405,15 @@ class _Writer:
         return added
 
     def _left(self, thing: TrackedThing, at: float) -> Change:
-        """Return that a thing is no longer where it was."""
+        """Return the change that ends the place of a thing."""
         return self._finished(*self._places.pop(thing.id), at)
 
     def _finished(self, fluent: str, since: float, at: float) -> Change:
-        """Return that a fluent ceased to hold; it held for a moment at least."""
+        """Return the change that finishes a fluent, which lasts a moment at least."""
         return Finish(fluent, self._time(max(at, since + MOMENT)))
 
     def _look(self) -> None:
-        """Detect everything on the table that lies still, correct what is tracked by it, and write it as a scene.
+        """Detect all resting things on the table, correct the tracked things by them, and write them as a scene.
 
         The tracker segments only what changed; a look at the whole table, as at one that is seen for the first time, is
         what the robot learns from and compares with.
@@ -436,7 +436,7 @@ class _Writer:
         return None if found is None or found.detection is None or found.detection.table is None else found
 
     def _correct(self, found: Scene, situation: Situation, ids: Mapping[str, str], file: Path) -> None:
-        """Take over what a look at the whole table corrected, and write the table as a scene."""
+        """Correct the tracked things by the detection of the whole table, and write the table as a scene."""
         self._undone = lambda: self._correct(found, situation, ids, file)
         self._name(situation)
         self._undone = None
@@ -522,7 +522,7 @@ class _Writer:
                 self._outbox.add(Finish(words.typed, max(self._board.seconds(), self._time(words.utterance.at))))
 
     def _write_utterance(self, utterance: Utterance) -> None:
-        """Write words, and what they name."""
+        """Write words, and the names that they give to things."""
         source = Source(Origin.SAID, utterance.speaker, f"words at {utterance.at:.1f} s")
         finish = utterance.end if utterance.end > utterance.at else utterance.at + MOMENT
         statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
@@ -584,7 +584,7 @@ class _Writer:
     # ---- writing
 
     def _id(self, thing: str) -> str:
-        """Return the name of a tracked thing on the blackboard, which no other thing ever had."""
+        """Return the id of a tracked thing on the blackboard, which no other thing ever has."""
         if thing not in self._ids:
             self._ids[thing] = self._board.new_id("t")
         return self._ids[thing]

@@ -4,7 +4,7 @@ A folder has clouds (see :class:`~deixis.perception.tracking.stream.FolderSource
 (``words.said.jsonl``) and the skeletons (``people.skeleton.jsonl``) of persons, on the clock of the clouds. Skeletons
 are in the frame of the camera.
 
-A live story does not wait for the robot: a thread reads its frames, and those that come too fast are dropped and
+A live story does not wait for the robot: a thread reads its frames, and frames that come too fast are dropped and
 counted.
 """
 
@@ -54,7 +54,7 @@ SWAPPED = 0.15
 
 @dataclass(frozen=True, eq=False)
 class StoryTruth:
-    """Truth about a simulated story, by which a robot is judged.
+    """True state of a simulated story, for scoring a robot.
 
     Attributes
     ----------
@@ -186,7 +186,7 @@ class StorySettings:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Frames as a source."""
+    """Source of given frames."""
 
     given: Iterable[Frame]
 
@@ -202,7 +202,7 @@ class Frames:
 
 
 class AtOwnSpeed(Frames):
-    """Frames as a source that yields each when its time has come."""
+    """Source that yields each frame when its time has come."""
 
     def frames(self) -> Iterator[Frame]:
         """Yield the frames.
@@ -291,7 +291,7 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     rng = np.random.default_rng(seed)
     first, second = (lay_script(script, seed=seed + k).table for k in (0, 1))
     scene = truth_scene(first)
-    free = [k for k, thing in enumerate(first.things) if not _bears(thing, first.things)]
+    free = [k for k, thing in enumerate(first.things) if not _supports_another(thing, first.things)]
     shown = sorted(rng.permutation(free)[:2].tolist())
     others = [k for k in free if k not in shown] or free
     forgotten, brought = (int(k) for k in (*rng.permutation(others), *shown)[:2])
@@ -377,7 +377,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     order = sorted(range(len(table.things)), key=lambda k: round(float(table.things[k].box[0, 2]), 3))
     for k in np.flatnonzero(rng.random(len(order) - 1) < SWAPPED).tolist():
         lower, upper = (table.things[order[k]], table.things[order[k + 1]])
-        if not _bears(lower, (upper,)):
+        if not _supports_another(lower, (upper,)):
             order[k : k + 2] = order[k + 1], order[k]
 
     stage, words = Stage((), seed), []
@@ -394,7 +394,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     return Story(stage.film(top, eye, camera_path(camera, seed)).frames(rate, seed), tuple(words), (), truth)
 
 
-def _bears(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
+def _supports_another(thing: LaidThing, things: Iterable[LaidThing]) -> bool:
     """Return True if another thing lies on a thing, at least in part."""
     from deixis.perception.simulator.laying import overlap_in_plan, plan_box
 

@@ -139,9 +139,9 @@ class GroundingRequest:
             ("viewpoint", self.viewpoint, ViewpointName),
         ):
             if value not in list(choices):
-                raise SettingError(f"{what} is one of {', '.join(choices)}, not '{value}'")
+                raise SettingError(f"`{what}` must be one of {', '.join(choices)}, got '{value}'")
         if self.ask is not None and self.engine != EngineName.EXACT:
-            raise SettingError(f"only the engine 'exact' asks, not '{self.engine}': leave out --engine (engine=)")
+            raise SettingError(f"only the engine 'exact' asks, got '{self.engine}'; leave out --engine (engine=)")
         if self.ask is not None:
             from deixis.workflows.grounding.dialogue import Dialogue
 

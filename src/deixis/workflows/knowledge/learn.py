@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import Answer, count
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.ontology.lessons.types import ANONYMOUS
@@ -32,14 +33,49 @@ Recording = Callable[["Sequence[Lesson]"], "Part | None"]
 """A function that returns what the blackboard says of new lessons: the part of the episodes in the write of these."""
 
 
-@dataclass(frozen=True)
-class Learned:
-    """Result of learning one lesson."""
+@dataclass(frozen=True, repr=False)
+class Learned(Answer):
+    """Result of learning one lesson: what it taught, and its grounding.
+
+    Attributes
+    ----------
+    lesson
+        The lesson as it is stored.
+    grounding
+        The grounding of the script in the scene.
+    seen
+        Views that the lesson taught, of things with clouds.
+    kept_names
+        Things that keep the name that a teacher gave them, though the grounding calls them otherwise.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import deixis
+    >>> script = deixis.read_script(text="layout supper; fork left of plate; knife right of plate")
+    >>> corners = [[0, 0], [0.1, 0], [0.4, 0]], [[0.03, 0.2], [0.35, 0.25], [0.43, 0.2]]
+    >>> scene = deixis.Scene.from_boxes(*corners, labels=["fork", "plate", "knife"])
+    >>> with tempfile.TemporaryDirectory() as folder, deixis.Session(folder + "/memory") as session:
+    ...     learned = session.learn(script, scene)
+    >>> learned, learned.summary()
+    (<Learned 'supper' as lesson supper-1: 3 categories>, "'supper' as lesson supper-1: 3 categories")
+    >>> learned.categories, learned.doubtful
+    (('fork', 'plate', 'knife'), ())
+    >>> learned.to_dict()["lesson"]
+    'supper-1'
+    """
 
     lesson: Lesson
     grounding: Grounding
-    seen: tuple[Taught, ...] = ()  # the views that it taught, of things with clouds
-    kept_names: tuple[KeptName, ...] = ()  # what it would call otherwise than a teacher did
+    seen: tuple[Taught, ...] = ()
+    kept_names: tuple[KeptName, ...] = ()
+
+    def summary(self) -> str:
+        """Return the layout, the lesson, and how many categories it taught."""
+        layout = self.lesson.layout
+        undecided = f", {len(self.doubtful)} undecided" if self.doubtful else ""
+        categories = count(len(self.categories), "category")
+        return f"'{layout.name}' as lesson {layout.lesson}: {categories}{undecided}"
 
     @property
     def categories(self) -> tuple[str, ...]:

@@ -157,7 +157,7 @@ def imagine(
     """
     if count < 1 or seed < 0 or not time_limit >= 0:
         raise SettingError(
-            f"count is 1 or more, seed and time limit are 0 or more, not {count}, {seed} and {time_limit:g}"
+            f"`count` must be at least 1, `seed` and `time_limit` at least 0, got {count}, {seed} and {time_limit:g}"
         )
     graph = _with_claims(script).affirming()
     objects = sized_objects(script, graph)

@@ -70,7 +70,7 @@ def read_script(
     'fork'
     """
     if (path is None) == (text is None):
-        raise TypeError("read_script takes a path or text=, and one of them only")
+        raise TypeError("`read_script` must be given either a path or `text`, not both or neither")
     if text is not None and english:
         from deixis.grammar.english.reader import read_english
 

@@ -85,7 +85,7 @@ def perceive(
             f"`cloud` must be a PointCloud or a file, got {type(cloud).__name__}; PointCloud(points) makes one"
         )
     if not isinstance(viewpoint, str) or not viewpoint.strip() or not viewpoint.isprintable():
-        raise SceneError(f"a viewpoint is a word such as 'chair', not {viewpoint!r}")
+        raise SceneError(f"`viewpoint` must be a word such as 'chair', got {viewpoint!r}")
     if isinstance(cloud, PointCloud):
         return with_headings(detect(cloud, settings, stage).scene(viewpoint))
     if stage is not None:
@@ -139,7 +139,7 @@ def write_scene(scene: Scene, file: str | Path) -> Scene:
     if not file.name or file.is_dir():
         raise DeixisError(f"{file}: this is a folder; name a file")
     if file.exists() and not file.is_file():
-        raise DeixisError(f"{file}: this is a device or a pipe, which a scene would take the place of; name a file")
+        raise DeixisError(f"{file}: this is a device or a pipe, which the scene would replace; name a file")
     folder, base = clouds_folder(file), Path(scene.file).parent
     perceived = scene.detection is not None or any(isinstance(thing.cloud, PointCloud) for thing in scene.objects)
     before: set[str] = set()

@@ -110,7 +110,7 @@ def test_learning_says_as_json_what_it_learned(lesson: list[str], tmp_path: Path
 def test_what_relation_refuses(tmp_path: Path) -> None:
     assert "did you mean 'left'" in refused("relation", "lefft")
     assert "no relation word 'nosuch'; use one of bottom, bottom_left," in refused("relation", "nosuch")
-    assert "ends in .png" in refused("relation", "left", "--plot", tmp_path / "a.txt")
+    assert "must end in .png" in refused("relation", "left", "--plot", tmp_path / "a.txt")
     assert "cannot be read" in refused("relation", "left", "--models", tmp_path / "none.ttl")
     empty = tmp_path / "empty.ttl"
     empty.write_text("", encoding="utf-8")

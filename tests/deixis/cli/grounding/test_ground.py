@@ -242,7 +242,7 @@ def test_swaps_of_indistinguishable_things_are_not_printed() -> None:
     assert len(json.loads(deixis(*arguments, "--json")[1])["pivotal"]) > 1
 
 
-def test_who_is_likelier_something_else_taken_alone_is_told() -> None:
+def test_things_that_are_likelier_taken_alone_are_reported() -> None:
     arguments = (SCRIPT1, SCENE)
     _, out, _ = deixis("ground", *arguments, "--no-sizes")
     told = next(line for line in out.splitlines() if "taken alone, another thing is more likely for: " in line)

@@ -329,7 +329,7 @@ def test_a_dialogue_ends_when_the_oracle_finds_no_object(tmp_path: Path) -> None
 def test_python_recovers_the_viewpoint_as_the_command_does() -> None:
     found = deixis_package.ground(example("formal_dinner.layout"), turned_scene(1), viewpoint="quarter")
     assert {name: match.perceived for name, match in found.matches.items()} == TRUTH
-    with pytest.raises(deixis_package.DeixisError, match="viewpoint is one of stated, quarter, unknown"):
+    with pytest.raises(deixis_package.DeixisError, match="`viewpoint` must be one of stated, quarter, unknown"):
         deixis_package.ground(example("formal_dinner.layout"), SCENE, viewpoint="above")
 
 

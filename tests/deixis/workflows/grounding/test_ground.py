@@ -125,8 +125,8 @@ def test_who_does_not_answer_is_asked_once() -> None:
 @pytest.mark.parametrize(
     ("options", "error", "message"),
     [
-        ({"select": "best"}, SettingError, "select is one of facts, similarity, not 'best'"),
-        ({"viewpoint": "above"}, SettingError, "viewpoint is one of stated, quarter, unknown, not 'above'"),
+        ({"select": "best"}, SettingError, "`select` must be one of facts, similarity, got 'best'"),
+        ({"viewpoint": "above"}, SettingError, "`viewpoint` must be one of stated, quarter, unknown, got 'above'"),
         ({"ask": {}, "engine": "scalable"}, SettingError, "only the engine 'exact' asks"),
         ({"ask": {}, "max_questions": 0}, SettingError, "`max_questions` must be at least 1, got 0"),
         ({"ask": {}, "max_questions": 1.5}, SettingError, "`max_questions` must be a whole number, got 1.5"),

@@ -203,7 +203,7 @@ def test_imagined_tables_differ_and_repeat_for_a_seed() -> None:
 
 @pytest.mark.parametrize("bad", [{"count": 0}, {"seed": -1}, {"time_limit": -1.0}, {"time_limit": float("nan")}])
 def test_settings_that_make_no_sense_are_refused(bad: dict[str, float]) -> None:
-    with pytest.raises(SettingError, match="count is 1 or more"):
+    with pytest.raises(SettingError, match="`count` must be at least 1"):
         imagine(parse_script("a left of b"), **bad)  # type: ignore[arg-type]
 
 
@@ -302,7 +302,7 @@ def test_bad_input_is_one_message_and_exit_code_2(tmp_path: Path) -> None:
     for arguments, message in (
         (["nowhere.layout"], "there is no such file"),
         ([script_file(tmp_path, "fork lft of plate")], "did you mean 'left of'?"),
-        ([script, "--plot", tmp_path / "t.txt"], "a picture's name ends in .png, .svg or .pdf"),
+        ([script, "--plot", tmp_path / "t.txt"], "the name of a picture must end in .png, .svg or .pdf"),
         ([script, "-o", tmp_path], "this is a folder"),
         ([script, "-o", script], "this is the script"),
     ):
