@@ -121,6 +121,8 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 2, "so")
         if (norm, after) == ("except", "that"):
             return Chunk("CUT", at, at + 2)
+        if (norm, after) == ("in", "case"):
+            return Chunk("SUB", at, at + 2, "in case")
         if tuple(self.norms[at : at + 2]) in _SUBORDINATING:
             return Chunk("SUB", at, at + 2, "if")
         if at == 0 and norm in ("suppose", "assume", "imagine") and any(word in IS_FORMS for word in self.norms):
@@ -171,7 +173,7 @@ class JointChunker(VerbChunker):
 _CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
 
 _SUBORDINATING = {
-    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
+    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"),
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
 

@@ -81,9 +81,11 @@ class FixedPhraseChunker(JointChunker):
     def _idiom(self, at: int) -> Chunk | None:
         norm = self.norms[at]
         previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
+        related = self._relations.longest(self.norms, at)
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
-            if tuple(self.norms[at:end]) == phrase and not (
+            longer = related is not None and related[0] > end  # 'out of reach of the cat'
+            if tuple(self.norms[at:end]) == phrase and not longer and not (
                 (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
                 or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
                 or (phrase == ("above", "all") and self.norms[end] != ",")
@@ -107,6 +109,10 @@ class FixedPhraseChunker(JointChunker):
             and self.nouns.number(at + 1) is not None
         ):
             return Chunk("ADVERB", at, at + 3, "time")  # 'at 8 a.m.'
+        if norm in ("at", "by", "until", "from", "since") and self.nouns.number(at + 1) is not None and "clock" not in self.norms:
+            end = at + 2 + (self.norms[at + 2] in ("sharp", "exactly"))
+            if self.norms[end] in CLAUSE_ENDS | {"and"}:
+                return Chunk("ADVERB", at, end, "time")  # 'at eleven sharp'
         goal = self._goal(at)
         if goal is not None:
             return Chunk("FIND", at, goal, VerbGroup(norm, "other", "base"))
@@ -171,7 +177,7 @@ class FixedPhraseChunker(JointChunker):
             return Chunk("ADVERB", at, end, "from where")
         if norm == "out" and self.norms[at + 1] == "of":
             end = at + 2 + (self.norms[at + 2] in ("my", "your", "his", "her", "our", "their", "the"))
-            if self.norms[end] in ("reach", "sight", "way", "place", "order"):
+            if self.norms[end] in ("reach", "sight", "way", "place", "order") and (related is None or related[0] <= end):
                 return Chunk("ADVERB", at, end + 1, "out of reach")
         if norm == "say" and self._previous() == "COMMA" and self.norms[at + 1] in prepositions():
             return Chunk("ADVERB", at, at + 1, norm)

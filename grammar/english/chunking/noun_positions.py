@@ -353,6 +353,8 @@ class NounFinder:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
+            if before in ("other", "others", "one") and form.kind in ("posture", "lean") and self._predicate_follows(at):
+                return False  # 'the other standing on a coaster'
             if at + 1 < len(self.words) and self.words[at + 1].text[:1].isupper() and self.norms[at + 2] == "'s":
                 return False  # 'putting Anna's radio on it'
             if form.kind in ("transitive", "face", "point") and not after_determiner:
@@ -456,7 +458,7 @@ class NounFinder:
             if form.form == "s" and before in ("never", "always") and self.is_determiner(at + 1):
                 return False
             if form.form == "s":
-                return not self._predicate_follows(at) or at == 0
+                return not self._predicate_follows(at) or at == 0 or before in (".", ";", ":")
             if norm in NAMED_LIKE_THINGS:
                 return not self.commands(at) or after == "of"
             imperative = norm in PUT_VERBS or norm in FIND_VERBS
@@ -665,6 +667,8 @@ class NounFinder:
             return False
         if nouns and norm in ("left", "right"):
             return False
+        if nouns and norm == "well" and self.norms[at + 1] in prepositions().keys() | _AWAY:
+            return False  # 'keep the candle well away from it'
         if (
             nouns
             and is_adjective(norm)
@@ -735,6 +739,8 @@ NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside 
 _CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
 
 _STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
+
+_AWAY = frozenset({"away", "back", "clear", "apart", "out"})
 
 _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""

@@ -117,6 +117,8 @@ class VerbChunker(RelatorChunker):
                 modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
                 verb, past = "be", past or norm in ("was", "were")
+            elif norm in _GETTING and self._is_participle(i + 1):  # 'the pieces get lined up beside it'
+                verb, past = "be", past or norm == "got"
             else:
                 break
             i += 1
@@ -131,6 +133,13 @@ class VerbChunker(RelatorChunker):
     def _is_base(self, at: int) -> bool:
         form = self._verbs.get(self.norms[at])
         return self.norms[at] == "be" or (form is not None and form.form == "base")
+
+    def _is_participle(self, at: int) -> bool:
+        """Return True for the participle of a passive with a place after it: *placed on*, *lined up beside*."""
+        form = self._verbs.get(self.norms[at])
+        after = at + 1 + (self.norms[at + 1] in PARTICLES)
+        placed = self.norms[after] in prepositions() or self.norms[after] in places_alone()
+        return form is not None and form.form in ("past", "participle") and placed
 
     def _denied_verb(self, at: int) -> Chunk | None:
         """Return the verb of a clause whose denial and modal verb stand before its subject."""
@@ -493,6 +502,9 @@ class VerbChunker(RelatorChunker):
             norm in IS_FORMS or norm in self._verbs or norm in NEGATIONS or (norm in ADVERBS and self._goes_on(at + 1))
         )
 
+
+_GETTING = word_set("get gets got getting")
+"""Verbs that make a passive, as *be* does."""
 
 _TOLD = word_set("it they he she there")
 

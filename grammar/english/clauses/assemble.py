@@ -172,7 +172,9 @@ class Assembly:
             return
         if link == "until" and self.clauses and not self.clauses[-1].past:
             return  # it holds now
-        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
+        if link == "in case" and self.clauses:
+            return  # a reason: 'a copy is in the box in case the first is lost'
+        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
             built.verbs
             or (built.shape == "fragment" and not built.said and link != "as")
             or (built.shape == "said" and link in ("unless", "whether"))

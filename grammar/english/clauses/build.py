@@ -11,6 +11,7 @@ from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, union
 from deixis.grammar.english.clauses.places import directions_of, is_place, place
 from deixis.grammar.english.clauses.predicates import (
+    AWAY_FROM,
     DIRECTION_RELATIONS,
     MOVING,
     WRAPPING,
@@ -416,7 +417,8 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        adverbs = (*relator.adverbs, written) if written == "over" or shaped else relator.adverbs
+        kept = shaped or written == "over" or written in AWAY_FROM
+        adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
             than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,

@@ -13,7 +13,8 @@ from deixis.grammar.english.vocabulary.function_words import PERSONS
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
 _SUBORDINATE = frozenset(
-    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead"}
+    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead",
+     "in case"}
 )
 PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART", "ADJP", "WITH", "MEASURE"})
 IMPERATIVES = frozenset({"PUT", "FIND", "DO"})

@@ -14,7 +14,7 @@ from deixis.grammar.english.tree import (
     Span,
 )
 from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
-from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
 
@@ -33,6 +33,9 @@ _ATTACHING = word_set(
     " join fasten tie hook link stick pin clip clamp wire"
 )
 """Verbs after which *to* means that two things touch."""
+AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
+"""Prepositions that, after a verb of staying, deny a place: *keep the cat off the table*."""
+_KEEPING = frozenset({"keep", "leave", "stay", "remain"})
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
 _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
@@ -50,7 +53,7 @@ _PASSIVES = {
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
-_STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
+_STATES = frozenset({"burn", "fold", "roll", "turn", "open", "hide", "bury", "tip"})
 _STAYING = word_set(
     "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
     " lean prop nestle perch find see go come wait live stop linger belong be"
@@ -188,6 +191,8 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         Places after the verb, as it makes them.
     """
     if not said:
+        if group.lemma == "touch" and not {"almost", "nearly"} & set(group.adverbs):
+            return (Said((Predicate("touching_each_other", (), span),)),)  # 'the cups must not touch'
         if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
             return ()
         misunderstood(span, f"'{group.lemma}' does not say where something is")
@@ -467,6 +472,9 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
         return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
     positive = following.positive if marker.positive else not following.positive
+    left = next((place for word, place in AWAY_FROM.items() if word in following.adverbs), None)
+    if relation == "from" and lemma in _KEEPING and left and last_word(arguments[0].head) not in NOT_PLACES:
+        relation, positive = left, not positive
     return replace(
         following,
         relation=relation,

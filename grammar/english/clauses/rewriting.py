@@ -199,7 +199,7 @@ def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
     if not there and not free:
         return None
     end = _end(chunks, at + 3, JOINT_TYPES)
-    return end + (_type(chunks, end) == "COMMA"), None
+    return end + (free and _type(chunks, end) == "COMMA"), None
 
 
 def _search(chunks: list[Chunk], at: int) -> _Run | None:

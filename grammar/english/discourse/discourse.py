@@ -384,8 +384,8 @@ class Discourse(Statements):
 
     def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
         """Read *nothing lies between the boots*, *no stopper was found*."""
-        predicates = clause.predicates
-        if all(p.relation == "there" for p in predicates):
+        predicates = tuple(p for p in clause.predicates if p.relation != "there")  # 'anywhere near it'
+        if not predicates:
             for phrase in subject.members or (subject,):
                 if phrase.head and last_word(phrase.head) not in GENERAL:
                     self._absent(phrase)
@@ -403,6 +403,8 @@ class Discourse(Statements):
             self._say(known, tuple(replace(p, positive=True) for p in predicates), None)
             return
         specific = bool(subject.head) and last_word(subject.head) not in GENERAL and subject.pronoun is None
+        surface = self.references.surface_noun
+        specific = specific and not any(last_word(a.head) == surface for p in predicates for a in p.arguments)
         if specific and all(p.arguments and p.relation in DIRECTIONS | {"near", "next_to"} for p in predicates):
             thing = self.references.find(replace(subject, determiner="the", predicates=()))
             if thing is not None:  # 'no flowers may stand in front of the cross', which may or may not be there

@@ -581,9 +581,10 @@ class References:
             return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
         group = group or self.last_group(besides)
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
+        second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
-        if further and phrase.of is None and (last := self._last_thing(besides)) is not None:
+        if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
             return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
         if group is None or not group.members:
             return self._another_one(phrase, besides, relation)

@@ -258,7 +258,7 @@ class Statements(Relations):
         for phrase in predicate.arguments:
             thing = self._introduce(phrase, None, subject)
             if thing is not None:
-                relation = "inside" if last_word(thing.noun) in VESSELS - SUPPORTS else "on"
+                relation = "inside" if last_word(thing.noun) in (VESSELS | HOLDERS) - SUPPORTS else "on"
                 self.shared = (relation, [thing])
                 self._add(relation, (subject,), (thing,))
 

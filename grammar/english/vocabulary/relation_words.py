@@ -31,6 +31,7 @@ inside: in, inside, inside of, within, into, in side of
 at: at
 by: by
 near: near, near to, close to, nearby, around by, in the vicinity of, not far from, close by, near by, closed to
+near: within reach of, within easy reach of, a stone 's throw from, hard by
 next_to: next to, beside, adjacent to, alongside, along side, along side of, right by, aside, besides, nex to, next
 next_to: to the side of, near to next
 each_side: either side of, to either side of, on either side of, on each side of, on both sides of
@@ -42,7 +43,7 @@ behind: from behind, out from behind, on the far side of, the far side of
 -: clockwise from, counterclockwise from, anticlockwise from, clockwise of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to
-far: apart from, clear of, well clear of
+far: apart from, clear of, well clear of, out of reach of, well back from, back from
 in_front: in front of, before, infront of, ahead of, in the front of, at the front of, in from of, in front
 behind: behind, behind of, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
 above: above, over, up above

@@ -27,6 +27,12 @@ posture: affix, hinge, anchor, glue, screw, bolt, secure
 posture: nail, tape, strap, wrap, lift, drag, raise, build builds built built building
 posture: fall falls fell fallen falling
 posture: pin, slot, lock, recess, lodge, sandwich, crowd, cram, carry, tip, shelve, park
+posture: draw draws drew drawn drawing, strew strews strewed strewn strewing, sweep sweeps swept swept sweeping
+posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive drives drove driven driving, stash
+posture: weave weaves wove woven weaving
+posture: sling slings slung slung slinging, rise rises rose risen rising, preset presets preset preset presetting
+posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
+posture: deposit, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
 face: face, stare, gaze, peer, view
 point: point, aim, direct, open
@@ -111,7 +117,8 @@ TRANSITIVE_RELATIONS = {
 """Relation of a transitive verb between its subject and its object, and whether they change places."""
 
 FIND_VERBS = word_set(
-    "choose find select pick locate identify click want take use get grab hit lift spot point search chose need"
+    "choose find select pick locate identify click want take use get grab hit lift spot point search chose need note"
+    " notice observe"
 )
 
 PUT_VERBS = word_set(
@@ -183,7 +190,7 @@ def verb_forms() -> dict[str, VerbForm]:
 
 
 _ONLY_PARTICIPLES = word_set(
-    "clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
+    "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""
