@@ -226,6 +226,8 @@ class FixedPhraseChunker(JointChunker):
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
                 return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
+        if norm in _STEPS and self._previous() in ("", "CUT", "THEN", "AND") and self._subject_or_command(at + 1):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'first you lay the cloth'
         if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
             return Chunk("ADVERB", at, at + 1, norm)
         if norm == "like" and self._previous() in ("BE", "TVERB", "NP") and self.nouns.number(at + 1) is not None:
@@ -240,6 +242,13 @@ class FixedPhraseChunker(JointChunker):
                 end += 1
             return Chunk("ADVERB", at, end, norm)
         return None
+
+    def _subject_or_command(self, at: int) -> bool:
+        """Return True if a subject with a determiner, a personal pronoun or a command begins here."""
+        norm = self.norms[at]
+        return self.nouns.is_determiner(at) or norm in ("you", "we", "i", "they", "it") or (
+            norm in PUT_VERBS and self.nouns.is_determiner(at + 1)
+        )
 
     def _goal(self, at: int) -> int | None:
         """Return where the goal of a command begins: *go over to the chair by the window*; None for another command.
@@ -398,6 +407,9 @@ _DENIALS = tuple(
 _JUDGEMENTS = word_set("true clear certain important essential vital good bad nice best better the case fact sure")
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
+
+_STEPS = word_set("first second third next last lastly finally")
+"""Words that number the steps of a text."""
 
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"

@@ -339,8 +339,9 @@ class NounFinder:
         if norm == "can" or norm in ("will", "may", "need", "might"):
             if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
                 follows = self._verbs.get(after)
-                if follows is not None and follows.form == "base" and self._nouns.singular(before)[1]:
-                    return False  # 'the candles can stay'
+                goes = follows is not None and follows.form == "base"
+                if goes and (self._nouns.singular(before)[1] or self._predicate_follows(at + 1)):
+                    return False  # 'the candles can stay', 'the lid can stand on it'
             return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
         if form is None:
             if norm.endswith("ing") and len(norm) > 5 and not after_determiner:

@@ -259,6 +259,8 @@ class VerbChunker(RelatorChunker):
             and self._previous() in JOINT_TYPES | {"", "ADVERB"}
         ):
             return Chunk("DO", at, end + 1, found)
+        if norm == "lay" and self._previous() == "NP" and self.norms[at - 1] in ("you", "we"):
+            return self._finite(at, end, _with(group, "lay", "posture", "base"))  # 'then you lay the spoon beside it'
         if norm in PAST_ONLY:
             return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
         if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
@@ -308,6 +310,8 @@ class VerbChunker(RelatorChunker):
                 and (self.nouns.is_determiner(end) and not self.chunks[-1].value.plural)
             ):
                 return Chunk("FIND", at, end, found)
+            if subject_is_you and norm in PUT_VERBS and len(self.chunks) > 1 and self.chunks[-2].type == "SUB":
+                return self._finite(at, end, found)  # 'before you put the cup on it'
             imperative = subject in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT", "COLON", "SUB", "BUT") or (
                 subject_is_you
             )
@@ -476,9 +480,13 @@ class VerbChunker(RelatorChunker):
             return True
         return (
             after in ("be", "not", "have", "well", "also", "only", "you", "usually", "never", "ever", "the", "i", "it")
-            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and after in NOUNS_TOO))
+            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and self._is_can(at + 1)))
             or after in HEDGES
         ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
+
+    def _is_can(self, at: int) -> bool:
+        """Return True for a word after *can* that may be a noun: *the can rest*; False for *can stand on it*."""
+        return self.norms[at] in NOUNS_TOO and not self._predicate_after(at)
 
     def _perfect(self, at: int) -> bool:
         i = at + 1

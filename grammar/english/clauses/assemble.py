@@ -200,7 +200,9 @@ class Assembly:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
             if subject.phrase.head and not letting:
-                mood = Mood.COMMAND if self.opens_list else mood  # 'mind the saw: it …'
+                named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
+                handled = self.opens_list or (named and verb.group.positive)
+                mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):

@@ -8,7 +8,10 @@ from deixis.grammar.english.tree import Sentence
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
-PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
+PAST_RELATIVE = re.compile(
+    r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
+    re.IGNORECASE,
+)
 """Beginning of a relative clause in the past."""
 
 LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|placed)\b", re.IGNORECASE)
@@ -79,6 +82,14 @@ UNREAL = re.compile(
     r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
     r"|\b(?:think|dream|talk|read|hear|speak|complain)(?:s|ing|ed)?\s+(?:of|about)\b"
     r"|\bwill\s+have\s+(?:been|stood|lain|\w+ed)\b"
+    r"|\bnothing\s+like\s+(?:as|so)\b"
+    r"|\blooks?\s+(?:as\s+(?:if|though)|like)\s+(?:the|an?|my|his|her|our|their|it|they|there)\b"
+    r"|\b(?:theory|theories|story|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
+    r"(?:puts?|places?|has|locates?|says?|holds?|goes|claims?|suggests?)\b"
+    r"|\b(?:says?|tells?|suggests?|shows?|proves?|know|knows|thinks?)\s+(?:us\s+)?(?:otherwise|differently)\b"
+    r"|(?:^|[,;]\s*)(?:the|this|that|one|an?)\s+(?:old\s+)?(?:picture|photo|photograph|painting|drawing|catalogue|advert(?:isement)?|"
+    r"brochure|leaflet|cover|postcard|poster|film|video)\s+(?:pictures?|shows?|depicts?|portrays?|has)\b"
+    r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )
@@ -109,8 +120,14 @@ FRAMED = re.compile(
     re.IGNORECASE,
 )
 """Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
+SELDOM = re.compile(
+    r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
+    r"^\s*(?:very\s+)?few\s+(?!of\b)",
+    re.IGNORECASE,
+)
+"""Words by which something is so at times, or of some things."""
 UNSURE = re.compile(
-    r"\b(?:not|n['\u2019]t|hardly|never|far\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
+    r"(?:\bnot|n['\u2019]t|\bhardly|\bnever|\bfar\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
     r"(?:sure|certain|convinced|clear)\b|\b(?:unsure|uncertain|unclear|doubtful|unlikely)\s+(?:if|that|whether|the|an?)\b",
     re.IGNORECASE,
 )

@@ -22,6 +22,7 @@ from deixis.grammar.english.discourse.commitment import (
     REPORTED,
     REVOKED,
     SAID_AFTER,
+    SELDOM,
     UNREAL,
     UNSURE,
     condition_of,
@@ -259,7 +260,7 @@ class Discourse(Statements):
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
         if clause.mood is Mood.COMMAND:
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
-        if unreal and positive:
+        if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
             self.text[self.references.start : self.end]

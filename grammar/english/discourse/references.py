@@ -28,7 +28,7 @@ from deixis.ontology.inflection import singulars
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
 NAMED = re.compile(
-    r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
+    r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my|is|are|was|were)\b)[a-z]+\s+)*?(?!(?:is|are|was|were)\b)[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
     re.IGNORECASE,
 )
 """Noun phrase at the end of a clause."""

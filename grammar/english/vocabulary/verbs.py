@@ -30,7 +30,7 @@ posture: pin, slot, lock, recess, lodge, sandwich, crowd, cram, carry, tip, shel
 posture: draw draws drew drawn drawing, strew strews strewed strewn strewing, sweep sweeps swept swept sweeping
 posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive drives drove driven driving, stash
 posture: weave weaves wove woven weaving
-posture: sling slings slung slung slinging, rise rises rose risen rising, preset presets preset preset presetting
+posture: sling slings slung slung slinging, preset presets preset preset presetting
 posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
 posture: deposit, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
@@ -63,6 +63,7 @@ posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range
 posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
 posture: travel, trail, dot, ladle, step
 other: replace, provide, require, protect, prevent, receive, create, explain, reduce, avoid, knock
+other: rinse, tighten, loosen, unscrew, unplug, preheat, assemble, remove, repeat, mind, admire, inspect
 other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
