@@ -142,10 +142,8 @@ def _cuts(
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
         return True
-    if following == "PREP" and "AND" in kinds and types[end : end + 3] == ["PREP", "NP", "NP"]:
-        beside = chunks[end + 1].value.pronoun in ("it", "they")
-        if beside and (end + 3 >= len(types) or types[end + 3] in JOINT_TYPES | {"OF"}):
-            return True  # 'the brush, and behind it the cup'
+    if following == "PREP" and "AND" in kinds and _verbless_inversion(types, end):
+        return True  # 'the brush, and behind it the cup'
     if (following in ("PREP", "ADV") and complete) or (
         following == "PREP" and types[start] == "PREP" and "AND" in kinds
     ):
@@ -153,6 +151,21 @@ def _cuts(
     if following in ("TPART", "PART") and complete and "COMMA" in kinds:
         return _inversion_follows(types, end)
     return False
+
+
+def _verbless_inversion(types: list[str], at: int) -> bool:
+    """Return True for a place and its thing without a verb, to the end of the clause: *behind it the cup*."""
+    objects = 0
+    while types[at : at + 2] == ["PREP", "NP"] and objects == 0:
+        at, objects = at + 2, 1
+        while types[at : at + 2] == ["OF", "NP"]:
+            at += 2
+    if not objects or types[at : at + 1] != ["NP"]:
+        return False
+    at += 1
+    while types[at : at + 2] == ["OF", "NP"]:
+        at += 2
+    return at >= len(types) or types[at] in JOINT_TYPES
 
 
 def _subject_follows(
@@ -194,7 +207,8 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
-    if complete and kinds == {"COMMA"} and following in (PREDICATES - {"WITH"}):
+    shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
+    if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
         if (
             phrase.pronoun == "one" and phrase.determiner in ("the", "this") and not phrase.adjectives

@@ -107,6 +107,8 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     if not is_place(phrase) or relation not in _ON:
         return None
     head = phrase.head
+    if head in _ROWS and relation == "on" and phrase.of is None:
+        return None  # 'kettle on back ring'
     if head == "o'clock":
         return _made(relator, HOURS.get(phrase.count or 0, "top"), _owner(phrase), span, value=_clock(phrase))
     if head in _ROWS:

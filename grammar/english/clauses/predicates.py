@@ -46,6 +46,8 @@ _DIRECTIONAL = frozenset(
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
+_PASSING = word_set("go run fit thread insert slot poke push pull stick feed slip slide protrude hang plug")
+"""Verbs after which what is *through* a thing is in it."""
 _PASSIVES = {
     "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
     "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
@@ -426,6 +428,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
+        relation = "facing"  # 'its opening turned to the fire'
+    elif relation == "through" and lemma in _PASSING:
+        relation = "inside"  # 'the bolt goes through the hole'
     elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
         relation = "through"  # 'the cat jumped over the vase'
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):

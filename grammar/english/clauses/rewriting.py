@@ -53,7 +53,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _without_vocatives, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
         _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
         _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
-        _without(_count_apart), _with_relative_places, _with_measures_denied, _with_destinations,
+        _without(_count_apart), _with_exceptions, _with_members_apart, _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
         _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
         _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
     ):  # fmt: skip
@@ -153,8 +153,13 @@ def _is_exclamation(chunk: Chunk) -> bool:
 
 
 def _without_times(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the time at the beginning of a sentence: *Before the run, check …*."""
+    """Leave out the time at the beginning of a sentence: *Before the run, check …*, *Once set, …*."""
     start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
+    if [_type(chunks, start), _type(chunks, start + 2)] == ["SUB", "COMMA"] and chunks[start].value == "once":
+        done = chunks[start + 1]
+        bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
+        if bare:
+            return [*chunks[:start], *(_empty(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
     if [_type(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
         return chunks
     phrase = chunks[start + 1].value
@@ -378,6 +383,59 @@ def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
             continue  # 'the chair you see on the left' describes one thing
         moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
         return [*chunks[:i], chunks[i + 1], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+    return chunks
+
+
+def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
+    for i, chunk in enumerate(chunks):
+        excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        if excepts and [_type(chunks, i + k) for k in (1, 2, 3)] == ["NP", "COMMA", "REL"]:
+            return [*chunks[:i], _cut(chunk), chunks[i + 1], *_with_exceptions(chunks[i + 3 :])]
+    return chunks
+
+
+def _with_members_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *three cups, one of which is on the tray* and *…, of whom the child sits …* as two clauses."""
+    found: list[Chunk] = []
+    skipped = 0
+    for i, chunk in enumerate(chunks):
+        types = [_type(chunks, i + k) for k in range(4)]
+        after = chunks[i + 1 : i + 4]
+        if skipped:
+            skipped -= 1
+        elif types[:3] == ["COMMA", "PREP", "NP"] and after[1].value.pronoun == "which" and (
+            after[0].value.preposition.relation == "among"
+        ):
+            found.append(_cut(chunk))
+            skipped = 2
+        elif types == ["COMMA", "NP", "OF", "NP"] and not after[0].value.head and after[2].value.pronoun == "which":
+            they = NounPhrase(after[2].span, pronoun="they", plural=True)
+            found += [_cut(chunk), *after[:2], replace(after[2], value=they)]
+            skipped = 3
+        else:
+            found.append(chunk)
+    return found
+
+
+def _with_parts_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Put what is said of a part before the verb at the end: *the tweezers, points to the left, lie along the edge*."""
+    for i in range(1, len(chunks) - 3):
+        subject, part = chunks[i - 1], chunks[i + 1]
+        if [_type(chunks, i + k) for k in (-1, 0, 1)] != ["NP", "COMMA", "NP"] or not subject.value.head:
+            continue
+        if _type(chunks, i - 2) not in JOINT_TYPES | {"", "ADVERB"} or _type(chunks, i + 2) not in _PREDICATES:
+            continue
+        own = part.value.owner is not None and part.value.owner.pronoun in ("it", "they")
+        if not part.value.head or not (own or (part.value.determiner is None and part.value.owner is None)):
+            continue
+        end = _end(chunks, i + 2, JOINT_TYPES)
+        if _type(chunks, end) != "COMMA" or _type(chunks, end + 1) not in FINITE:
+            continue
+        if any(chunk.type in FINITE | {"REL"} for chunk in chunks[i + 2 : end]):
+            continue
+        last = _end(chunks, end + 1, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 1 : last], *chunks[i:end], *_with_parts_after_verbs(chunks[last:])]
     return chunks
 
 

@@ -505,6 +505,9 @@ class References:
             )
             pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
             last = self.recent[0].subject if self.recent else None
+            here = [entity for entity in self.named if entity is not besides]
+            if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
+                return here[-2 if word == "former" else -1]
             if last is not None and not last.noun and len(last.members) > 1:
                 return last.members[0 if word == "former" else -1]
             return None if pair is None else pair.subject if word == "former" else pair.others[0]

@@ -81,6 +81,7 @@ PRONOUNS = {
     "who": "who",
     "what": "what",
     "which": "which",
+    "whom": "which",
 }
 
 
