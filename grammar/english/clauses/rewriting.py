@@ -25,7 +25,8 @@ _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
 _FOUND_OR_PUT = frozenset(
-    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick"}
+    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick", "line",
+     "arrange", "stack", "tuck", "stand", "hide", "want", "like"}
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
@@ -364,25 +365,34 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
 def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Put an object that stands first after its verb: *the rest you'll find on the shelf*, *the bread I put it …*."""
     for i, chunk in enumerate(chunks):
-        before, verb = _type(chunks, i - 1), chunks[i + 2] if i + 2 < len(chunks) else None
+        before = _type(chunks, i - 1)
         first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
+        at = i + 1  # of the person
+        while first and _type(chunks, at) in ("COMMA", "AND") and "NP" in (_type(chunks, at + 1), _type(chunks, at + 2)):
+            at += 2 if _type(chunks, at + 1) == "NP" else 3
+        verb = chunks[at + 1] if at + 1 < len(chunks) else None
         if not first or verb is None or verb.type not in ("VERB", "TVERB"):
             continue
-        person = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she")
+        person = _type(chunks, at) == "NP" and chunks[at].value.pronoun in ("me", "you", "we", "he", "she")
         if not person or verb.value.lemma not in _FOUND_OR_PUT:
             continue
-        again = verb.type == "TVERB" and _type(chunks, i + 3) == "NP" and chunks[i + 3].value.pronoun in ("it", "they")
-        place = i + 3 + again
+        again = verb.type == "TVERB" and _type(chunks, at + 2) == "NP"
+        again = again and chunks[at + 2].value.pronoun in ("it", "they")
+        place = at + 2 + again
+        place += _type(chunks, place) == "ADVERB"
         end = next((k for k in range(place, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
         goes_on = any(c.type in FINITE for c in chunks[place:end]) or (
             "COMMA" in (c.type for c in chunks[end : end + 1]) and _type(chunks, end + 1) in FINITE
         )
         if goes_on or _type(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
             continue
-        if not again and not before:
+        if not again and not before and at == i + 1:
             continue  # 'the chair you see on the left' describes one thing
+        if at > i + 1:  # 'soy, vinegar and oil I keep behind the tray' are behind it
+            be = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+            return [*chunks[:at], be, *_with_objects_after_verbs(chunks[place:])]
         moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
-        return [*chunks[:i], chunks[i + 1], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+        return [*chunks[:i], chunks[at], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
     return chunks
 
 
