@@ -26,6 +26,11 @@ class JointChunker(VerbChunker):
         told = told or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
         if norm == "that" and told and (after in PRONOUNS or self.nouns.starts(at + 1)):
             return Chunk("COMPLEMENT", at, at + 1)
+        if norm == "that" and previous == "AND" and self._clause_follows(at + 1):
+            if any(chunk.type == "COMPLEMENT" for chunk in self.chunks):
+                return Chunk("COMPLEMENT", at, at + 1)  # 'he says that A and that B'
+            if any(chunk.type == "ADVERB" and chunk.value in _ENSURING for chunk in self.chunks):
+                return Chunk("ADVERB", at, at + 1, norm)  # 'make sure that A and that B'
         if norm == "that" and previous in ("NP", "COMMA", "ADV", "AND") and not self._demonstrative(at):
             return Chunk("REL", at, at + 1)
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
@@ -176,6 +181,10 @@ _SUBORDINATING = {
     ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"),
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
+
+_ENSURING = frozenset({"make sure", "make sure that", "be sure that", "ensure that", "note that", "remember that",
+                       "check that", "see to it that", "do not forget that", "take care that"})  # fmt: skip
+"""Beginnings of a command after which a clause is a fact."""
 
 _WHOEVER = word_set("otherwise whoever whatever whichever whomever")
 """Words for any person or thing of which the clause holds: it is a condition."""

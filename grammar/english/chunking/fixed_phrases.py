@@ -89,6 +89,7 @@ class FixedPhraseChunker(JointChunker):
                 (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
                 or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
                 or (phrase == ("above", "all") and self.norms[end] != ",")
+                or (phrase[-1] == "case" and self._previous() == "BE" and self.norms[end] in CLAUSE_ENDS)
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
         if norm == "from" or (
@@ -144,7 +145,7 @@ class FixedPhraseChunker(JointChunker):
         ):
             return Chunk("ADVERB", at, at + 3, "side up")  # 'lay the sheet on the mat, shiny side down'
         if (
-            self.norms[at + 1] in ("up", "down", "on", "outwards", "inwards", "uppermost")
+            self.norms[at + 1] in ("up", "down", "on", "off", "outwards", "inwards", "uppermost")
             and self._previous() == "COMMA" and self.norms[at + 2] in CLAUSE_ENDS
             and norm not in PARTS and norm not in ADVERBS and self.nouns.is_noun(at)
         ):  # fmt: skip

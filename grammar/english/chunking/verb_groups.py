@@ -50,6 +50,8 @@ class VerbChunker(RelatorChunker):
             if form is not None and spatial and last is not None and last.modal:
                 group = VerbGroup(form.lemma, form.kind, "base", last.modal, positive=False)
                 return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
+        if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
+            return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
         while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
             if self.norms[i] == "never":
@@ -129,6 +131,20 @@ class VerbChunker(RelatorChunker):
         if verb == "be":
             return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, positive, past, tuple(adverbs)))
         return self._lexical(at, first, i, VerbGroup("", "", "", modal, positive, past, tuple(adverbs)))
+
+    def _second_verb(self, at: int) -> Chunk | None:
+        """Return the verb after *and* that shares the modal verb before: *should be chilled and stand next to it*."""
+        form = self._verbs.get(self.norms[at])
+        last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT"}), None)
+        if form is None or last is None or last.type not in FINITE or not self._predicate_after(at):
+            return None
+        if last.value.lemma == "be" and self.norms[at] in ("put", "set", "laid", "stood", "hung"):
+            told = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
+            return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if told else None
+        spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
+        if last.value.modal is None or not spatial or last.value.lemma == "be" and self.chunks[-2].type == "NP":
+            return None
+        return Chunk("VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive))
 
     def _is_base(self, at: int) -> bool:
         form = self._verbs.get(self.norms[at])

@@ -104,6 +104,7 @@ class Assembly:
     borne: NounPhrase | None = None  # thing that the subject of the clause before holds
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause that is being taken in was parsed
     guesses_of_fragments: dict[Span, frozenset[Guess]] = field(default_factory=dict)
+    reported: VerbGroup | None = None  # verb of the main clause before the last *that*
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -120,10 +121,12 @@ class Assembly:
             Verb of the main clause, or None if it has none, and the rest of the clause.
         """
         for i, chunk in enumerate(segment.chunks):
-            if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
-                return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
             if chunk.type == "COMPLEMENT":
-                return _frame_of_report(segment.chunks[:i]), replace(segment, chunks=segment.chunks[i + 1 :])
+                if isinstance(chunk.value, VerbGroup):
+                    self.reported = chunk.value
+                elif i or segment.link != "and":  # 'he says that A and that B' reports B too
+                    self.reported = _frame_of_report(segment.chunks[:i])
+                return self.reported, replace(segment, chunks=segment.chunks[i + 1 :])
         return None, segment
 
     def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:

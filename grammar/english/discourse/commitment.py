@@ -9,7 +9,8 @@ from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
 PAST_RELATIVE = re.compile(
-    r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
+    r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b"
+    r"|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
     re.IGNORECASE,
 )
 """Beginning of a relative clause in the past."""
@@ -30,7 +31,7 @@ WHILE_DOING = re.compile(
 )
 """Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
 CONDITION = re.compile(
-    r"\s*(?:if|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
+    r"\s*(?:if(?!\s+you\s+(?:look|peek|peep|peer|open|lift)\b[^,]*,\s*you\b)|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
     r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
     r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
     r"(?:luck|room|space|time)\b[^,.;?]*,"

@@ -41,6 +41,12 @@ SUPPORTS = frozenset(
         "table",
         "doily",
         "tile",
+        "tier",
+        "platform",
+        "plinth",
+        "pedestal",
+        "easel",
+        "trivet",
     ]
 )
 
