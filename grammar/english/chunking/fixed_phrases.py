@@ -148,6 +148,7 @@ class FixedPhraseChunker(JointChunker):
             self.norms[at + 1] in ("up", "down", "on", "off", "outwards", "inwards", "uppermost")
             and self._previous() == "COMMA" and self.norms[at + 2] in CLAUSE_ENDS
             and norm not in PARTS and norm not in ADVERBS and self.nouns.is_noun(at)
+            and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
         if norm in ("itself", "themselves") and self._previous() == "NP":

@@ -293,6 +293,8 @@ class VerbChunker(RelatorChunker):
             form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
         ):
             return self._finite(at, end, found)  # 'the cups you asked about'
+        if form.form == "past" and form.kind == "transitive" and self._previous() == "NP" and self.norms[at - 1] == "it":
+            return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None

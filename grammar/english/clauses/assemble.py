@@ -222,7 +222,8 @@ class Assembly:
         if subject.phrase.negated and not subject.phrase.members:
             misunderstood(span, "a denial of all does not say which", "say it of each of them")
             return
-        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        past = link == "and" and bool(self.clauses) and self.clauses[-1].past
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         people = last_word(subject.phrase.head) in PEOPLE and all(v.group.lemma in _GETTING for v in verbs)
         person = subject.phrase.pronoun in _PEOPLE or people
         known = len(self.clauses)
@@ -503,8 +504,9 @@ class Assembly:
 
     def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
         """Take in predicates without a subject: they are said of the subject of the clause before."""
-        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
         last = self.clauses[-1] if self.clauses else None
+        past = last is not None and last.past
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         waits = last is None and self.sought is None and not self.fragments and not built.verbs
         waits = waits or (self.opens_list and not built.verbs)
         if waits and not any(part.choice for part in said):

@@ -64,7 +64,6 @@ posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, 
 posture: travel, trail, dot, ladle, step
 other: replace, provide, require, protect, prevent, receive, create, explain, reduce, avoid, knock
 other: rinse, tighten, loosen, unscrew, unplug, preheat, assemble, remove, repeat, mind, admire, inspect
-other: tell tells told told telling, talk, hope, borrow, speak speaks spoke spoken speaking
 other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
