@@ -22,7 +22,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     PRONOUNS,
 )
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
-from deixis.grammar.english.vocabulary.nouns import PEOPLE
+from deixis.grammar.english.vocabulary.nouns import PARTS, PEOPLE
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, places_alone, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import (
@@ -421,7 +421,7 @@ class NounFinder:
             form.form == "s"
             and before in (",", "and")
             and form.lemma in _PLURALS_LIKE_VERBS
-            and self._nouns.knows(norm)
+            and (self._nouns.knows(norm) or self._nouns.singular(norm)[0] in PARTS)
         ):
             return True
         if (

@@ -337,6 +337,9 @@ class VerbChunker(RelatorChunker):
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
+            crosses = self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
+            if imperative and norm in _CROSSING and (crosses or self.norms[end] == "to"):
+                return Chunk("GO", at, end, found)  # 'move over to the other side'
             starts = norm in ("start", "begin") and self.norms[end] in ("at", "in", "on") and not self._previous()
             if starts:
                 return Chunk("GO", at, end, found)  # 'start at the back'
@@ -500,6 +503,7 @@ class VerbChunker(RelatorChunker):
             after in ("be", "not", "have", "well", "also", "only", "you", "usually", "never", "ever", "the", "i", "it")
             or (form is not None and form.form == "base" and not (self.norms[at] == "can" and self._is_can(at + 1)))
             or after in HEDGES
+            or (after in ADVERBS and self.norms[at + 2] == "be")
         ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
 
     def _is_can(self, at: int) -> bool:
@@ -559,6 +563,9 @@ _TENDING = {
 
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
+
+_CROSSING = word_set("move go walk come head step turn")
+"""Verbs of commands that send the reader somewhere."""
 
 _BEGINNING = word_set("start begin finish continue proceed end")
 

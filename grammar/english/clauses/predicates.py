@@ -36,6 +36,8 @@ _ATTACHING = word_set(
 AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
 """Prepositions that, after a verb of staying, deny a place: *keep the cat off the table*."""
 _KEEPING = frozenset({"keep", "leave", "stay", "remain"})
+_REACHING = frozenset({"get", "come", "listen", "ask", "look"})
+"""Verbs after which *at*, *to* and *for* name no place of the subject."""
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
 _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
@@ -201,7 +203,7 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         return ()
     if group.kind not in ("posture", "lean", "be", "face", "point") and group.lemma not in ENTER_VERBS:
         misunderstood(span, f"'{group.lemma}' does not say where something is")
-        return said
+        return () if group.lemma in _REACHING else said
     first, *others = said
     marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)

@@ -40,9 +40,10 @@ CONDITION = re.compile(
 )
 """Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
 UNSURE_RELATIVE = re.compile(
-    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
+    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|(?<!,\swhich\s)should\b|might\b|may\b|could\b|would\b)",
+    re.IGNORECASE,
 )
-"""Beginning of a relative clause that tells what should be or might be."""
+"""Beginning of a relative clause that tells what should be or might be; *…, which should …* adds an instruction."""
 
 OBLIGED = frozenset({"should", "ought", "shall"})
 REVOKED = re.compile(

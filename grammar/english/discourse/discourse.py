@@ -102,7 +102,9 @@ class Discourse(Statements):
         listed = phrase.members or (phrase,)
         label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
         if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
-            self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            labelled = self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            if labelled is not None:
+                self.references.recent.insert(0, Focus(labelled, [], None, sentence))
             return
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
@@ -138,20 +140,26 @@ class Discourse(Statements):
 
     def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
         """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""
-        waiting: NounPhrase | None = None
-        for part, following in zip(listed, (*listed[1:], None), strict=True):
-            if waiting is not None:
-                members = (waiting, replace(part, predicates=()))
-                span = (waiting.span[0], part.span[1])
-                yield NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
-                waiting = None
-            elif (
-                following is not None and len(listed) > 2 and not part.predicates and following.predicates
-                and self.text[part.span[1] : following.span[0]].strip() in ("and", "&")
-            ):  # fmt: skip
-                waiting = part
-            else:
-                yield part
+        waiting: list[NounPhrase] = []
+        placed = False
+        for part in listed:
+            if not part.predicates:
+                waiting.append(part)
+                continue
+            joined = bool(waiting) and len(listed) > 2 and self._joined_to(waiting[-1], part)
+            sharing = len(waiting) if joined and not placed else int(joined)  # all of 'lemons, limes and a knife on it'
+            yield from waiting[: len(waiting) - sharing]
+            if sharing:
+                members = (*waiting[-sharing:], replace(part, predicates=()))
+                span = (members[0].span[0], part.span[1])
+                part = NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
+            yield part
+            waiting, placed = [], True
+        yield from waiting
+
+    def _joined_to(self, part: NounPhrase, following: NounPhrase) -> bool:
+        """Return True if *and* stands between two things of a note."""
+        return self.text[part.span[1] : following.span[0]].strip(" ,") in ("and", "&")
 
     def _ask_about(self, phrase: NounPhrase | None) -> None:
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""

@@ -32,7 +32,7 @@ posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive dri
 posture: weave weaves wove woven weaving
 posture: sling slings slung slung slinging, preset presets preset preset presetting
 posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
-posture: deposit, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
+posture: deposit, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
 face: face, stare, gaze, peer, view
 point: point, aim, direct, open
@@ -49,7 +49,7 @@ other: eat eats ate eaten eating, drink drinks drank drunk drinking, write write
 other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
 other: lose loses lost lost losing, sell sells sold sold selling, buy buys bought bought buying
 other: steal steals stole stolen stealing, forget forgets forgot forgotten forgetting, send sends sent sent sending
-other: follow, shift, transfer, relocate, return
+other: listen, shift, transfer, relocate, return
 other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, notice
 other: see sees seen seen seeing
 other: ignore, disregard, skip, exclude
