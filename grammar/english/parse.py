@@ -143,7 +143,9 @@ def _sentence(
             ]
             parts = segments([chunk for chunk in chunks if chunk.type != "ADVERB"])
             for i, segment in enumerate(parts):
-                assembly.opens_list = i + 1 < len(parts) and parts[i + 1].link == ":"
+                following = parts[i + 1] if i + 1 < len(parts) else None
+                assembly.opens_list = following is not None and following.link == ":"
+                assembly.leads = following is not None and following.link == "," and following.chunks[0].type == "PUT"
                 _parse_segment(segment, assembly)
         found = Found((), None, None) if raw.heading or foreign else assembly.finish()
     finally:

@@ -101,7 +101,7 @@ class FixedPhraseChunker(JointChunker):
         told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
         if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
             return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
-        called = at + 1 + (norm in ("hang", "hold") and self.norms[at + 1] == "on")
+        called = at + 1 + ((norm, self.norms[at + 1]) in _CALLS)
         if norm in _ATTENTION and self.norms[called] == "," and self._previous() in ("", "ADVERB", "COMMA", "CUT"):
             return Chunk("ADVERB", at, called, norm)  # 'no, wait, the cups are …'
         if (
@@ -424,6 +424,9 @@ _UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "betwe
 
 _ATTENTION = word_set("wait listen look see mind sorry hang hold")
 """Words that ask for attention before a comma."""
+
+_CALLS = {("hang", "on"), ("hold", "on"), ("listen", "up"), ("look", "here"), ("see", "here")}
+"""Calls of two words."""
 
 _CHOOSE = word_set("choose select pick click locate")
 

@@ -203,7 +203,8 @@ class RelatorChunker:
                     return end, "ADV", preposition
         if self.norms[at] in ("in", "out", "inward", "inwards", "outward", "outwards"):
             last = self.chunks[-1].value if self.chunks else None
-            if isinstance(last, VerbGroup) and last.kind in ("face", "point") and self.norms[at + 1] in CLAUSE_ENDS:
+            aims = isinstance(last, VerbGroup) and (last.kind in ("face", "point") or last.lemma in _TURNED)
+            if aims and self.norms[at + 1] in CLAUSE_ENDS:
                 return at + 1, "ADV", places_alone()["inward" if self.norms[at][0] == "i" else "outward"]
             if alone is not None and alone[1].relation in ("inward", "outward"):
                 return None
@@ -363,6 +364,9 @@ _STEPS = word_set("square squares place places seat seats row rows notch notches
 _DIRECTED = word_set("left right in_front behind above below top bottom far measured_from from")
 
 _BREADTHS = word_set("width breadth length")
+
+_TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})
+"""Verbs before *in* and *outwards* that tell a direction."""
 
 _BODY = word_set("hand hands finger fingers thumb thumbs palm fist arm foot feet stride pace")
 

@@ -337,6 +337,8 @@ class VerbChunker(RelatorChunker):
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
+            if subject == "COMMA" and self._awaits_verb() and self._predicate_after(i):
+                return self._finite(at, end, found)  # 'the tweezers, points to the left, lie along the edge'
             crosses = self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
             if imperative and norm in _CROSSING and (crosses or self.norms[end] == "to"):
                 return Chunk("GO", at, end, found)  # 'move over to the other side'
@@ -466,6 +468,13 @@ class VerbChunker(RelatorChunker):
             and self.norms[at] in NAMED_LIKE_THINGS
             and self.nouns.is_determiner(at + 1)
         )
+
+    def _awaits_verb(self) -> bool:
+        """Return True if the clause has a plural subject, something between commas and no verb yet."""
+        first = max((k + 1 for k, c in enumerate(self.chunks) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+        types = [chunk.type for chunk in self.chunks[first:]]
+        subject = types[:2] == ["NP", "COMMA"] and self.chunks[first].value.plural
+        return subject and len(types) > 3 and not (FINITE | {"PUT", "FIND", "DO"}) & set(types)
 
     def _goes(self, at: int) -> bool:
         """Return True if a place and not an object follows a command such as *stand* or *sit*."""

@@ -99,6 +99,7 @@ class Assembly:
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
+    leads: bool = False  # True if a comma and a command follow: 'on it, stand the kettle'
     is_coordinated: bool = False  # True for a condition after *and*
     is_lost: bool = False  # True if the clause before has an object and was not understood
     borne: NounPhrase | None = None  # thing that the subject of the clause before holds
@@ -331,7 +332,7 @@ class Assembly:
                     turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
                     found = found or Viewpoint(span)
                     found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
-                if found is None and entering and not said and not self.clauses:
+                if found is None and entering and not said and (not self.clauses or link in ("as", "when")):
                     found = Viewpoint(span)  # 'as you come in'
                 if found is not None:
                     return replace(found, span=span, entering=entering)
@@ -509,6 +510,7 @@ class Assembly:
         verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         waits = last is None and self.sought is None and not self.fragments and not built.verbs
         waits = waits or (self.opens_list and not built.verbs)
+        waits = waits or (self.leads and link in (";", "and", "then", "") and not built.verbs)
         if waits and not any(part.choice for part in said):
             self.front += tuple(p for part in said for p in part.predicates)
             return

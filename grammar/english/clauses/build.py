@@ -364,7 +364,7 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
-        if noun.phrase.head in ("level", "height") and relation in ("at", "on"):
+        if last_word(noun.phrase.head) in ("level", "height") and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None

@@ -187,7 +187,7 @@ def _subject_follows(
         if kind == "COMMA" and _verb_after_aside(types, i):
             return complete or _verbless_before(types, start, at)
         if kind in JOINT_TYPES:
-            if not complete or not _list_then_verb(types, i):
+            if not complete or not _list_then_verb(chunks, types, i):
                 break
             return True
         seen_noun = seen_noun or kind == "NP"
@@ -308,7 +308,7 @@ def _main_verb_after_relative(types: list[str], at: int) -> bool:
     return False
 
 
-def _list_then_verb(types: list[str], at: int) -> bool:
+def _list_then_verb(chunks: list[Chunk], types: list[str], at: int) -> bool:
     """Return True if a list of noun phrases goes on after the joint and ends with a verb: 'A, B and C are …'."""
     i = at
     while i < len(types):
@@ -318,7 +318,9 @@ def _list_then_verb(types: list[str], at: int) -> bool:
             end, kinds = _run(types, i)
             if "COMMA" in kinds and "AND" not in kinds and "OR" not in kinds:
                 return False
-            if end >= len(types) or types[end] != "NP":
+            if end >= len(types) or types[end] != "NP" or (
+                chunks[end].value.pronoun in ("it", "they") and types[end + 1 : end + 2] in (["BE"], ["VERB"])
+            ):  # 'only a stool, and it is tucked underneath'
                 return False
             i = end
             continue

@@ -53,7 +53,7 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
+        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
         _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
         _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
         _without(_place_taken),
@@ -111,6 +111,24 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
             and any(c.type in FINITE | {"COLON", "PUT", "FIND", "TPART"} for c in chunks[i + 2 :])
         )  # fmt: skip
         found.append(emptied(chunk) if closed and (spoken_to or exclamation) else chunk)
+    return found
+
+
+def _without_adverbs_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out an adverb between commas, and the commas before a verb: *the cup, in turn, stands behind the jug*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        end = i + 1
+        while type_at(chunks, end) == "ADVERB":
+            end += 1
+        if chunks[i].type == "COMMA" and end > i + 1 and type_at(chunks, end) == "COMMA":
+            verb = type_at(chunks, i - 1) == "NP" and type_at(chunks, end + 1) in FINITE
+            found += chunks[i + 1 : end] if verb else chunks[i:end]
+            i = end + 1
+        else:
+            found.append(chunks[i])
+            i += 1
     return found
 
 
@@ -557,7 +575,8 @@ def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
     """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
-        beside = [type_at(chunks, i + k) for k in (-1, 1)] == ["NP", "NP"] and type_at(chunks, i - 2) in ("PREP", "OF")
+        before = [c.type for c in chunks[:i] if c.type != "ADVERB"][-2:]
+        beside = type_at(chunks, i + 1) == "NP" and before in (["PREP", "NP"], ["OF", "NP"])
         if chunk.type != "COMMA" or not beside:
             continue
         part = chunks[i + 1].value
