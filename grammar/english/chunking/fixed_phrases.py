@@ -147,7 +147,8 @@ class FixedPhraseChunker(JointChunker):
         if (
             self.norms[at + 1] in ("up", "down", "on", "off", "outwards", "inwards", "uppermost")
             and self._previous() == "COMMA" and self.norms[at + 2] in CLAUSE_ENDS
-            and norm not in PARTS and norm not in ADVERBS and self.nouns.is_noun(at)
+            and (norm not in PARTS or self.norms[at + 1] in ("on", "off"))
+            and norm not in ADVERBS and self.nouns.is_noun(at)
             and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'

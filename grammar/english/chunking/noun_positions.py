@@ -374,6 +374,8 @@ class NounFinder:
             ):
                 return True
             return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
+        if norm == "saw" and after in (",", ".", "and", ";", "") and before in ("", ",", ":", "and", "or"):
+            return True  # 'from left to right: saw, hammer, pliers'
         if form.form in ("past", "participle") and not (
             norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
         ):

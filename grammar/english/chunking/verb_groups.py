@@ -277,7 +277,7 @@ class VerbChunker(RelatorChunker):
             return Chunk("DO", at, end + 1, found)
         if norm == "lay" and self._previous() == "NP" and self.norms[at - 1] in ("you", "we"):
             return self._finite(at, end, _with(group, "lay", "posture", "base"))  # 'then you lay the spoon beside it'
-        if norm in PAST_ONLY:
+        if norm in PAST_ONLY and not (norm == "saw" and self.nouns.is_noun(i)):
             return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
         if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
             return Chunk("FIND", at, end, found)

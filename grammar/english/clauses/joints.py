@@ -144,6 +144,8 @@ def _cuts(
         return True
     if following == "PREP" and "AND" in kinds and _verbless_inversion(types, end):
         return True  # 'the brush, and behind it the cup'
+    if labelled and kinds == {"COMMA"} and following in PREDICATES:
+        return False  # 'toolbox: open, under the bench, hammer on top'
     if (following in ("PREP", "ADV") and complete) or (
         following == "PREP" and types[start] == "PREP" and "AND" in kinds
     ):
@@ -550,11 +552,14 @@ def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: 
     after = at + 1
     while [chunk.type for chunk in source[after : after + 2]] == ["OF", "NP"]:
         after += 2
-    if [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
+    tucked = [c.type for c in source[after : after + 2]] == ["PART", "PREP"] and source[after].value.kind == "posture"
+    if not tucked and [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
         return False
     first, second = found[0].value, source[at].value
     last = max(i for i, kind in enumerate(types) if kind in ("PREP", "ADV"))
-    if not first.head or not second.head or found[last].value.preposition.relation in _WITH_LISTS:
+    other = second.pronoun == "one" or second.count is not None  # 'two chairs by the window, one at the desk'
+    ends_list = found[last].value.preposition.relation not in _WITH_LISTS or tucked
+    if not first.head or not (second.head or other) or not ends_list:
         return False
     listing = "COMMA" in kinds or "OJ" in types or link in (",", ":", ";")
     return listing or (first.determiner is None and second.determiner is None)

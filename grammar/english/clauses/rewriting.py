@@ -8,6 +8,7 @@ from dataclasses import replace
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
 from deixis.grammar.english.clauses.ellipses import filled_in
+from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import (
@@ -58,7 +59,8 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
         _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
         _without(_place_taken),
         _without(_count_apart), _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
+        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
+        _with_telegraphic_places,
         _without(_stranded), _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
     ):  # fmt: skip
         chunks = rewrite(chunks)
@@ -487,6 +489,28 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+def _with_place_labels(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *centre of table: fruit bowl* and *top drawer: pens, tape* as places with their things."""
+    colon = 1
+    while [type_at(chunks, colon), type_at(chunks, colon + 1)] == ["OF", "NP"]:
+        colon += 2
+    if [type_at(chunks, 0), type_at(chunks, colon), type_at(chunks, colon + 1)] != ["NP", "COLON", "NP"]:
+        return chunks
+    place, thing = chunks[0].value, chunks[colon + 1].value
+    if place.determiner not in (None, "the") or not place.head or not thing.head or is_place(thing):
+        return chunks
+    noun = last_word(place.head.rstrip("0123456789 "))
+    holds = noun in VESSELS | HOLDERS or noun in SURFACES
+    if not is_place(place) and (not holds or place.plural or last_word(thing.head) in VESSELS | HOLDERS | SURFACES):
+        return chunks
+    if any(chunk.type in FINITE for chunk in chunks[colon:]) or (is_place(place) and place.plural):
+        return chunks
+    word = "at" if is_place(place) else "in" if noun in VESSELS | HOLDERS else "on"
+    relator = Relator(Preposition(word, {"in": "inside"}.get(word, word)))
+    comma = Chunk("COMMA", chunks[colon].start, chunks[colon].end, None, chunks[colon].span)
+    return [put_in("PREP", chunks[0], relator), *chunks[:colon], comma, *chunks[colon + 1 :]]
+
+
 def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
     """Return the chunks with a preposition before a bare place of a note: *plate centre*, *lamp: far left corner*."""
     at = Relator(Preposition("at", "at"))
@@ -508,6 +532,10 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             and chunk.value.head in PLACE_NOUNS and chunk.value.determiner is None and chunk.value.owner is None
             and not any(other.type in FINITE for other in chunks)
         )  # fmt: skip
+        on = bool(found) and found[-1].type == "PREP" and found[-1].value.preposition.relation in ("on", "at", "inside")
+        if on and chunk.type == "ADV" and chunk.value.preposition.phrase in PLACE_NOUNS:  # 'kettle on left'
+            side = NounPhrase(chunk.span, chunk.value.preposition.phrase)
+            chunk = Chunk("NP", chunk.start, chunk.end, side, chunk.span)
         if noted:  # 'limes? front left, in a bowl, knife across it'
             found.append(put_in("PREP", chunk, at))
             for k in range(i + 2, len(chunks) - 2):

@@ -104,6 +104,11 @@ below: below, down below, underneath
 on: on top
 middle: centrally, dead centre, dead center, in dead centre, smack in the middle, bang in the middle, slap in the middle
 top: up top, up high, high up, at top
+left: at left
+right: at right
+middle: at centre, at center, in centre, in center, in middle
+behind: at rear, at back
+in_front: at front
 beside: beside
 inside: inside, within
 outside: outside
