@@ -392,6 +392,14 @@ class NounFinder:
         counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
         if counted and form.form == "base" and after in prepositions():
             return False  # 'three fibulae follow in a row'
+        spatial = form.kind in ("posture", "lean") and self._predicate_follows(at)
+        if spatial and form.form == "base" and before in ("both", "all"):
+            return False  # 'both stand on the floor'
+        if spatial and form.form == "s" and before == "other" and self.norms[at - 2] == "the":
+            return False  # 'the other lies under the bench'
+        commanded = at < 2 or self.norms[at - 2] in ("and", ",", "then", "never", "not", "please", "always", ";", ":")
+        if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
+            return True  # 'keep drinks away from it'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'

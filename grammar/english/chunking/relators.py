@@ -116,6 +116,8 @@ class RelatorChunker:
         while (self.norms[i] in DEGREE_ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "the") and i - at < 4:
             if self._relations.by_first.get(self.norms[i]) and self._match(i) is not None:
                 break
+            if i == at and (alone := self._alone.longest(self.norms, i)) is not None and alone[0] > i + 1:
+                break  # 'dead centre'
             if self.norms[i] == "the" and self.nouns.is_degree_word(i + 1) is False:
                 return None
             if self.norms[i] != "the":

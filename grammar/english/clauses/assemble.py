@@ -169,6 +169,8 @@ class Assembly:
         if link == "until" and last is not None and last.mood is Mood.COMMAND and last.positive:
             misunderstood(span, "this says how long something is done, not where it is")
             return  # 'press the foam into the bowl until it sits firmly'
+        if link == "as" and built.subject is not None and built.subject.phrase.pronoun in _PEOPLE:
+            return  # 'as you would expect'
         if link == "instead":
             misunderstood(span, "this says where something is not", "deny it: 'The cup is not on the tray.'")
             return
@@ -571,8 +573,10 @@ class Assembly:
             if phrase.pronoun in ("anything", "anyone", "one", "everything"):
                 phrase = replace(phrase, pronoun="nothing")
             group = replace(group, positive=True)
-        if phrase is not None and phrase.determiner == "neither" and phrase.members:
-            phrase, group = replace(phrase, determiner=None), replace(group, positive=not group.positive)
+        if phrase is not None and phrase.determiner == "neither" and (phrase.members or phrase.head):
+            count = 2 if phrase.head else phrase.count  # 'neither lamp is on the desk'
+            plain = replace(phrase, determiner="the" if phrase.head else None, count=count, plural=True)
+            phrase, group = plain, replace(group, positive=not group.positive)
             verb = replace(verb, group=group)
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
@@ -604,6 +608,11 @@ class Assembly:
             hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
             if not hedge.positive:
                 made = [replace(p, positive=not p.positive) for p in made]
+        handled = verb.thing is not None and not made and positive and not choices and mood is Mood.STATEMENT
+        if handled and verb.thing is not None and verb.thing.phrase.head and verb.thing.phrase.determiner == "the":
+            thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
+            self._append(Clause(thing, (), span, Mood.COMMAND, step=self.raw.step), link)
+            return
         clause = Clause(
             phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,

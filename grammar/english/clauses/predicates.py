@@ -45,6 +45,8 @@ _COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "
 _DIRECTIONAL = frozenset(
     {"left", "right", "top", "bottom", "in_front", "behind", "above", "below", "far", "near", "part"}
 )
+_HANGING = frozenset({"hang", "dangle", "suspend", "swing", "droop", "sling"})
+"""Verbs after which what is *from* a thing is on it."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
@@ -451,7 +453,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         elif relation in ("far", "apart"):
             value = Adjective("away", "position", Degree.PLAIN, following.span)
             relation = meaning
-    elif (lemma == "hang" and relation == "from") or (
+    elif (lemma in _HANGING and relation == "from") or (
         lemma in ("stack", "pile") and relation in ("on", "stacked") and arguments
     ):
         relation = "on"

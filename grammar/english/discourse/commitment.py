@@ -84,6 +84,8 @@ UNREAL = re.compile(
     r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
     r"|\b(?:think|dream|talk|read|hear|speak|complain)(?:s|ing|ed)?\s+(?:of|about)\b"
     r"|\bwill\s+have\s+(?:been|stood|lain|\w+ed)\b"
+    r"|\b(?:i|we)(?:['\u2019](?:m|re|ve\s+been)|\s+(?:am|are|was|were|have\s+been))\s+(?:told|informed|assured|given\s+to)\b"
+    r"|\b(?:wants|wanted)\s+(?:the|an?|my|his|her|our|their|it|them)\b|\bover\s+(?:my|his|her|our)\s+dead\s+body\b"
     r"|\bnothing\s+like\s+(?:as|so)\b"
     r"|\blooks?\s+(?:as\s+(?:if|though)|like)\s+(?:the|an?|my|his|her|our|their|it|they|there)\b"
     r"|\b(?:theory|theories|story|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"

@@ -16,6 +16,8 @@ IDIOMS = tuple(
         "see to it that",
         "right now",
         "by contrast",
+        "in the air",
+        "in mid-air",
         "in contrast",
         "by comparison",
         "by hand",
