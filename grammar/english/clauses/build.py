@@ -35,7 +35,7 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, last_word
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NOT_PLACES, PLACE_NOUNS
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NEVER_PLACES, NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 
 
@@ -402,7 +402,7 @@ class Builder(Transformer[Any, Built]):
         manner = relation == "by" and noun.phrase.head in _MANNERS
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
-        if idle or (plain and manner):
+        if idle or (plain and manner) or last_word(noun.phrase.head) in NEVER_PLACES:
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":

@@ -22,6 +22,12 @@ NOT_PLACES = word_set(
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 
+NEVER_PLACES = word_set(
+    "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
+    " misapprehension spell treaty name circumstance principle nature rumour rumor honour honor behalf occasion"
+)
+"""Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""
+
 # Relation words that take an object. The key is the relation's name in the ontology; '-' is no spatial relation.
 _PREPOSITIONS = """
 material: made of, made out of, made from, made up of, built of, built from, composed of, consisting of
