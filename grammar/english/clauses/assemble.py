@@ -12,7 +12,7 @@ from deixis.grammar.english.clauses.places import HOURS
 from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.tokens import RawSentence
 from deixis.grammar.english.tree import Clause, Mood, NounPhrase, Predicate, Span, Viewpoint
-from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS, PERSONS
+from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES, IS_FORMS
 from deixis.grammar.english.vocabulary.nouns import PEOPLE, last_word
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, FACE_VERBS
 
@@ -608,8 +608,8 @@ class Assembly:
             hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
             if not hedge.positive:
                 made = [replace(p, positive=not p.positive) for p in made]
-        person = phrase is not None and (phrase.pronoun in PERSONS or last_word(phrase.head) in PEOPLE)
-        handled = person and not made and positive and not choices and mood is Mood.STATEMENT
+        speaker = phrase is not None and phrase.pronoun in _PEOPLE
+        handled = speaker and not made and positive and not choices and mood is Mood.STATEMENT
         if handled and verb.thing is not None and verb.thing.phrase.head and verb.thing.phrase.determiner == "the":
             thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
             self._append(Clause(thing, (), span, Mood.COMMAND, step=self.raw.step), link)

@@ -16,8 +16,6 @@ IDIOMS = tuple(
         "see to it that",
         "right now",
         "by contrast",
-        "around the corner",
-        "round the corner",
         "in the air",
         "in mid-air",
         "in contrast",
