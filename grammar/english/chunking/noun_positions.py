@@ -403,8 +403,12 @@ class NounFinder:
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
+        accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
+        if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
+            return True  # 'with the cotton rolls behind it'
+        first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            at > 3 and self.norms[at - 3] == "and" and self.is_determiner(at - 2) and form.form == "base"
+            first > 1 and self.norms[first - 1] == "and" and form.form == "base"
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip

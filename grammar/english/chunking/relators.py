@@ -213,7 +213,7 @@ class RelatorChunker:
         if alone is not None:
             if (
                 self.norms[at] in ("left", "right")
-                and self.norms[alone[0]] in ("in", "on", "behind", "next", "above", "below", "under", "beside", "there")
+                and self.norms[alone[0]] in _AFTER_RIGHT
                 and self.norms[at] == "right"
             ):
                 return None  # an adverb: 'right behind'
@@ -366,6 +366,9 @@ _STEPS = word_set("square squares place places seat seats row rows notch notches
 _DIRECTED = word_set("left right in_front behind above below top bottom far measured_from from")
 
 _BREADTHS = word_set("width breadth length")
+
+_AFTER_RIGHT = word_set("in on at by behind next above below under underneath beside against between opposite there")
+"""Words before which *right* is an adverb."""
 
 _TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})
 """Verbs before *in* and *outwards* that tell a direction."""

@@ -259,6 +259,7 @@ class Assembly:
                 continue
             if verb.thing is not None and (
                 verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
+                or (verb.group.lemma == "find" and verb.group.positive)
             ):
                 kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}
                 placed = person and verb.group.lemma in _PLACING - kept and verb.group.past
@@ -275,7 +276,8 @@ class Assembly:
                 if not moved.said and not front and verb.group.lemma not in _MEETING:
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
-                shape = "existential" if person and verb.group.lemma in _MEETING else built.shape
+                meets = person and verb.group.lemma in _MEETING
+                shape = "existential" if meets or verb.group.lemma == "find" else built.shape
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
             self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
@@ -612,7 +614,8 @@ class Assembly:
         handled = speaker and not made and positive and not choices and mood is Mood.STATEMENT
         if handled and verb.thing is not None and verb.thing.phrase.head and verb.thing.phrase.determiner == "the":
             thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
-            self._append(Clause(thing, (), span, Mood.COMMAND, step=self.raw.step), link)
+            added = self._added_about(verb.thing.phrase)
+            self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
             return
         clause = Clause(
             phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
@@ -621,6 +624,13 @@ class Assembly:
         self._append(clause, link)
         for noun, said in absolute:
             self._append(replace(clause, subject=noun, predicates=said, choices=(), existential=False), ",")
+
+    def _added_about(self, phrase: NounPhrase) -> tuple[Predicate, ...]:
+        """Return what a relative clause after a comma says: *I love the clock, which hangs over the door*."""
+        said = phrase.predicates
+        if not said or not self.text[: said[0].span[0]].rstrip().endswith((", which", ", who")):
+            return ()
+        return said
 
     def _append(self, clause: Clause, link: str) -> None:
         kept = []

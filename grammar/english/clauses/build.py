@@ -57,6 +57,8 @@ class Builder(Transformer[Any, Built]):
         """Return *to the left of the plate lies the fork*."""
         if more:
             said = (*said, Said(more))
+        if verb.type == "VERB":
+            said = moved(verb.value, said, verb.span)
         return Built("inverted", top, (Verb(verb.value, said, verb.span),))
 
     def verbless(self, said: tuple[Said, ...], top: Noun) -> Built:

@@ -40,8 +40,12 @@ _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 """Verbs after which *at*, *to* and *for* name no place of the subject."""
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
-_COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
+_COVERING = frozenset(
+    {"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap", "hook", "sling", "loop", "fling"}
+)
 """Verbs after which *over* means *on*."""
+_OUTER = frozenset({"back", "front", "side", "edge", "end", "corner"})
+"""Parts of a thing over which a cover hangs."""
 _DIRECTIONAL = frozenset(
     {"left", "right", "top", "bottom", "in_front", "behind", "above", "below", "far", "near", "part"}
 )
@@ -471,6 +475,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "through"  # 'mentioned in the catalogue'
     elif lemma in ("cover", "coat", "drape") and relation == "with":
         return replace(following, relation="on", reversed=True, span=span)
+    elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
+        relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
     elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
         relation = "on"
     elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
@@ -489,6 +495,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         following,
         relation=relation,
         value=value,
+        arguments=arguments,
         span=span,
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),

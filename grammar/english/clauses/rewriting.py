@@ -192,7 +192,11 @@ def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 3].value.head in PLACE_NOUNS
     )  # fmt: skip
-    return (at + 4, None) if apart else None
+    nearest = (
+        [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS
+        and chunks[at + 1].value[-1].word in ("near", "far") and len(chunks[at + 1].value) > 1
+    )  # 'ink pots in front of the lamp, black nearest the client'  # fmt: skip
+    return (at + 3 + (not nearest), None) if apart or nearest else None
 
 
 def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
@@ -203,13 +207,13 @@ def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
         and type_at(chunks, at + 2) == "BE" and type_at(chunks, at + 3) in _ENDS
     )  # fmt: skip
     free = (
-        chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) == "BE"
+        chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
         and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
     if not there and not free:
         return None
     end = end_before(chunks, at + 3, JOINT_TYPES)
-    return end + (free and type_at(chunks, end) == "COMMA"), None
+    return end + (free and type_at(chunks, end) in ("COMMA", "COLON")), None
 
 
 def _search(chunks: list[Chunk], at: int) -> _Run | None:

@@ -638,6 +638,9 @@ class References:
         return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)
 
     def _last_noun(self) -> str | None:
+        last = self.recent[0].subject if self.recent else None
+        if last is not None and last.noun and (last.itself.members or last.plural) and last.role is Role.THING:
+            return last.noun  # 'three buttons on the panel: the red one …'
         return self.entities[-1].noun if self.entities else None
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
@@ -647,6 +650,12 @@ class References:
             and OPPOSITES[relation] == last.relation and last.subject is not besides
         ):  # fmt: skip
             return last.others[0]
+        listed = self.recent[-1] if self.recent else None
+        if (
+            listed is not None and listed.sentence == self.sentence and relation in OPPOSITES and listed.others
+            and OPPOSITES[relation] == listed.relation and besides is not None and listed.subject is not besides
+        ):  # fmt: skip
+            return listed.others[0]  # 'a fork to the left of the plate and a knife to the right of it'
         several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
