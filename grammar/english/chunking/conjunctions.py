@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.chunking.chunk import FINITE, Chunk, Relator
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
@@ -58,6 +58,7 @@ class JointChunker(VerbChunker):
             or (after == "used" and self.norms[at + 2] == "to")
             or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
             or (previous in FINITE and at == 1)
+            or (after in _THERE_STANDS and self._previous() in JOINT_TYPES | {"", "ADVERB"})
         ):
             return Chunk("THERE", at, at + 1)
         if norm == "out" and after == "of" and previous in ("", "COMMA", "ADVERB", "CUT"):
@@ -174,6 +175,9 @@ class JointChunker(VerbChunker):
         after = self.norms[at + 1]
         return self._previous() == "AND" and after in IS_FORMS
 
+
+_THERE_STANDS = word_set("stands stand lies lie hangs hang sits sit stood lay hung sat")
+"""Verbs after *there* that say that something is there."""
 
 _CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
 

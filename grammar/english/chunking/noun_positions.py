@@ -392,6 +392,8 @@ class NounFinder:
         counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
         if counted and form.form == "base" and after in prepositions():
             return False  # 'three fibulae follow in a row'
+        if before == "there" and at == 1 and form.form in ("base", "s") and form.kind == "posture":
+            return False  # 'there stands a clock'
         spatial = form.kind in ("posture", "lean") and self._predicate_follows(at)
         if spatial and form.form == "base" and before in ("both", "all"):
             return False  # 'both stand on the floor'
@@ -408,7 +410,7 @@ class NounFinder:
             return True  # 'with the cotton rolls behind it'
         first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            first > 1 and self.norms[first - 1] == "and" and form.form == "base"
+            first > 1 and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip

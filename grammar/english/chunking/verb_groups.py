@@ -236,7 +236,8 @@ class VerbChunker(RelatorChunker):
             return self._unknown_participle(at, i, group)
         found = _with(group, form.lemma, form.kind, form.form)
         end = i + 1
-        if form.kind == "posture" and self.norms[end] in PARTICLES and self.nouns.is_determiner(end + 1):
+        apart = self.norms[end] in PARTICLES and (self.norms[end] != "over" or form.lemma in _TURNING_OVER)
+        if form.kind == "posture" and apart and self.nouns.is_determiner(end + 1):
             end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
         phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
         if phrasal is not None:
@@ -575,6 +576,9 @@ _GOING = word_set("stand sit step walk go kneel stay wait look")
 
 _CROSSING = word_set("move go walk come head step turn")
 """Verbs of commands that send the reader somewhere."""
+
+_TURNING_OVER = word_set("turn tip roll fold flip fall push pull")
+"""Verbs of which *over* is a part."""
 
 _BEGINNING = word_set("start begin finish continue proceed end")
 

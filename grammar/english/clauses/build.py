@@ -670,7 +670,7 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
-    if last is None or part is None or part.owner is None or part.owner.pronoun != "it":
+    if last is None or part is None or part.owner is None or part.owner.pronoun not in ("it", "they"):
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)

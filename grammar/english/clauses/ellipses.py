@@ -32,11 +32,21 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions, _with_members_apart,
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions, _with_members_apart,
         _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
+
+
+def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *there stands a clock in the corner* as *there is a clock in the corner*."""
+    found = list(chunks)
+    for i in range(1, len(found)):
+        verb = found[i]
+        if found[i - 1].type == "THERE" and verb.type in ("VERB", "TVERB", "PUT") and verb.value.kind == "posture":
+            found[i] = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+    return found
 
 
 def _with_repeated_predicates(chunks: list[Chunk]) -> list[Chunk]:
@@ -80,7 +90,14 @@ def _without_clefts(chunks: list[Chunk]) -> list[Chunk]:
     """Return *it is the fork that lies on the left* as *the fork lies on the left*."""
     for i, chunk in enumerate(chunks):
         begins = chunk.type == "NP" and chunk.value.pronoun == "it" and type_at(chunks, i - 1) in JOINT_TYPES | {""}
-        if not begins or [type_at(chunks, i + k) for k in (1, 2)] != ["BE", "NP"]:
+        if not begins:
+            continue
+        rel = end_before(chunks, i, frozenset({"REL", "CUT", "SUB"}))
+        if type_at(chunks, i + 1) == "BE" and type_at(chunks, i + 2) == "PREP" and type_at(chunks, rel) == "REL":
+            seen = [type_at(chunks, rel + k) for k in (1, 2)] in (["NP", "TVERB"], ["NP", "VERB"])
+            if seen and chunks[i + 1].value.positive:  # 'it is on the dresser that you will find the corkscrew'
+                return [*chunks[:i], *chunks[i + 2 : rel], *chunks[rel + 1 :]]
+        if [type_at(chunks, i + k) for k in (1, 2)] != ["BE", "NP"]:
             continue
         be, thing = chunks[i + 1].value, chunks[i + 2].value
         end = i + 3

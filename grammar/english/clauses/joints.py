@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.editing import type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
@@ -278,8 +279,10 @@ def _same_place_again(chunks: list[Chunk], types: list[str], start: int, at: int
 
 def _verb_after_aside(types: list[str], at: int) -> bool:
     """Return True if a verb follows after a phrase between commas: 'the cups, nested in one another, stood …'."""
-    if at + 1 >= len(types) or types[at + 1] not in PREDICATES | {"REL"} or "COMMA" not in types[at + 1 :]:
+    if at + 1 >= len(types) or types[at + 1] not in PREDICATES | {"REL", "NP"} or "COMMA" not in types[at + 1 :]:
         return False
+    if types[at + 1] == "NP" and types[at + 2 : at + 3] != ["COMMA"]:
+        return False  # no apposition: 'the lamp, a green one, stood …'
     end = types.index("COMMA", at + 1) + 1
     return end < len(types) and types[end] in FINITE
 
@@ -336,7 +339,8 @@ def _in_list(chunks: list[Chunk], types: list[str], start: int, at: int, end: in
     """Return True if the joint is in the list of a preposition that takes one: between A, B and C."""
     for i in range(at - 1, start - 1, -1):
         if types[i] == "PREP":
-            return chunks[i].value.preposition.relation in ("between", "among")
+            both = type_at(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun == "they"
+            return chunks[i].value.preposition.relation in ("between", "among") and not both
         if types[i] in FINITE:
             return False
     return False
@@ -514,6 +518,9 @@ def classify(segment: Segment) -> list[Chunk]:
                 source[end] = bare
                 types[end] = after = "ADJP"
             kind = _kind(source, types, found, kinds, end, after, fronted)
+            both = [c.type for c in found[-2:]] == ["PREP", "NP"] and found[-1].value.pronoun == "they"
+            if kind == "NJ" and both and found[-2].value.preposition.relation == "between" and after == "NP":
+                kind = "OJ"  # 'a candle between them, and a bottle …'
             if kind == "NJ" and _lists_places(source, found, kinds, end, segment.link):
                 kind = "OJ"
             if (

@@ -477,6 +477,8 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         return replace(following, relation="on", reversed=True, span=span)
     elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
         relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
+    elif relation == "above" and arguments and arguments[0].head in ("rim", "lip"):
+        pass  # 'hooked over the rim'
     elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
         relation = "on"
     elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":

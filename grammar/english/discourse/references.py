@@ -661,6 +661,8 @@ class References:
             for entity in [focus.subject, *focus.others]:
                 if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT):
                     continue
+                if relation is not None and entity.itself.absent:
+                    continue  # 'no cushion lies on the bench, but there is a rug under it'
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue

@@ -47,6 +47,10 @@ SUPPORTS = frozenset(
         "pedestal",
         "easel",
         "trivet",
+        "peg",
+        "hook",
+        "nail",
+        "hanger",
     ]
 )
 
@@ -179,7 +183,7 @@ class Relations(Mentions):
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
-            if subject.role is not Role.SURFACE and relation in ("on", "inside"):
+            if subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)

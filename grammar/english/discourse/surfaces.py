@@ -82,7 +82,7 @@ def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
 
 
 def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
-    for argument in predicate.arguments:
+    for argument in predicate.arguments if not predicate.reversed else ():
         of_place = predicate.relation in PLACES or argument.of is not None
         if predicate.relation not in OF_SURFACES and not of_place:
             continue
