@@ -460,7 +460,8 @@ class NounFinder:
             places = after in prepositions() or after in places_alone()
             if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
                 return (
-                    self.norms[at + 2] != "of" and self.norms[at + 2] not in prepositions()
+                    self.norms[at + 2] != "of"
+                    and self.norms[at + 2] not in prepositions().keys() | places_alone().keys()
                 )  # 'the missal rests open on its stand'
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
                 beyond = self.norms[at + 2]

@@ -217,6 +217,8 @@ class RelatorChunker:
                 and self.norms[at] == "right"
             ):
                 return None  # an adverb: 'right behind'
+            if alone[1].relation in ("up", "down") and self._previous() == "PART" and self.norms[at - 1] in _ROLLED:
+                return None  # 'rolled up and leaning against it'
             if alone[1].relation in ("up", "down") and self.norms[alone[0]] in ("and", "or"):
                 return alone[0], "ADV", places_alone()["above" if alone[1].relation == "up" else "below"]
             if alone[1].relation in ("up", "down", "forward", "backward"):
@@ -367,7 +369,10 @@ _DIRECTED = word_set("left right in_front behind above below top bottom far meas
 
 _BREADTHS = word_set("width breadth length")
 
-_AFTER_RIGHT = word_set("in on at by behind next above below under underneath beside against between opposite there")
+_ROLLED = word_set("rolled folded propped stacked piled wrapped coiled curled drawn tied")
+"""Participles of which *up* is a part."""
+
+_AFTER_RIGHT = word_set("up down along across over in on at by behind next above below under underneath beside against between opposite there")
 """Words before which *right* is an adverb."""
 
 _TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})

@@ -317,6 +317,8 @@ class VerbChunker(RelatorChunker):
                 return None
             end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
+        if norm == "open" and self._previous() == "VERB":
+            return None  # 'stands open on the sideboard'
         if norm in ("set", "put") and self._previous() == "BE":
             return Chunk("PART", at, end, found)
         if form.form == "base":

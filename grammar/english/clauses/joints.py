@@ -617,10 +617,17 @@ def _kind(
         if source[end].value.negated:
             nominal = any(a == "BE" and b == "NP" for a, b in pairwise(before))
             return "OJ" if nominal or not any(k in FINITE or k == "PUT" for k in before) else "NJ"
+        placed = end + 1
+        while types[placed : placed + 2] == ["OF", "NP"]:
+            placed += 2
+        introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
+        between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
+        if "THERE" in before and "PREP" in before and introduced and not between and types[placed : placed + 1] == ["PREP"]:
+            return "OJ"  # 'there is a hole in the middle of the board and a peg in the hole'
         if (
             found[-1].type == "NP"
             and found[-1].value.pronoun in ("it", "they")
-            and types[end + 1 : end + 2] in (["PREP"], ["ADV"])
+            and types[placed : placed + 1] in (["PREP"], ["ADV"])
             and ("TVERB" in before or "WITH" in before or "THERE" in before)
         ):
             return "OJ"

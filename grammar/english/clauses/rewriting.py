@@ -455,13 +455,13 @@ def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
                 found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
                 waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
                 continue
-            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
+            before = next((c for c in reversed(found) if c.type == "NP" and _names_thing(c.value)), None)
             if before is not None:
                 found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
         elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
             if waiting is not None and chunks[i - 1].span == waiting.span:
                 continue
-            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and _names_thing(c.value)), None)
             if before is not None:
                 value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
                 chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
@@ -470,6 +470,11 @@ def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
             found.append(waiting)
             waiting = None
     return found
+
+
+def _names_thing(phrase: NounPhrase) -> bool:
+    """Return True for a thing and not for its place: *a drawer at the front, in which …*."""
+    return bool(phrase.head) and not is_place(phrase)
 
 
 def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:

@@ -151,6 +151,7 @@ def degree_of(word: str) -> tuple[str, Degree]:
                 if (
                     len(lemma) > 1
                     and lemma in known
+                    and (lemma != stem[:-1] + "y" or stem.endswith("i"))  # 'happier', and not 'grater' of 'gray'
                     and not (lemma == stem[:-1] and stem[-1:] not in (*stem[-2:-1], "i"))
                 ):
                     return lemma, degree
