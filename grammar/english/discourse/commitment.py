@@ -90,12 +90,12 @@ UNREAL = re.compile(
     r"|^\s*picture\s+this\b|\bis\s+(?:an?\s+)?(?:accident\s+waiting|bad\s+luck|good\s+luck|recipe\s+for|(?:fire\s+)?hazard|"
     r"crime|sin|joke|figment|fantasy|fiction|lie|illusion|dream)\b"
     r"|\bnothing\s+like\s+(?:as|so)\b"
-    r"|\blooks?\s+(?:as\s+(?:if|though)|like)\s+(?:the|an?|my|his|her|our|their|it|they|there)\b"
+    r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
     r"|\b(?:theory|theories|story|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
     r"(?:puts?|places?|has|locates?|says?|holds?|goes|claims?|suggests?)\b"
     r"|\b(?:says?|tells?|suggests?|shows?|proves?|know|knows|thinks?)\s+(?:us\s+)?(?:otherwise|differently)\b"
     r"|(?:^|[,;]\s*)(?:the|this|that|one|an?)\s+(?:old\s+)?(?:picture|photo|photograph|painting|drawing|catalogue|advert(?:isement)?|"
-    r"brochure|leaflet|cover|postcard|poster|film|video)\s+(?:pictures?|shows?|depicts?|portrays?|has)\b"
+    r"brochure|leaflet|postcard|poster|film|video)\s+(?:pictures?|shows?|depicts?|portrays?)\b"
     r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
