@@ -16,7 +16,14 @@ from deixis.grammar.english.clauses.built import Built, notes
 from deixis.grammar.english.clauses.joints import Segment, classify, segments
 from deixis.grammar.english.clauses.rewriting import rewritten
 from deixis.grammar.english.confidence import Guess
-from deixis.grammar.english.tokens import MAX_SENTENCE_WORDS, RawSentence, Word, sentences, words_of
+from deixis.grammar.english.tokens import (
+    MAX_SENTENCE_WORDS,
+    RawSentence,
+    Word,
+    sentences,
+    without_request,
+    words_of,
+)
 from deixis.grammar.english.tree import Misunderstood, Predicate, Sentence
 from deixis.grammar.english.vocabulary.function_words import APPROXIMATE, HEDGES
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns, known_nouns
@@ -119,7 +126,8 @@ def _sentence(
     foreign = False
     before = notes.set(unknown)
     try:
-        assembly = Assembly(text, raw, asks=text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?"))
+        asks = text[raw.start : raw.end].rstrip(" \n\"'\u201d)").endswith("?")
+        assembly = Assembly(text, raw, asks=not without_request(words) and asks)
         assembly.front = lead
         if not raw.heading and _is_foreign(words):
             foreign = True
@@ -135,7 +143,9 @@ def _sentence(
             ]
             parts = segments([chunk for chunk in chunks if chunk.type != "ADVERB"])
             for i, segment in enumerate(parts):
-                assembly.opens_list = i + 1 < len(parts) and parts[i + 1].link == ":"
+                following = parts[i + 1] if i + 1 < len(parts) else None
+                assembly.opens_list = following is not None and following.link == ":"
+                assembly.leads = following is not None and following.link == "," and following.chunks[0].type == "PUT"
                 _parse_segment(segment, assembly)
         found = Found((), None, None) if raw.heading or foreign else assembly.finish()
     finally:

@@ -9,10 +9,18 @@ from dataclasses import dataclass
 
 from deixis.grammar.english.tree import Degree, Span
 from deixis.grammar.english.vocabulary.adjectives import adjectives, degree_of
-from deixis.grammar.english.vocabulary.function_words import IS_FORMS, ORDINALS, PAST_FORMS, PRONOUNS, TYPOS
+from deixis.grammar.english.vocabulary.function_words import (
+    DETERMINERS,
+    IS_FORMS,
+    ORDINALS,
+    PAST_FORMS,
+    POSSESSIVES,
+    PRONOUNS,
+    TYPOS,
+)
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, prepositions
 from deixis.grammar.english.vocabulary.tables import LITERAL, word_set
-from deixis.grammar.english.vocabulary.verbs import verb_forms
+from deixis.grammar.english.vocabulary.verbs import PUT_VERBS, verb_forms
 
 MAX_LABEL_WORDS = 5
 """Number of words before a dash that can be a label: *sugar bowl - behind the pot*."""
@@ -79,6 +87,7 @@ _DENIALS = {
     ("nowhere", "close", "to"): "not near", ("anything", "but"): "not",
     ("has", "yet", "to", "be"): "is not", ("have", "yet", "to", "be"): "are not", ("stopped", "being"): "is not",
     ("minus",): "without", ("ceased", "to", "be"): "is not", ("ceases", "to", "be"): "is not",
+    ("might", "as", "well"): "might", ("may", "as", "well"): "may", ("could", "as", "well"): "could",
     ("nowhere", "near", "being"): "not", ("'d", "better"): "should", ("had", "better"): "should",
 }  # fmt: skip
 """Phrases that deny what follows them, or advise it, with the words that say the same."""
@@ -306,8 +315,45 @@ def _depicted(text: str, span: Span) -> Iterator[Span]:
             yield match.span(1 if match[1] is not None else 2)
 
 
+def without_request(words: list[Word]) -> bool:
+    """Leave out the words that make a command polite, and return True if there are any.
+
+    Parameters
+    ----------
+    words
+        Words of a sentence, which are changed: *could you please put the cup on it?* becomes *put the cup on it*.
+        A question about placing something, without *please*, stays one.
+
+    Returns
+    -------
+    bool
+        False for a sentence that asks or tells something.
+    """
+    start = next((i for i, word in enumerate(words) if word.is_word and word.norm not in _BEFORE_REQUESTS), 0)
+    norms = [word.norm for word in words[start : start + 4]]
+    if len(norms) < 4 or norms[0] not in ("can", "could", "would", "will") or norms[1] != "you":
+        return False
+    verb = start + 2 + (norms[2] in ("please", "kindly", "just"))
+    form = verb_forms().get(words[verb].norm)
+    if words[verb].norm in PUT_VERBS:
+        asked = any(word.norm == "please" for word in words)
+    else:
+        asked = form is not None and form.form == "base" and form.kind == "other"
+    thing = words[verb + 1].norm if verb + 1 < len(words) else ""
+    named = thing in POSSESSIVES or thing in ("the", "this", "that", "these", "those", "it", "them")
+    if not asked or not named or words[verb].norm in _NOT_ASKED:
+        return False  # 'would you put a cup on it?' may mean that nobody would
+    del words[start:verb]
+    return True
+
+
+_BEFORE_REQUESTS = word_set("oh and hi so please ok okay also then now but hey")
+_NOT_ASKED = word_set("think believe want like say know mean need prefer see find expect happen allow let")
+"""Verbs after *could you* that ask for no action."""
+
+
 def _without_corrected(words: list[Word]) -> None:
-    """Leave out a place that the speaker takes back: *on the left, no, sorry, on the right*."""
+    """Leave out a place or a thing that the speaker takes back: *on the left, no, sorry, on the right*."""
     for i in range(len(words) - 3, 1, -1):
         corrects = words[i].norm in _CORRECTIONS and not words[i - 1].is_word and not words[i + 1].is_word
         if not corrects or words[i + 2].norm not in prepositions():
@@ -319,6 +365,16 @@ def _without_corrected(words: list[Word]) -> None:
             start -= 1
         if start > 0:
             del words[start : i + 2]
+            return
+    for i in range(2, len(words) - 3):
+        corrects = words[i].norm in _CORRECTIONS and words[i - 1].norm == "," and words[i + 1].norm == ","
+        if not corrects or words[i + 2].norm not in DETERMINERS:
+            continue
+        start = i - 2
+        while start > 0 and words[start].is_word and words[start].norm not in DETERMINERS:
+            start -= 1
+        if words[start].norm in DETERMINERS:
+            del words[start : i + 2]  # 'the cup, no, the glass, is …'
             return
 
 

@@ -41,6 +41,10 @@ class Chunker(FixedPhraseChunker):
             if self._denied_be is not None and chunk.type == "NP" and self.norms[at] not in ("of", "and", "or"):
                 self.chunks.append(Chunk("BE", at, at, self._denied_be, (chunk.span[1], chunk.span[1])))
                 self._denied_be = None
+                if self.norms[at : at + 2] == ["to", "be"]:  # 'at no time are coats to be left on it'
+                    span = self.words[at].start, self.words[at + 1].end
+                    self.chunks.append(Chunk("ADVERB", at, at + 2, "to be", span))
+                    at += 2
         return self.chunks
 
     def _chunk(self, at: int) -> Chunk:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deixis.grammar.english.chunking.chunk import FINITE, Chunk, Relator
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
@@ -26,6 +26,11 @@ class JointChunker(VerbChunker):
         told = told or (previous in ("ADV", "ADVERB") and before in ("VERB", "TVERB"))
         if norm == "that" and told and (after in PRONOUNS or self.nouns.starts(at + 1)):
             return Chunk("COMPLEMENT", at, at + 1)
+        if norm == "that" and previous == "AND" and self._clause_follows(at + 1):
+            if any(chunk.type == "COMPLEMENT" for chunk in self.chunks):
+                return Chunk("COMPLEMENT", at, at + 1)  # 'he says that A and that B'
+            if any(chunk.type == "ADVERB" and chunk.value in _ENSURING for chunk in self.chunks):
+                return Chunk("ADVERB", at, at + 1, norm)  # 'make sure that A and that B'
         if norm == "that" and previous in ("NP", "COMMA", "ADV", "AND") and not self._demonstrative(at):
             return Chunk("REL", at, at + 1)
         follows_noun = previous == "NP" or (previous in ("COMMA", "ADV") and norm != "where")
@@ -53,6 +58,7 @@ class JointChunker(VerbChunker):
             or (after == "used" and self.norms[at + 2] == "to")
             or after in ("'ll", "should", "must", "will", "can", "may", "might", "shall")
             or (previous in FINITE and at == 1)
+            or (after in _THERE_STANDS and self._previous() in JOINT_TYPES | {"", "ADVERB"})
         ):
             return Chunk("THERE", at, at + 1)
         if norm == "out" and after == "of" and previous in ("", "COMMA", "ADVERB", "CUT"):
@@ -121,6 +127,8 @@ class JointChunker(VerbChunker):
             return Chunk("SUB", at, at + 2, "so")
         if (norm, after) == ("except", "that"):
             return Chunk("CUT", at, at + 2)
+        if (norm, after) == ("in", "case"):
+            return Chunk("SUB", at, at + 2, "in case")
         if tuple(self.norms[at : at + 2]) in _SUBORDINATING:
             return Chunk("SUB", at, at + 2, "if")
         if at == 0 and norm in ("suppose", "assume", "imagine") and any(word in IS_FORMS for word in self.norms):
@@ -168,12 +176,19 @@ class JointChunker(VerbChunker):
         return self._previous() == "AND" and after in IS_FORMS
 
 
+_THERE_STANDS = word_set("stands stand lies lie hangs hang sits sit stood lay hung sat")
+"""Verbs after *there* that say that something is there."""
+
 _CONJUNCTIONS = {"and": "AND", "plus": "AND", "or": "OR", "nor": "OR", "but": "BUT", "yet": "BUT", "then": "THEN"}
 
 _SUBORDINATING = {
-    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"), ("in", "case"),
+    ("as", "soon", "as"), ("as", "long", "as"), ("so", "long", "as"), ("even", "if"), ("only", "if"),
     ("provided", "that"), ("given", "that"),
 }  # fmt: skip
+
+_ENSURING = frozenset({"make sure", "make sure that", "be sure that", "ensure that", "note that", "remember that",
+                       "check that", "see to it that", "do not forget that", "take care that"})  # fmt: skip
+"""Beginnings of a command after which a clause is a fact."""
 
 _WHOEVER = word_set("otherwise whoever whatever whichever whomever")
 """Words for any person or thing of which the clause holds: it is a condition."""

@@ -81,12 +81,19 @@ class FixedPhraseChunker(JointChunker):
     def _idiom(self, at: int) -> Chunk | None:
         norm = self.norms[at]
         previous_joint = self._previous() in ("", "COMMA", "AND", "BUT", "CUT", "ADVERB")
+        related = self._relations.longest(self.norms, at)
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
-            if tuple(self.norms[at:end]) == phrase and not (
-                (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
-                or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
-                or (phrase == ("above", "all") and self.norms[end] != ",")
+            longer = related is not None and related[0] > end  # 'out of reach of the cat'
+            if (
+                tuple(self.norms[at:end]) == phrase
+                and not longer
+                and not (
+                    (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
+                    or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
+                    or (phrase == ("above", "all") and self.norms[end] != ",")
+                    or (phrase[-1] == "case" and self._previous() == "BE" and self.norms[end] in CLAUSE_ENDS)
+                )
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
         if norm == "from" or (
@@ -98,7 +105,7 @@ class FixedPhraseChunker(JointChunker):
         told = self.norms[at + 1] in PUT_VERBS and self.nouns.starts(at + 2) and self._previous() in ("", "ADVERB")
         if norm in ("not", "no") and told and not self.nouns.is_noun(at + 1):
             return Chunk("PUT", at, at + 2, VerbGroup(self.norms[at + 1], "posture", "base", positive=False))
-        called = at + 1 + (norm in ("hang", "hold") and self.norms[at + 1] == "on")
+        called = at + 1 + ((norm, self.norms[at + 1]) in _CALLS)
         if norm in _ATTENTION and self.norms[called] == "," and self._previous() in ("", "ADVERB", "COMMA", "CUT"):
             return Chunk("ADVERB", at, called, norm)  # 'no, wait, the cups are …'
         if (
@@ -107,6 +114,14 @@ class FixedPhraseChunker(JointChunker):
             and self.nouns.number(at + 1) is not None
         ):
             return Chunk("ADVERB", at, at + 3, "time")  # 'at 8 a.m.'
+        if (
+            norm in ("at", "by", "until", "from", "since")
+            and self.nouns.number(at + 1) is not None
+            and "clock" not in self.norms
+        ):
+            end = at + 2 + (self.norms[at + 2] in ("sharp", "exactly"))
+            if self.norms[end] in CLAUSE_ENDS | {"and"}:
+                return Chunk("ADVERB", at, end, "time")  # 'at eleven sharp'
         goal = self._goal(at)
         if goal is not None:
             return Chunk("FIND", at, goal, VerbGroup(norm, "other", "base"))
@@ -138,9 +153,11 @@ class FixedPhraseChunker(JointChunker):
         ):
             return Chunk("ADVERB", at, at + 3, "side up")  # 'lay the sheet on the mat, shiny side down'
         if (
-            self.norms[at + 1] in ("up", "down", "on", "outwards", "inwards", "uppermost")
+            self.norms[at + 1] in ("up", "down", "on", "off", "outwards", "inwards", "uppermost")
             and self._previous() == "COMMA" and self.norms[at + 2] in CLAUSE_ENDS
-            and norm not in PARTS and norm not in ADVERBS and self.nouns.is_noun(at)
+            and (norm not in PARTS or self.norms[at + 1] in ("on", "off"))
+            and norm not in ADVERBS and self.nouns.is_noun(at)
+            and not self.norms[at + 3].endswith("ing")
         ):  # fmt: skip
             return Chunk("ADVERB", at, at + 2, "side up")  # 'the cups behind it, lids on'
         if norm in ("itself", "themselves") and self._previous() == "NP":
@@ -171,7 +188,9 @@ class FixedPhraseChunker(JointChunker):
             return Chunk("ADVERB", at, end, "from where")
         if norm == "out" and self.norms[at + 1] == "of":
             end = at + 2 + (self.norms[at + 2] in ("my", "your", "his", "her", "our", "their", "the"))
-            if self.norms[end] in ("reach", "sight", "way", "place", "order"):
+            if self.norms[end] in ("reach", "sight", "way", "place", "order") and (
+                related is None or related[0] <= end
+            ):
                 return Chunk("ADVERB", at, end + 1, "out of reach")
         if norm == "say" and self._previous() == "COMMA" and self.norms[at + 1] in prepositions():
             return Chunk("ADVERB", at, at + 1, norm)
@@ -220,6 +239,8 @@ class FixedPhraseChunker(JointChunker):
                 alone = self._previous() != "NP" or self.nouns.is_determiner(wished)
                 placed = self._only_places() and self.nouns.is_determiner(wished)  # 'on its left you want the prawns'
                 return Chunk("CUT" if alone and not placed else "ADVERB", at, wished, "you want")
+        if norm in _STEPS and self._previous() in ("", "CUT", "THEN", "AND") and self._subject_or_command(at + 1):
+            return Chunk("ADVERB", at, at + 1, norm)  # 'first you lay the cloth'
         if norm in CHAT_WORDS and self.norms[at + 1] in ("", ",", ".", ":", "!", "?", ";"):
             return Chunk("ADVERB", at, at + 1, norm)
         if norm == "like" and self._previous() in ("BE", "TVERB", "NP") and self.nouns.number(at + 1) is not None:
@@ -234,6 +255,15 @@ class FixedPhraseChunker(JointChunker):
                 end += 1
             return Chunk("ADVERB", at, end, norm)
         return None
+
+    def _subject_or_command(self, at: int) -> bool:
+        """Return True if a subject with a determiner, a personal pronoun or a command begins here."""
+        norm = self.norms[at]
+        return (
+            self.nouns.is_determiner(at)
+            or norm in ("you", "we", "i", "they", "it")
+            or (norm in PUT_VERBS and self.nouns.is_determiner(at + 1))
+        )
 
     def _goal(self, at: int) -> int | None:
         """Return where the goal of a command begins: *go over to the chair by the window*; None for another command.
@@ -393,6 +423,9 @@ _JUDGEMENTS = word_set("true clear certain important essential vital good bad ni
 
 _FORBIDDING = word_set("forbidden prohibited avoid impossible wrong refuse forget dangerous")
 
+_STEPS = word_set("first second third next last lastly finally")
+"""Words that number the steps of a text."""
+
 _GOVERNORS = word_set(
     "remember sure forget need needs have has had got important essential necessary vital crucial best better good"
     " helpful useful advisable advised recommended time ready proceed continue begin start care careful required want"
@@ -404,6 +437,9 @@ _UNDER_OR_BEHIND = frozenset({"behind", "under", "underneath", "beneath", "betwe
 
 _ATTENTION = word_set("wait listen look see mind sorry hang hold")
 """Words that ask for attention before a comma."""
+
+_CALLS = {("hang", "on"), ("hold", "on"), ("listen", "up"), ("look", "here"), ("see", "here")}
+"""Calls of two words."""
 
 _CHOOSE = word_set("choose select pick click locate")
 

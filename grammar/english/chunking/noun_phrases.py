@@ -80,6 +80,9 @@ class NounChunker(ModifierFinder):
             return i + 1, NounPhrase(self._span(start, i + 1), head=letter, negated=negated), ()
         if norms[i] == "no" and norms[i + 1] == "one" and not self._counts_one(i + 2):
             return i + 2, NounPhrase(self._span(start, i + 2), pronoun="nothing"), ()
+        if norms[i : i + 2] == ["one", "another"]:
+            span = self._span(start, i + 2)
+            return i + 2, NounPhrase(span, determiner="each", plural=True, pronoun="other"), ()
         pronoun = self._pronoun(i, previous)
         if pronoun is not None and owner is None:
             plural = norms[i] in PLURAL_PRONOUNS

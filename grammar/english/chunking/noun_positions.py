@@ -22,7 +22,7 @@ from deixis.grammar.english.vocabulary.function_words import (
     PRONOUNS,
 )
 from deixis.grammar.english.vocabulary.known_nouns import KnownNouns
-from deixis.grammar.english.vocabulary.nouns import PEOPLE
+from deixis.grammar.english.vocabulary.nouns import PARTS, PEOPLE
 from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, PLACE_NOUNS, places_alone, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import (
@@ -339,8 +339,9 @@ class NounFinder:
         if norm == "can" or norm in ("will", "may", "need", "might"):
             if norm == "can" and before[:1].isalpha() and before not in self._closed and not is_adjective(before):
                 follows = self._verbs.get(after)
-                if follows is not None and follows.form == "base" and self._nouns.singular(before)[1]:
-                    return False  # 'the candles can stay'
+                goes = follows is not None and follows.form == "base"
+                if goes and (self._nouns.singular(before)[1] or self._predicate_follows(at + 1)):
+                    return False  # 'the candles can stay', 'the lid can stand on it'
             return norm == "can" and not (after in ("be", "not", "see", "have", "you", "also") or before in PRONOUNS)
         if form is None:
             if norm.endswith("ing") and len(norm) > 5 and not after_determiner:
@@ -353,6 +354,12 @@ class NounFinder:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
+            if (
+                before in ("other", "others", "one")
+                and form.kind in ("posture", "lean")
+                and self._predicate_follows(at)
+            ):
+                return False  # 'the other standing on a coaster'
             if at + 1 < len(self.words) and self.words[at + 1].text[:1].isupper() and self.norms[at + 2] == "'s":
                 return False  # 'putting Anna's radio on it'
             if form.kind in ("transitive", "face", "point") and not after_determiner:
@@ -371,6 +378,8 @@ class NounFinder:
             ):
                 return True
             return self._compound_ing(at, before, after) or (after_determiner and not self._nounish(at + 1))
+        if norm == "saw" and after in (",", ".", "and", ";", "") and before in ("", ",", ":", "and", "or"):
+            return True  # 'from left to right: saw, hammer, pliers'
         if form.form in ("past", "participle") and not (
             norm in ("set", "cut", "run", "left", "saw") and after_determiner and not self._nounish(at + 1)
         ):
@@ -387,11 +396,25 @@ class NounFinder:
         counted = at > 1 and (self.number(at - 2) or 0) > 1 and before.endswith(_LATIN_PLURALS)
         if counted and form.form == "base" and after in prepositions():
             return False  # 'three fibulae follow in a row'
+        if before == "there" and at == 1 and form.form in ("base", "s") and form.kind == "posture":
+            return False  # 'there stands a clock'
+        spatial = form.kind in ("posture", "lean") and self._predicate_follows(at)
+        if spatial and form.form == "base" and before in ("both", "all"):
+            return False  # 'both stand on the floor'
+        if spatial and form.form == "s" and before == "other" and self.norms[at - 2] == "the":
+            return False  # 'the other lies under the bench'
+        commanded = at < 2 or self.norms[at - 2] in ("and", ",", "then", "never", "not", "please", "always", ";", ":")
+        if form.form == "s" and before in PUT_VERBS and commanded and self._nouns.singular(norm)[1]:
+            return True  # 'keep drinks away from it'
         together = at > 2 and self.norms[at - 2] == "and" and form.form == "base" and form.kind in ("posture", "lean")
         if together and self._predicate_follows(at) and not self.is_determiner(at - 1):
             return False  # 'Ann and Tom kneel beside it'
+        accompanied = at > 2 and self.norms[at - 3] == "with" and self.is_determiner(at - 2)
+        if accompanied and form.form == "s" and self._nouns.singular(norm)[1]:
+            return True  # 'with the cotton rolls behind it'
+        first = next((k for k in range(at - 2, max(0, at - 5), -1) if self.is_determiner(k)), 0)
         if (
-            at > 3 and self.norms[at - 3] == "and" and self.is_determiner(at - 2) and form.form == "base"
+            first > 1 and self.norms[first - 1] == "and" and "and" not in self.norms[first:at] and form.form == "base"
             and form.kind in ("posture", "lean") and self._predicate_follows(at)
             and not self._nouns.knows(f"{before} {norm}") and not self._nouns.singular(before)[1]
         ):  # fmt: skip
@@ -418,7 +441,7 @@ class NounFinder:
             form.form == "s"
             and before in (",", "and")
             and form.lemma in _PLURALS_LIKE_VERBS
-            and self._nouns.knows(norm)
+            and (self._nouns.knows(norm) or self._nouns.singular(norm)[0] in PARTS)
         ):
             return True
         if (
@@ -441,7 +464,8 @@ class NounFinder:
             places = after in prepositions() or after in places_alone()
             if form.form == "s" and is_adjective(after) and form.kind in ("posture", "lean") and not places:
                 return (
-                    self.norms[at + 2] != "of" and self.norms[at + 2] not in prepositions()
+                    self.norms[at + 2] != "of"
+                    and self.norms[at + 2] not in prepositions().keys() | places_alone().keys()
                 )  # 'the missal rests open on its stand'
             if form.form == "s" and after in self._verbs and self._verbs[after].form == "base":
                 beyond = self.norms[at + 2]
@@ -456,7 +480,7 @@ class NounFinder:
             if form.form == "s" and before in ("never", "always") and self.is_determiner(at + 1):
                 return False
             if form.form == "s":
-                return not self._predicate_follows(at) or at == 0
+                return not self._predicate_follows(at) or at == 0 or before in (".", ";", ":")
             if norm in NAMED_LIKE_THINGS:
                 return not self.commands(at) or after == "of"
             imperative = norm in PUT_VERBS or norm in FIND_VERBS
@@ -665,6 +689,8 @@ class NounFinder:
             return False
         if nouns and norm in ("left", "right"):
             return False
+        if nouns and norm == "well" and self.norms[at + 1] in prepositions().keys() | _AWAY:
+            return False  # 'keep the candle well away from it'
         if (
             nouns
             and is_adjective(norm)
@@ -735,6 +761,8 @@ NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside 
 _CLAUSE_ENDS = frozenset({",", ";", ":", ".", "!", "?", ""})
 
 _STAYING = frozenset({"stay", "remain", "lie", "sit", "hang", "belong", "kneel"})
+
+_AWAY = frozenset({"away", "back", "clear", "apart", "out"})
 
 _AFTER_SIDE = frozenset({"of", "next", "in", "on", "behind", "beside", "by", "at"})
 """Words after *left* and *right* before which ``'s`` stands for *is*: *the phone's left of the lamp*."""

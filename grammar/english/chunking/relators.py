@@ -116,6 +116,8 @@ class RelatorChunker:
         while (self.norms[i] in DEGREE_ADVERBS or self.norms[i] in HEDGES or self.norms[i] == "the") and i - at < 4:
             if self._relations.by_first.get(self.norms[i]) and self._match(i) is not None:
                 break
+            if i == at and (alone := self._alone.longest(self.norms, i)) is not None and alone[0] > i + 1:
+                break  # 'dead centre'
             if self.norms[i] == "the" and self.nouns.is_degree_word(i + 1) is False:
                 return None
             if self.norms[i] != "the":
@@ -203,17 +205,20 @@ class RelatorChunker:
                     return end, "ADV", preposition
         if self.norms[at] in ("in", "out", "inward", "inwards", "outward", "outwards"):
             last = self.chunks[-1].value if self.chunks else None
-            if isinstance(last, VerbGroup) and last.kind in ("face", "point") and self.norms[at + 1] in CLAUSE_ENDS:
+            aims = isinstance(last, VerbGroup) and (last.kind in ("face", "point") or last.lemma in _TURNED)
+            if aims and self.norms[at + 1] in CLAUSE_ENDS:
                 return at + 1, "ADV", places_alone()["inward" if self.norms[at][0] == "i" else "outward"]
             if alone is not None and alone[1].relation in ("inward", "outward"):
                 return None
         if alone is not None:
             if (
                 self.norms[at] in ("left", "right")
-                and self.norms[alone[0]] in ("in", "on", "behind", "next", "above", "below", "under", "beside", "there")
+                and self.norms[alone[0]] in _AFTER_RIGHT
                 and self.norms[at] == "right"
             ):
                 return None  # an adverb: 'right behind'
+            if alone[1].relation in ("up", "down") and self._previous() == "PART" and self.norms[at - 1] in _ROLLED:
+                return None  # 'rolled up and leaning against it'
             if alone[1].relation in ("up", "down") and self.norms[alone[0]] in ("and", "or"):
                 return alone[0], "ADV", places_alone()["above" if alone[1].relation == "up" else "below"]
             if alone[1].relation in ("up", "down", "forward", "backward"):
@@ -363,6 +368,17 @@ _STEPS = word_set("square squares place places seat seats row rows notch notches
 _DIRECTED = word_set("left right in_front behind above below top bottom far measured_from from")
 
 _BREADTHS = word_set("width breadth length")
+
+_ROLLED = word_set("rolled folded propped stacked piled wrapped coiled curled drawn tied")
+"""Participles of which *up* is a part."""
+
+_AFTER_RIGHT = word_set(
+    "up down along across over in on at by behind next above below under underneath beside against between opposite there"
+)
+"""Words before which *right* is an adverb."""
+
+_TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})
+"""Verbs before *in* and *outwards* that tell a direction."""
 
 _BODY = word_set("hand hands finger fingers thumb thumbs palm fist arm foot feet stride pace")
 

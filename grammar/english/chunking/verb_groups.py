@@ -50,6 +50,8 @@ class VerbChunker(RelatorChunker):
             if form is not None and spatial and last is not None and last.modal:
                 group = VerbGroup(form.lemma, form.kind, "base", last.modal, positive=False)
                 return self._finite(at, at + 2, group)  # 'it must hang on the rail and not lie on the table'
+        if self._previous() == "AND" and (shared := self._second_verb(at)) is not None:
+            return shared
         i, adverbs, modal, positive, past = at, [], None, True, False
         while (self.norms[i] in ADVERBS | HEDGES and self.norms[i] != "about") or self.norms[i] == "never":
             if self.norms[i] == "never":
@@ -117,6 +119,8 @@ class VerbChunker(RelatorChunker):
                 modal, verb, i = _TENDING[norm], None if self.norms[i + 2] != "be" else verb, i + 1
             elif norm in IS_FORMS and not (norm == "'s" and self.nouns.is_genitive(i)):
                 verb, past = "be", past or norm in ("was", "were")
+            elif norm in _GETTING and self._is_participle(i + 1):  # 'the pieces get lined up beside it'
+                verb, past = "be", past or norm == "got"
             else:
                 break
             i += 1
@@ -128,9 +132,32 @@ class VerbChunker(RelatorChunker):
             return Chunk("BE", at, i, VerbGroup("be", "be", "finite", modal, positive, past, tuple(adverbs)))
         return self._lexical(at, first, i, VerbGroup("", "", "", modal, positive, past, tuple(adverbs)))
 
+    def _second_verb(self, at: int) -> Chunk | None:
+        """Return the verb after *and* that shares the modal verb before: *should be chilled and stand next to it*."""
+        form = self._verbs.get(self.norms[at])
+        last = next((c for c in reversed(self.chunks) if c.type in FINITE | {"PUT", "CUT"}), None)
+        if form is None or last is None or last.type not in FINITE or not self._predicate_after(at):
+            return None
+        if last.value.lemma == "be" and self.norms[at] in ("put", "set", "laid", "stood", "hung"):
+            told = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
+            return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if told else None
+        spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
+        if last.value.modal is None or not spatial or (last.value.lemma == "be" and self.chunks[-2].type == "NP"):
+            return None
+        return Chunk(
+            "VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive)
+        )
+
     def _is_base(self, at: int) -> bool:
         form = self._verbs.get(self.norms[at])
         return self.norms[at] == "be" or (form is not None and form.form == "base")
+
+    def _is_participle(self, at: int) -> bool:
+        """Return True for the participle of a passive with a place after it: *placed on*, *lined up beside*."""
+        form = self._verbs.get(self.norms[at])
+        after = at + 1 + (self.norms[at + 1] in PARTICLES)
+        placed = self.norms[after] in prepositions() or self.norms[after] in places_alone()
+        return form is not None and form.form in ("past", "participle") and placed
 
     def _denied_verb(self, at: int) -> Chunk | None:
         """Return the verb of a clause whose denial and modal verb stand before its subject."""
@@ -211,7 +238,8 @@ class VerbChunker(RelatorChunker):
             return self._unknown_participle(at, i, group)
         found = _with(group, form.lemma, form.kind, form.form)
         end = i + 1
-        if form.kind == "posture" and self.norms[end] in PARTICLES and self.nouns.is_determiner(end + 1):
+        apart = self.norms[end] in PARTICLES and (self.norms[end] != "over" or form.lemma in _TURNING_OVER)
+        if form.kind == "posture" and apart and self.nouns.is_determiner(end + 1):
             end += group.past or self.norms[i - 1] in ("have", "has", "had", "'ve")
         phrasal = _PHRASAL.get((form.lemma, self.norms[end]))
         if phrasal is not None:
@@ -250,7 +278,9 @@ class VerbChunker(RelatorChunker):
             and self._previous() in JOINT_TYPES | {"", "ADVERB"}
         ):
             return Chunk("DO", at, end + 1, found)
-        if norm in PAST_ONLY:
+        if norm == "lay" and self._previous() == "NP" and self.norms[at - 1] in ("you", "we"):
+            return self._finite(at, end, _with(group, "lay", "posture", "base"))  # 'then you lay the spoon beside it'
+        if norm in PAST_ONLY and not (norm == "saw" and self.nouns.is_noun(i)):
             return self._finite(at, end, _with(group, form.lemma, form.kind, "past", past=True))
         if norm == "chose" and self._previous() in ("", "COMMA", "AND", "CUT") and self.nouns.is_determiner(end):
             return Chunk("FIND", at, end, found)
@@ -266,6 +296,13 @@ class VerbChunker(RelatorChunker):
             form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
         ):
             return self._finite(at, end, found)  # 'the cups you asked about'
+        if (
+            form.form == "past"
+            and form.kind == "transitive"
+            and self._previous() == "NP"
+            and self.norms[at - 1] == "it"
+        ):
+            return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
                 return None
@@ -287,6 +324,8 @@ class VerbChunker(RelatorChunker):
                 return None
             end += self.norms[end] in ("back", "out", "up", "down") and self._measure(end + 1) is not None
             return Chunk("TPART" if self._takes_object(form.kind, end) else "PART", at, end, found)
+        if norm == "open" and self._previous() == "VERB":
+            return None  # 'stands open on the sideboard'
         if norm in ("set", "put") and self._previous() == "BE":
             return Chunk("PART", at, end, found)
         if form.form == "base":
@@ -299,6 +338,8 @@ class VerbChunker(RelatorChunker):
                 and (self.nouns.is_determiner(end) and not self.chunks[-1].value.plural)
             ):
                 return Chunk("FIND", at, end, found)
+            if subject_is_you and norm in PUT_VERBS and len(self.chunks) > 1 and self.chunks[-2].type == "SUB":
+                return self._finite(at, end, found)  # 'before you put the cup on it'
             imperative = subject in ("", "AND", "COMMA", "THEN", "ADVERB", "CUT", "COLON", "SUB", "BUT") or (
                 subject_is_you
             )
@@ -306,6 +347,13 @@ class VerbChunker(RelatorChunker):
             imperative = imperative or (subject == "OR" and norm in PUT_VERBS and self.norms[end] in ("it", "them"))
             if imperative and norm in FIND_VERBS and self.norms[end] == "and" and self.norms[end + 1] in FIND_VERBS:
                 return Chunk("ADVERB", at, end + 1, norm)
+            if subject == "COMMA" and self._awaits_verb() and self._predicate_after(i):
+                return self._finite(at, end, found)  # 'the tweezers, points to the left, lie along the edge'
+            crosses = (
+                self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
+            )
+            if imperative and norm in _CROSSING and (crosses or self.norms[end] == "to"):
+                return Chunk("GO", at, end, found)  # 'move over to the other side'
             starts = norm in ("start", "begin") and self.norms[end] in ("at", "in", "on") and not self._previous()
             if starts:
                 return Chunk("GO", at, end, found)  # 'start at the back'
@@ -433,6 +481,13 @@ class VerbChunker(RelatorChunker):
             and self.nouns.is_determiner(at + 1)
         )
 
+    def _awaits_verb(self) -> bool:
+        """Return True if the clause has a plural subject, something between commas and no verb yet."""
+        first = max((k + 1 for k, c in enumerate(self.chunks) if c.type in JOINT_TYPES - {"COMMA"}), default=0)
+        types = [chunk.type for chunk in self.chunks[first:]]
+        subject = types[:2] == ["NP", "COMMA"] and self.chunks[first].value.plural
+        return subject and len(types) > 3 and not (FINITE | {"PUT", "FIND", "DO"}) & set(types)
+
     def _goes(self, at: int) -> bool:
         """Return True if a place and not an object follows a command such as *stand* or *sit*."""
         if self._previous() in ("AND", "COMMA") and not any(c.type in ("PUT", "DO", "GO") for c in self.chunks):
@@ -467,9 +522,14 @@ class VerbChunker(RelatorChunker):
             return True
         return (
             after in ("be", "not", "have", "well", "also", "only", "you", "usually", "never", "ever", "the", "i", "it")
-            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and after in NOUNS_TOO))
+            or (form is not None and form.form == "base" and not (self.norms[at] == "can" and self._is_can(at + 1)))
             or after in HEDGES
+            or (after in ADVERBS and self.norms[at + 2] == "be")
         ) and not (self.norms[at] == "can" and after in ("the", "it", "i") and self._previous() == "NP")
+
+    def _is_can(self, at: int) -> bool:
+        """Return True for a word after *can* that may be a noun: *the can rest*; False for *can stand on it*."""
+        return self.norms[at] in NOUNS_TOO and not self._predicate_after(at)
 
     def _perfect(self, at: int) -> bool:
         i = at + 1
@@ -493,6 +553,9 @@ class VerbChunker(RelatorChunker):
             norm in IS_FORMS or norm in self._verbs or norm in NEGATIONS or (norm in ADVERBS and self._goes_on(at + 1))
         )
 
+
+_GETTING = word_set("get gets got getting")
+"""Verbs that make a passive, as *be* does."""
 
 _TOLD = word_set("it they he she there")
 
@@ -521,6 +584,12 @@ _TENDING = {
 
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
+
+_CROSSING = word_set("move go walk come head step turn")
+"""Verbs of commands that send the reader somewhere."""
+
+_TURNING_OVER = word_set("turn tip roll fold flip fall push pull")
+"""Verbs of which *over* is a part."""
 
 _BEGINNING = word_set("start begin finish continue proceed end")
 

@@ -99,11 +99,13 @@ class Assembly:
     hedges: list[tuple[int, str]] = field(default_factory=list)  # adverbs that stand apart: 'perhaps the fork …'
     supposed: list[Clause] = field(default_factory=list)  # things of conditions: 'if there is ginger'
     opens_list: bool = False  # True if a colon follows the clause
+    leads: bool = False  # True if a comma and a command follow: 'on it, stand the kettle'
     is_coordinated: bool = False  # True for a condition after *and*
     is_lost: bool = False  # True if the clause before has an object and was not understood
     borne: NounPhrase | None = None  # thing that the subject of the clause before holds
     guesses: frozenset[Guess] = frozenset()  # doubtful steps by which the clause that is being taken in was parsed
     guesses_of_fragments: dict[Span, frozenset[Guess]] = field(default_factory=dict)
+    reported: VerbGroup | None = None  # verb of the main clause before the last *that*
     clock: NounPhrase | None = None  # 'if Z is the center of a clock face'
 
     def without_frame(self, segment: Segment) -> tuple[VerbGroup | None, Segment]:
@@ -120,10 +122,12 @@ class Assembly:
             Verb of the main clause, or None if it has none, and the rest of the clause.
         """
         for i, chunk in enumerate(segment.chunks):
-            if chunk.type == "COMPLEMENT" and isinstance(chunk.value, VerbGroup):
-                return chunk.value, replace(segment, chunks=segment.chunks[i + 1 :])
             if chunk.type == "COMPLEMENT":
-                return _frame_of_report(segment.chunks[:i]), replace(segment, chunks=segment.chunks[i + 1 :])
+                if isinstance(chunk.value, VerbGroup):
+                    self.reported = chunk.value
+                elif i or segment.link != "and":  # 'he says that A and that B' reports B too
+                    self.reported = _frame_of_report(segment.chunks[:i])
+                return self.reported, replace(segment, chunks=segment.chunks[i + 1 :])
         return None, segment
 
     def add(self, built: Built, link: str, start: int, end: int, hedge: VerbGroup | None) -> None:
@@ -165,6 +169,8 @@ class Assembly:
         if link == "until" and last is not None and last.mood is Mood.COMMAND and last.positive:
             misunderstood(span, "this says how long something is done, not where it is")
             return  # 'press the foam into the bowl until it sits firmly'
+        if link == "as" and built.subject is not None and built.subject.phrase.pronoun in _PEOPLE:
+            return  # 'as you would expect'
         if link == "instead":
             misunderstood(span, "this says where something is not", "deny it: 'The cup is not on the tray.'")
             return
@@ -172,7 +178,9 @@ class Assembly:
             return
         if link == "until" and self.clauses and not self.clauses[-1].past:
             return  # it holds now
-        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever") and (
+        if link == "in case" and self.clauses:
+            return  # a reason: 'a copy is in the box in case the first is lost'
+        if link in ("if", "unless", "when", "once", "until", "as", "whether", "whenever", "in case") and (
             built.verbs
             or (built.shape == "fragment" and not built.said and link != "as")
             or (built.shape == "said" and link in ("unless", "whether"))
@@ -198,7 +206,9 @@ class Assembly:
             verb = built.verbs[0]
             misunderstood(span, f"'{verb.group.lemma}' does not say where something is")
             if subject.phrase.head and not letting:
-                mood = Mood.COMMAND if self.opens_list else mood  # 'mind the saw: it …'
+                named = subject.phrase.determiner == "the" or subject.phrase.owner is not None
+                handled = self.opens_list or (named and verb.group.positive)
+                mood = Mood.COMMAND if handled else mood  # 'mind the saw: it …', 'wash the jug. it …'
                 self._append(Clause(subject.phrase, (), span, mood, step=self.raw.step), link)
             return
         if built.shape in ("fragment", "search", "other"):
@@ -215,7 +225,8 @@ class Assembly:
         if subject.phrase.negated and not subject.phrase.members:
             misunderstood(span, "a denial of all does not say which", "say it of each of them")
             return
-        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
+        past = link == "and" and bool(self.clauses) and self.clauses[-1].past
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         people = last_word(subject.phrase.head) in PEOPLE and all(v.group.lemma in _GETTING for v in verbs)
         person = subject.phrase.pronoun in _PEOPLE or people
         known = len(self.clauses)
@@ -247,7 +258,10 @@ class Assembly:
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
             if verb.thing is not None and (
-                verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
+                verb.group.lemma in _PLACING
+                or _turns_over(verb)
+                or (person and verb.group.lemma in _OWNING)
+                or (verb.group.lemma == "find" and verb.group.positive)
             ):
                 kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}
                 placed = person and verb.group.lemma in _PLACING - kept and verb.group.past
@@ -264,7 +278,8 @@ class Assembly:
                 if not moved.said and not front and verb.group.lemma not in _MEETING:
                     misunderstood(span, f"'{verb.group.lemma}' does not say where something is here")
                     continue
-                shape = "existential" if person and verb.group.lemma in _MEETING else built.shape
+                meets = person and verb.group.lemma in _MEETING
+                shape = "existential" if meets or verb.group.lemma == "find" else built.shape
                 self._clause(shape, thing, moved, front, span, mood, hedge, link)
                 continue
             self._clause(built.shape, subject, verb, front, span, mood, hedge, link if i == 0 else "and")
@@ -323,7 +338,7 @@ class Assembly:
                     turned = any(verb.group.lemma in FACE_VERBS or verb.group.kind == "face" for verb in built.verbs)
                     found = found or Viewpoint(span)
                     found = replace(found, facing=thing) if turned else replace(found, at=found.at or thing)
-                if found is None and entering and not said and not self.clauses:
+                if found is None and entering and not said and (not self.clauses or link in ("as", "when")):
                     found = Viewpoint(span)  # 'as you come in'
                 if found is not None:
                     return replace(found, span=span, entering=entering)
@@ -496,10 +511,12 @@ class Assembly:
 
     def _said(self, built: Built, said: tuple[Said, ...], link: str, span: Span, mood: Mood) -> None:
         """Take in predicates without a subject: they are said of the subject of the clause before."""
-        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite"), (), span),)
         last = self.clauses[-1] if self.clauses else None
+        past = last is not None and last.past
+        verbs = built.verbs or (Verb(VerbGroup("be", "be", "finite", past=past), (), span),)
         waits = last is None and self.sought is None and not self.fragments and not built.verbs
         waits = waits or (self.opens_list and not built.verbs)
+        waits = waits or (self.leads and link in (";", "and", "then", "") and not built.verbs)
         if waits and not any(part.choice for part in said):
             self.front += tuple(p for part in said for p in part.predicates)
             return
@@ -560,8 +577,10 @@ class Assembly:
             if phrase.pronoun in ("anything", "anyone", "one", "everything"):
                 phrase = replace(phrase, pronoun="nothing")
             group = replace(group, positive=True)
-        if phrase is not None and phrase.determiner == "neither" and phrase.members:
-            phrase, group = replace(phrase, determiner=None), replace(group, positive=not group.positive)
+        if phrase is not None and phrase.determiner == "neither" and (phrase.members or phrase.head):
+            count = 2 if phrase.head else phrase.count  # 'neither lamp is on the desk'
+            plain = replace(phrase, determiner="the" if phrase.head else None, count=count, plural=True)
+            phrase, group = plain, replace(group, positive=not group.positive)
             verb = replace(verb, group=group)
         choices: list[tuple[Predicate, ...]] = []
         positive = group.positive
@@ -593,6 +612,13 @@ class Assembly:
             hedges += tuple(a for a in hedge.adverbs if a in HEDGES)
             if not hedge.positive:
                 made = [replace(p, positive=not p.positive) for p in made]
+        speaker = phrase is not None and phrase.pronoun in _PEOPLE
+        handled = speaker and not made and positive and not choices and mood is Mood.STATEMENT
+        if handled and verb.thing is not None and verb.thing.phrase.head and verb.thing.phrase.determiner == "the":
+            thing = replace(verb.thing.phrase, predicates=())  # 'I love the clock. It hangs over the door.'
+            added = self._added_about(verb.thing.phrase)
+            self._append(Clause(thing, added, span, mood if added else Mood.COMMAND, step=self.raw.step), link)
+            return
         clause = Clause(
             phrase, tuple(made), span, mood, positive=positive or bool(made), modal=modal, hedges=hedges, past=past,
             condition=self.condition, choices=tuple(choices), existential=shape == "existential", step=self.raw.step,
@@ -600,6 +626,13 @@ class Assembly:
         self._append(clause, link)
         for noun, said in absolute:
             self._append(replace(clause, subject=noun, predicates=said, choices=(), existential=False), ",")
+
+    def _added_about(self, phrase: NounPhrase) -> tuple[Predicate, ...]:
+        """Return what a relative clause after a comma says: *I love the clock, which hangs over the door*."""
+        said = phrase.predicates
+        if not said or not self.text[: said[0].span[0]].rstrip().endswith((", which", ", who")):
+            return ()
+        return said
 
     def _append(self, clause: Clause, link: str) -> None:
         kept = []

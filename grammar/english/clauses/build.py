@@ -11,6 +11,7 @@ from deixis.grammar.english.chunking.chunk import Chunk, Relator, VerbGroup
 from deixis.grammar.english.clauses.built import Built, Noun, Said, Verb, misunderstood, union
 from deixis.grammar.english.clauses.places import directions_of, is_place, place
 from deixis.grammar.english.clauses.predicates import (
+    AWAY_FROM,
     DIRECTION_RELATIONS,
     MOVING,
     WRAPPING,
@@ -34,7 +35,7 @@ from deixis.grammar.english.tree import (
 )
 from deixis.grammar.english.vocabulary.adjectives import COMPARISONS
 from deixis.grammar.english.vocabulary.nouns import GAPS, PARTS, SUBSTANCES, last_word
-from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NOT_PLACES, PLACE_NOUNS
+from deixis.grammar.english.vocabulary.relation_words import DIRECTION_WORDS, NEVER_PLACES, NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 
 
@@ -56,6 +57,8 @@ class Builder(Transformer[Any, Built]):
         """Return *to the left of the plate lies the fork*."""
         if more:
             said = (*said, Said(more))
+        if verb.type == "VERB":
+            said = moved(verb.value, said, verb.span)
         return Built("inverted", top, (Verb(verb.value, said, verb.span),))
 
     def verbless(self, said: tuple[Said, ...], top: Noun) -> Built:
@@ -363,7 +366,7 @@ class Builder(Transformer[Any, Built]):
                 "level_with", tuple(a for p in noun.phrase.predicates if p.relation == "as" for a in p.arguments), span
             )
             return (*((level,) if level.arguments else ()), *directed, *extra)
-        if noun.phrase.head in ("level", "height") and relation in ("at", "on"):
+        if last_word(noun.phrase.head) in ("level", "height") and relation in ("at", "on"):
             misunderstood(span, f"'{noun.phrase.head}' is not a place")
             return extra
         last = noun.phrase.predicates[-1] if noun.phrase.predicates else None
@@ -401,7 +404,7 @@ class Builder(Transformer[Any, Built]):
         manner = relation == "by" and noun.phrase.head in _MANNERS
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
-        if idle or (plain and manner):
+        if idle or (plain and manner) or last_word(noun.phrase.head) in NEVER_PLACES:
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":
@@ -416,7 +419,8 @@ class Builder(Transformer[Any, Built]):
         arguments = noun.phrase
         written = relator.preposition.phrase
         shaped = written == "into" and noun.phrase.determiner in ("a", "an", None)
-        adverbs = (*relator.adverbs, written) if written == "over" or shaped else relator.adverbs
+        kept = shaped or written == "over" or written in AWAY_FROM
+        adverbs = (*relator.adverbs, written) if kept else relator.adverbs
         made = Predicate(
             relation, arguments_of(relation, arguments), span, value=value, degree=degree,
             than=None if other is None else other.phrase, adverbs=adverbs, positive=relator.positive,
@@ -666,7 +670,7 @@ def _of_the_subject(noun: Noun) -> tuple[Noun, tuple[Predicate, ...]]:
     phrase = noun.phrase
     last = phrase.predicates[-1] if phrase.predicates else None
     part = last.subject_part if last is not None else None
-    if last is None or part is None or part.owner is None or part.owner.pronoun != "it":
+    if last is None or part is None or part.owner is None or part.owner.pronoun not in ("it", "they"):
         return noun, ()
     kept = phrase.predicates[:-1]
     return Noun(replace(phrase, predicates=kept, span=(phrase.span[0], last.span[0])), noun.extra), (last,)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.editing import type_at
 from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Adjective, Degree
 from deixis.grammar.english.vocabulary.function_words import PERSONS
@@ -13,7 +14,7 @@ from deixis.grammar.english.vocabulary.function_words import PERSONS
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
 _SUBORDINATE = frozenset(
-    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead"}
+    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead", "in case"}
 )
 PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART", "ADJP", "WITH", "MEASURE"})
 IMPERATIVES = frozenset({"PUT", "FIND", "DO"})
@@ -141,10 +142,10 @@ def _cuts(
         return _inversion_follows(types, end)  # 'and 10 cm behind it a bottle'
     if following == "PREP" and {"COMMA", "AND"} <= kinds and _turned_clause_follows(chunks, types, end):
         return True
-    if following == "PREP" and "AND" in kinds and types[end : end + 3] == ["PREP", "NP", "NP"]:
-        beside = chunks[end + 1].value.pronoun in ("it", "they")
-        if beside and (end + 3 >= len(types) or types[end + 3] in JOINT_TYPES | {"OF"}):
-            return True  # 'the brush, and behind it the cup'
+    if following == "PREP" and "AND" in kinds and _verbless_inversion(types, end):
+        return True  # 'the brush, and behind it the cup'
+    if labelled and kinds == {"COMMA"} and following in PREDICATES:
+        return False  # 'toolbox: open, under the bench, hammer on top'
     if (following in ("PREP", "ADV") and complete) or (
         following == "PREP" and types[start] == "PREP" and "AND" in kinds
     ):
@@ -152,6 +153,21 @@ def _cuts(
     if following in ("TPART", "PART") and complete and "COMMA" in kinds:
         return _inversion_follows(types, end)
     return False
+
+
+def _verbless_inversion(types: list[str], at: int) -> bool:
+    """Return True for a place and its thing without a verb, to the end of the clause: *behind it the cup*."""
+    objects = 0
+    while types[at : at + 2] == ["PREP", "NP"] and objects == 0:
+        at, objects = at + 2, 1
+        while types[at : at + 2] == ["OF", "NP"]:
+            at += 2
+    if not objects or types[at : at + 1] != ["NP"]:
+        return False
+    at += 1
+    while types[at : at + 2] == ["OF", "NP"]:
+        at += 2
+    return at >= len(types) or types[at] in JOINT_TYPES
 
 
 def _subject_follows(
@@ -173,7 +189,7 @@ def _subject_follows(
         if kind == "COMMA" and _verb_after_aside(types, i):
             return complete or _verbless_before(types, start, at)
         if kind in JOINT_TYPES:
-            if not complete or not _list_then_verb(types, i):
+            if not complete or not _list_then_verb(chunks, types, i):
                 break
             return True
         seen_noun = seen_noun or kind == "NP"
@@ -193,7 +209,8 @@ def _subject_follows(
     )
     if kinds == {"AND"} and _list_of_with(types, start, at):
         return False
-    if complete and kinds == {"COMMA"} and following in (PREDICATES - {"WITH"}):
+    shared = chunks[end].value.pronoun in ("each", "both", "all") and not chunks[end].value.head
+    if complete and kinds == {"COMMA"} and (following in (PREDICATES - {"WITH"}) or (shared and following == "WITH")):
         phrase = chunks[end].value
         if (
             phrase.pronoun == "one" and phrase.determiner in ("the", "this") and not phrase.adjectives
@@ -261,8 +278,10 @@ def _same_place_again(chunks: list[Chunk], types: list[str], start: int, at: int
 
 def _verb_after_aside(types: list[str], at: int) -> bool:
     """Return True if a verb follows after a phrase between commas: 'the cups, nested in one another, stood …'."""
-    if at + 1 >= len(types) or types[at + 1] not in PREDICATES | {"REL"} or "COMMA" not in types[at + 1 :]:
+    if at + 1 >= len(types) or types[at + 1] not in PREDICATES | {"REL", "NP"} or "COMMA" not in types[at + 1 :]:
         return False
+    if types[at + 1] == "NP" and types[at + 2 : at + 3] != ["COMMA"]:
+        return False  # no apposition: 'the lamp, a green one, stood …'
     end = types.index("COMMA", at + 1) + 1
     return end < len(types) and types[end] in FINITE
 
@@ -293,7 +312,7 @@ def _main_verb_after_relative(types: list[str], at: int) -> bool:
     return False
 
 
-def _list_then_verb(types: list[str], at: int) -> bool:
+def _list_then_verb(chunks: list[Chunk], types: list[str], at: int) -> bool:
     """Return True if a list of noun phrases goes on after the joint and ends with a verb: 'A, B and C are …'."""
     i = at
     while i < len(types):
@@ -303,7 +322,11 @@ def _list_then_verb(types: list[str], at: int) -> bool:
             end, kinds = _run(types, i)
             if "COMMA" in kinds and "AND" not in kinds and "OR" not in kinds:
                 return False
-            if end >= len(types) or types[end] != "NP":
+            if (
+                end >= len(types)
+                or types[end] != "NP"
+                or (chunks[end].value.pronoun in ("it", "they") and types[end + 1 : end + 2] in (["BE"], ["VERB"]))
+            ):  # 'only a stool, and it is tucked underneath'
                 return False
             i = end
             continue
@@ -317,7 +340,8 @@ def _in_list(chunks: list[Chunk], types: list[str], start: int, at: int, end: in
     """Return True if the joint is in the list of a preposition that takes one: between A, B and C."""
     for i in range(at - 1, start - 1, -1):
         if types[i] == "PREP":
-            return chunks[i].value.preposition.relation in ("between", "among")
+            both = type_at(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun == "they"
+            return chunks[i].value.preposition.relation in ("between", "among") and not both
         if types[i] in FINITE:
             return False
     return False
@@ -365,6 +389,8 @@ def _turned_clause_follows(chunks: list[Chunk], types: list[str], at: int) -> bo
     i += types[i : i + 1] == ["COMMA"]
     if types[i : i + 1] in (["VERB"], ["BE"]):
         return "NP" in types[i : i + 3]
+    if types[i : i + 1] == ["NP"] and types[i + 1 : i + 2] in (["VERB"], ["BE"]) and types[i - 1] == "NP":
+        return True  # 'and behind the tent a sledge has been drawn up'
     person = types[i : i + 2] == ["NP", "TVERB"] and chunks[i].value.pronoun in ("me", "you", "we", "they", "someone")
     return person and types[i + 2 : i + 3] == ["NP"]
 
@@ -493,6 +519,9 @@ def classify(segment: Segment) -> list[Chunk]:
                 source[end] = bare
                 types[end] = after = "ADJP"
             kind = _kind(source, types, found, kinds, end, after, fronted)
+            both = [c.type for c in found[-2:]] == ["PREP", "NP"] and found[-1].value.pronoun == "they"
+            if kind == "NJ" and both and found[-2].value.preposition.relation == "between" and after == "NP":
+                kind = "OJ"  # 'a candle between them, and a bottle …'
             if kind == "NJ" and _lists_places(source, found, kinds, end, segment.link):
                 kind = "OJ"
             if (
@@ -531,11 +560,14 @@ def _lists_places(source: list[Chunk], found: list[Chunk], kinds: set[str], at: 
     after = at + 1
     while [chunk.type for chunk in source[after : after + 2]] == ["OF", "NP"]:
         after += 2
-    if [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
+    tucked = [c.type for c in source[after : after + 2]] == ["PART", "PREP"] and source[after].value.kind == "posture"
+    if not tucked and [chunk.type for chunk in source[after : after + 1]] not in (["PREP"], ["ADV"]):
         return False
     first, second = found[0].value, source[at].value
     last = max(i for i, kind in enumerate(types) if kind in ("PREP", "ADV"))
-    if not first.head or not second.head or found[last].value.preposition.relation in _WITH_LISTS:
+    other = second.pronoun == "one" or second.count is not None  # 'two chairs by the window, one at the desk'
+    ends_list = found[last].value.preposition.relation not in _WITH_LISTS or tucked
+    if not first.head or not (second.head or other) or not ends_list:
         return False
     listing = "COMMA" in kinds or "OJ" in types or link in (",", ":", ";")
     return listing or (first.determiner is None and second.determiner is None)
@@ -586,10 +618,23 @@ def _kind(
         if source[end].value.negated:
             nominal = any(a == "BE" and b == "NP" for a, b in pairwise(before))
             return "OJ" if nominal or not any(k in FINITE or k == "PUT" for k in before) else "NJ"
+        placed = end + 1
+        while types[placed : placed + 2] == ["OF", "NP"]:
+            placed += 2
+        introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
+        between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
+        if (
+            "THERE" in before
+            and "PREP" in before
+            and introduced
+            and not between
+            and types[placed : placed + 1] == ["PREP"]
+        ):
+            return "OJ"  # 'there is a hole in the middle of the board and a peg in the hole'
         if (
             found[-1].type == "NP"
             and found[-1].value.pronoun in ("it", "they")
-            and types[end + 1 : end + 2] in (["PREP"], ["ADV"])
+            and types[placed : placed + 1] in (["PREP"], ["ADV"])
             and ("TVERB" in before or "WITH" in before or "THERE" in before)
         ):
             return "OJ"

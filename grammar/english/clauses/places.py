@@ -39,7 +39,7 @@ _SIDES = ("left", "right", "top", "bottom", "front", "back", "far", "near", "mid
 _BINARY = {"front": "in_front", "back": "behind"}
 HOURS = {12: "top", 3: "right", 6: "bottom", 9: "left", 1: "top_right", 2: "top_right", 4: "bottom_right",
           5: "bottom_right", 7: "bottom_left", 8: "bottom_left", 10: "top_left", 11: "top_left"}  # fmt: skip
-_ON = frozenset({"on", "inside", "at", "to", "along", "from"})
+_ON = frozenset({"on", "inside", "at", "to", "along"})
 GENERAL_OWNERS = frozenset({"you", "me", "we"})
 
 
@@ -107,6 +107,8 @@ def place(relator: Relator, phrase: NounPhrase, span: Span) -> Predicate | None:
     if not is_place(phrase) or relation not in _ON:
         return None
     head = phrase.head
+    if head in _ROWS and relation == "on" and phrase.of is None:
+        return None  # 'kettle on back ring'
     if head == "o'clock":
         return _made(relator, HOURS.get(phrase.count or 0, "top"), _owner(phrase), span, value=_clock(phrase))
     if head in _ROWS:

@@ -14,7 +14,7 @@ from deixis.grammar.english.tree import (
     Span,
 )
 from deixis.grammar.english.vocabulary.nouns import GAPS, HOLDERS, PARTS, SURFACES, VESSELS, last_word
-from deixis.grammar.english.vocabulary.relation_words import PLACE_NOUNS
+from deixis.grammar.english.vocabulary.relation_words import NOT_PLACES, PLACE_NOUNS
 from deixis.grammar.english.vocabulary.tables import word_set
 from deixis.grammar.english.vocabulary.verbs import ENTER_VERBS, TRANSITIVE_RELATIONS
 
@@ -33,16 +33,43 @@ _ATTACHING = word_set(
     " join fasten tie hook link stick pin clip clamp wire"
 )
 """Verbs after which *to* means that two things touch."""
+AWAY_FROM = {"off": "on", "off of": "on", "out of": "inside"}
+"""Prepositions that, after a verb of staying, deny a place: *keep the cat off the table*."""
+_KEEPING = frozenset({"keep", "leave", "stay", "remain"})
+_REACHING = frozenset({"get", "come", "listen", "ask", "look"})
+"""Verbs after which *at*, *to* and *for* name no place of the subject."""
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
-_COVERING = frozenset({"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap"})
+_COVERING = frozenset(
+    {
+        "spread",
+        "drape",
+        "throw",
+        "sprinkle",
+        "pour",
+        "pull",
+        "fold",
+        "scatter",
+        "wrap",
+        "hook",
+        "sling",
+        "loop",
+        "fling",
+    }
+)
 """Verbs after which *over* means *on*."""
+_OUTER = frozenset({"back", "front", "side", "edge", "end", "corner"})
+"""Parts of a thing over which a cover hangs."""
 _DIRECTIONAL = frozenset(
     {"left", "right", "top", "bottom", "in_front", "behind", "above", "below", "far", "near", "part"}
 )
+_HANGING = frozenset({"hang", "dangle", "suspend", "swing", "droop", "sling"})
+"""Verbs after which what is *from* a thing is on it."""
 _LEADING = word_set("door doors doorway entrance entry exit gate path stairs way hallway steps door_way")
 _LEAPING = word_set("jump leap climb walk step pass skip hop")
 """Verbs of a motion past a thing."""
+_PASSING = word_set("go run fit thread insert slot poke push pull stick feed slip slide protrude hang plug")
+"""Verbs after which what is *through* a thing is in it."""
 _PASSIVES = {
     "surround": "around", "enclose": "around", "encircle": "around", "ring": "around", "flank": "each_side",
     "cover": "on", "bury": "on", "top": "on", "support": "under", "border": "next_to", "follow": "follows",
@@ -50,7 +77,7 @@ _PASSIVES = {
 """Relation of the agent of a participle to its subject: *surrounded by cups*."""
 _ROTATING = frozenset({"turn", "rotate", "angle", "tilt", "swivel"})
 _SHAPING = frozenset({"fold", "roll", "cut", "shape", "form", "tie", "twist", "slice", "divide", "turn", "arrange"})
-_STATES = frozenset({"fold", "roll", "turn", "open", "hide", "bury", "tip"})
+_STATES = frozenset({"burn", "fold", "roll", "turn", "open", "hide", "bury", "tip"})
 _STAYING = word_set(
     "stand sit lie lay hang put place position locate situate set keep leave rest stay remain park stow store mount"
     " lean prop nestle perch find see go come wait live stop linger belong be"
@@ -188,13 +215,15 @@ def moved(group: VerbGroup, said: tuple[Said, ...], span: Span) -> tuple[Said, .
         Places after the verb, as it makes them.
     """
     if not said:
+        if group.lemma == "touch" and not {"almost", "nearly"} & set(group.adverbs):
+            return (Said((Predicate("touching_each_other", (), span),)),)  # 'the cups must not touch'
         if group.kind in ("posture", "lean", "be") or group.lemma in ENTER_VERBS:
             return ()
         misunderstood(span, f"'{group.lemma}' does not say where something is")
         return ()
     if group.kind not in ("posture", "lean", "be", "face", "point") and group.lemma not in ENTER_VERBS:
         misunderstood(span, f"'{group.lemma}' does not say where something is")
-        return said
+        return () if group.lemma in _REACHING else said
     first, *others = said
     marker = Predicate(f"~{group.lemma}~{group.kind}", (), span, positive=True)
     return (replace(first, predicates=merged(((marker,), first.predicates))), *others)
@@ -421,6 +450,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     ):
         value = Adjective(following.part or relation, "position", Degree.PLAIN, following.span)
         relation = "facing"
+    elif lemma in _ROTATING and relation in ("to", "facing", "pointing") and arguments:
+        relation = "facing"  # 'its opening turned to the fire'
+    elif relation == "through" and lemma in _PASSING:
+        relation = "inside"  # 'the bolt goes through the hole'
     elif lemma.removesuffix("ed") in _LEAPING and relation in ("above", "across", "under", "between"):
         relation = "through"  # 'the cat jumped over the vase'
     elif kind == "point" and relation in ("middle", "corner", "edge", "end", "side", "part"):
@@ -438,7 +471,7 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         elif relation in ("far", "apart"):
             value = Adjective("away", "position", Degree.PLAIN, following.span)
             relation = meaning
-    elif (lemma == "hang" and relation == "from") or (
+    elif (lemma in _HANGING and relation == "from") or (
         lemma in ("stack", "pile") and relation in ("on", "stacked") and arguments
     ):
         relation = "on"
@@ -456,6 +489,10 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
         relation = "through"  # 'mentioned in the catalogue'
     elif lemma in ("cover", "coat", "drape") and relation == "with":
         return replace(following, relation="on", reversed=True, span=span)
+    elif relation == "above" and lemma in _COVERING and arguments and arguments[0].head in _OUTER and arguments[0].of:
+        relation, arguments = "on", (arguments[0].of,)  # 'draped over the back of the chair'
+    elif relation == "above" and arguments and arguments[0].head in ("rim", "lip"):
+        pass  # 'hooked over the rim'
     elif relation == "above" and (lemma in _COVERING or (lemma in ("lay", "lie") and "over" in following.adverbs)):
         relation = "on"
     elif lemma in ("stick", "poke", "peek", "peep", "protrude", "hang", "jut") and relation == "from":
@@ -467,10 +504,14 @@ def _meant(lemma: str, kind: str, marker: Predicate, following: Predicate) -> Pr
     elif lemma in _PASSIVES and relation in ("near", "by") and kind != "be":
         return replace(following, relation=_PASSIVES[lemma], reversed=True, span=span)
     positive = following.positive if marker.positive else not following.positive
+    left = next((place for word, place in AWAY_FROM.items() if word in following.adverbs), None)
+    if relation == "from" and lemma in _KEEPING and left and last_word(arguments[0].head) not in NOT_PLACES:
+        relation, positive = left, not positive
     return replace(
         following,
         relation=relation,
         value=value,
+        arguments=arguments,
         span=span,
         positive=positive,
         adverbs=(*marker.adverbs, *following.adverbs),

@@ -6,6 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Relator, VerbGroup
+from deixis.grammar.english.clauses.editing import cut, emptied, end_before, put_in, type_at
+from deixis.grammar.english.clauses.ellipses import filled_in
+from deixis.grammar.english.clauses.places import is_place
 from deixis.grammar.english.tree import Degree, NounPhrase
 from deixis.grammar.english.vocabulary.function_words import PERSONS
 from deixis.grammar.english.vocabulary.nouns import (
@@ -25,7 +28,29 @@ _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
 _FOUND_OR_PUT = frozenset(
-    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick"}
+    {
+        "have",
+        "see",
+        "find",
+        "keep",
+        "put",
+        "place",
+        "leave",
+        "set",
+        "lay",
+        "hang",
+        "store",
+        "notice",
+        "stick",
+        "line",
+        "arrange",
+        "stack",
+        "tuck",
+        "stand",
+        "hide",
+        "want",
+        "like",
+    }
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
@@ -48,36 +73,19 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     list of Chunk
         Chunks from which the clauses are cut. A chunk that was put in is empty and stands where its words would.
     """
-    chunks = _without_parentheses(chunks, text)
+    chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
+        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
         _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
         _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
-        _without(_count_apart), _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_telegraphic_places,
-        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _without(_place_taken),
+        _without(_count_apart), _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
+        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
+        _with_telegraphic_places,
+        _without(_stranded), _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
-
-
-def _type(chunks: list[Chunk], at: int) -> str:
-    return chunks[at].type if 0 <= at < len(chunks) else ""
-
-
-def _empty(chunk: Chunk, value: str = "") -> Chunk:
-    """Return a chunk as words that say nothing of places."""
-    return Chunk("ADVERB", chunk.start, chunk.end, value, chunk.span)
-
-
-def _cut(chunk: Chunk) -> Chunk:
-    """Return a chunk as the end of a clause."""
-    return Chunk("CUT", chunk.start, chunk.end, None, chunk.span)
-
-
-def _put_in(kind: str, before: Chunk, value: Relator | None = None) -> Chunk:
-    """Return a chunk without words that stands before another one."""
-    return Chunk(kind, before.start, before.start, value, (before.span[0], before.span[0]))
 
 
 def _without_parentheses(chunks: list[Chunk], text: str) -> list[Chunk]:
@@ -111,21 +119,39 @@ def _without_vocatives(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         starts = all(c.type == "ADVERB" or (c.type in _ENDS and k) for k, c in enumerate(found))
-        closed = _type(chunks, i + 1) in ("COMMA", "CUT") and (starts or _type(chunks, i - 1) == "COMMA")
-        spoken_to = chunk.type == "NP" and _names_listener(chunk.value) and (starts or _type(chunks, i + 2) in _ENDS)
+        closed = type_at(chunks, i + 1) in ("COMMA", "CUT") and (starts or type_at(chunks, i - 1) == "COMMA")
+        spoken_to = chunk.type == "NP" and _names_listener(chunk.value) and (starts or type_at(chunks, i + 2) in _ENDS)
         addressed = (
             starts and chunk.type == "NP" and chunk.value.determiner is None and not chunk.value.plural
             and bool(chunk.value.head) and chunk.value.owner is None and not chunk.value.adjectives
-            and _type(chunks, i + 1) == "COMMA" and _type(chunks, i + 2) == "NP"
+            and type_at(chunks, i + 1) == "COMMA" and type_at(chunks, i + 2) == "NP"
             and (chunks[i + 2].value.pronoun == "you" or _is_yours(chunks[i + 2].value))
         )  # fmt: skip
         spoken_to = spoken_to or addressed  # 'Lena, your bag is …'
         exclamation = (
-            starts and not found and chunk.type in ("NP", "ADV", "PART") and _type(chunks, i + 1) == "COMMA"
+            starts and not found and chunk.type in ("NP", "ADV", "PART") and type_at(chunks, i + 1) == "COMMA"
             and chunk.end == chunk.start + 1 and _is_exclamation(chunk)
             and any(c.type in FINITE | {"COLON", "PUT", "FIND", "TPART"} for c in chunks[i + 2 :])
         )  # fmt: skip
-        found.append(_empty(chunk) if closed and (spoken_to or exclamation) else chunk)
+        found.append(emptied(chunk) if closed and (spoken_to or exclamation) else chunk)
+    return found
+
+
+def _without_adverbs_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Leave out an adverb between commas, and the commas before a verb: *the cup, in turn, stands behind the jug*."""
+    found: list[Chunk] = []
+    i = 0
+    while i < len(chunks):
+        end = i + 1
+        while type_at(chunks, end) == "ADVERB":
+            end += 1
+        if chunks[i].type == "COMMA" and end > i + 1 and type_at(chunks, end) == "COMMA":
+            verb = type_at(chunks, i - 1) == "NP" and type_at(chunks, end + 1) in FINITE
+            found += chunks[i + 1 : end] if verb else chunks[i:end]
+            i = end + 1
+        else:
+            found.append(chunks[i])
+            i += 1
     return found
 
 
@@ -153,24 +179,29 @@ def _is_exclamation(chunk: Chunk) -> bool:
 
 
 def _without_times(chunks: list[Chunk]) -> list[Chunk]:
-    """Leave out the time at the beginning of a sentence: *Before the run, check …*."""
+    """Leave out the time at the beginning of a sentence: *Before the run, check …*, *Once set, …*."""
     start = next((i for i, chunk in enumerate(chunks) if chunk.type != "ADVERB"), 0)
-    if [_type(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
+    if [type_at(chunks, start), type_at(chunks, start + 2)] == ["SUB", "COMMA"] and chunks[start].value == "once":
+        done = chunks[start + 1]
+        bare = done.type in ("ADJP", "PART") or (done.type == "NP" and done.end == done.start + 1)
+        if bare:
+            return [*chunks[:start], *(emptied(c) for c in chunks[start : start + 3]), *chunks[start + 3 :]]
+    if [type_at(chunks, start + k) for k in range(3)] != ["PREP", "NP", "COMMA"]:
         return chunks
     phrase = chunks[start + 1].value
     before = chunks[start].value.preposition.phrase == "before"
-    inverted = _type(chunks, start + 3) in FINITE | _PREDICATES
+    inverted = type_at(chunks, start + 3) in FINITE | _PREDICATES
     if not before or phrase.pronoun is not None or not phrase.head or inverted:
         return chunks
-    return [*chunks[:start], _empty(chunks[start]), *chunks[start + 3 :]]
+    return [*chunks[:start], emptied(chunks[start]), *chunks[start + 3 :]]
 
 
 def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
     """Find the person for whom something is: *I put out a bowl for you, with a spoon in it*."""
     helped = (
-        chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and _type(chunks, at + 1) == "NP"
+        chunks[at].type == "PREP" and chunks[at].value.preposition.phrase == "for" and type_at(chunks, at + 1) == "NP"
         and chunks[at + 1].value.pronoun in PERSONS | {"everyone"}
-        and _type(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"} and at > 0
+        and type_at(chunks, at + 2) in JOINT_TYPES | {"", "PREP", "ADV"} and at > 0
     )  # fmt: skip
     return (at + 2, None) if helped else None
 
@@ -178,28 +209,32 @@ def _beneficiary(chunks: list[Chunk], at: int) -> _Run | None:
 def _bare_superlative(chunks: list[Chunk], at: int) -> _Run | None:
     """Find the member of an uncounted group that is told apart: *pipettes on the stand, largest on the left*."""
     apart = (
-        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
-        and _type(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
+        [type_at(chunks, at + k) for k in range(4)] == ["COMMA", "ADJP", "PREP", "NP"]
+        and type_at(chunks, at + 4) in _ENDS and chunks[at + 1].value[-1].degree is Degree.SUPERLATIVE
         and chunks[at + 3].value.head in PLACE_NOUNS
     )  # fmt: skip
-    return (at + 4, None) if apart else None
+    nearest = (
+        [type_at(chunks, at + k) for k in range(3)] == ["COMMA", "ADJP", "NP"] and type_at(chunks, at + 3) in _ENDS
+        and chunks[at + 1].value[-1].word in ("near", "far") and len(chunks[at + 1].value) > 1
+    )  # 'ink pots in front of the lamp, black nearest the client'  # fmt: skip
+    return (at + 3 + (not nearest), None) if apart or nearest else None
 
 
 def _free_place(chunks: list[Chunk], at: int) -> _Run | None:
     """Find *where it (always) is*: what follows after the comma says where the thing is."""
-    thing = _type(chunks, at + 1) == "NP"
+    thing = type_at(chunks, at + 1) == "NP"
     there = (
         chunks[at].type == "REL" and thing and chunks[at + 1].value.pronoun in ("it", "they")
-        and _type(chunks, at + 2) == "BE" and _type(chunks, at + 3) in _ENDS
+        and type_at(chunks, at + 2) == "BE" and type_at(chunks, at + 3) in _ENDS
     )  # fmt: skip
     free = (
-        chunks[at].type == "SUB" and chunks[at].value == "where" and _type(chunks, at - 1) == "BE"
-        and thing and _type(chunks, at + 2) in FINITE
+        chunks[at].type == "SUB" and chunks[at].value == "where" and type_at(chunks, at - 1) in ("BE", "VERB")
+        and thing and type_at(chunks, at + 2) in FINITE
     )  # fmt: skip
     if not there and not free:
         return None
-    end = _end(chunks, at + 3, JOINT_TYPES)
-    return end + (_type(chunks, end) == "COMMA"), None
+    end = end_before(chunks, at + 3, JOINT_TYPES)
+    return end + (free and type_at(chunks, end) in ("COMMA", "COLON")), None
 
 
 def _search(chunks: list[Chunk], at: int) -> _Run | None:
@@ -207,25 +242,44 @@ def _search(chunks: list[Chunk], at: int) -> _Run | None:
     verb = chunks[at].value
     looks = (
         isinstance(verb, VerbGroup) and verb.lemma in ("look", "search", "check", "peek")
-        and verb.form == "base" and _type(chunks, at - 1) in JOINT_TYPES | {"", "ADVERB"}
-        and _type(chunks, at + 1) == "PREP"
+        and verb.form == "base" and type_at(chunks, at - 1) in JOINT_TYPES | {"", "ADVERB"}
+        and type_at(chunks, at + 1) == "PREP"
         and chunks[at + 1].value.preposition.relation not in ("to", "at", "facing", "pointing", "from", "through")
     )  # fmt: skip
-    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES)) if looks else None
+    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES)) if looks else None
 
 
 def _infinitive(chunks: list[Chunk], at: int) -> _Run | None:
     """Find an infinitive with what belongs to it: *the bottle is too tall to stand on the shelf*."""
     chunk = chunks[at]
-    to = chunk.type == "UNKNOWN" and chunk.value == "to" and _type(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
-    return _unknown(chunks, at, _end(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+    to = chunk.type == "UNKNOWN" and chunk.value == "to" and type_at(chunks, at + 1) in ("UNKNOWN", "VERB", "TVERB")
+    return _unknown(chunks, at, end_before(chunks, at, JOINT_TYPES | {"REL"})) if to else None
+
+
+def _stranded(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find the preposition at the end of a relative clause: *the bell you were hoping for is …*."""
+    chunk = chunks[at]
+    bare = chunk.type in ("UNKNOWN", "ADVERB") and chunk.value in ("for", "about", "with", "of", "at", "to")
+    ends = bare and type_at(chunks, at - 1) in FINITE | {"PART", "NP"} and type_at(chunks, at + 1) in FINITE
+    return (at + 1, None) if ends and "REL" in [c.type for c in chunks[:at]] else None
+
+
+def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
+    """Find what *takes the place of honour* and *has pride of place* take, which is where the thing is."""
+    chunk = chunks[at]
+    takes = chunk.type == "TVERB" and chunk.value.lemma in ("take", "have", "occupy", "hold")
+    place = takes and type_at(chunks, at + 1) == "NP" and last_word(chunks[at + 1].value.head) in _SEATS
+    end = at + 2 + 2 * ([type_at(chunks, at + k) for k in (2, 3)] == ["OF", "NP"])
+    if not place or type_at(chunks, end) not in ("PREP", "ADV"):
+        return None
+    return end, Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
 
 
 def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:
     """Find a number that is given apart: *the mugs hang from the hooks, five of them, and …*."""
     counts = (
-        [_type(chunks, at + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
-        and _type(chunks, at + 4) in _ENDS and chunks[at + 3].value.pronoun in ("they", "these", "those")
+        [type_at(chunks, at + k) for k in range(4)] == ["COMMA", "NP", "OF", "NP"]
+        and type_at(chunks, at + 4) in _ENDS and chunks[at + 3].value.pronoun in ("they", "these", "those")
         and not chunks[at + 1].value.head and chunks[at + 1].value.count is not None
         and any(chunk.type in FINITE for chunk in chunks[:at])
     )  # fmt: skip
@@ -247,11 +301,6 @@ def _without(find: Callable[[list[Chunk], int], _Run | None]) -> Callable[[list[
     return rewrite
 
 
-def _end(chunks: list[Chunk], at: int, types: frozenset[str]) -> int:
-    """Return the place of the first chunk of one of the types, from a place on; the end if there is none."""
-    return next((k for k in range(at, len(chunks)) if chunks[k].type in types), len(chunks))
-
-
 def _unknown(chunks: list[Chunk], at: int, end: int) -> _Run:
     """Return a run with one chunk for it that is reported as not understood."""
     return end, Chunk(
@@ -262,7 +311,7 @@ def _unknown(chunks: list[Chunk], at: int, end: int) -> _Run:
 def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out an aside after a comma: *as if someone had just put it down*, *which made everyone laugh*."""
     for i, chunk in enumerate(chunks):
-        after = _type(chunks, i + 1)
+        after = type_at(chunks, i + 1)
         told = chunk.type == "UNKNOWN" and chunk.value == "as" and after in FINITE | {"PART"}
         compared = chunk.type == "SUB" and chunk.value == "as" and after == "SUB"
         so = chunk.type == "SUB" and chunk.value == "so" and after == "ADJP"
@@ -273,12 +322,12 @@ def _without_asides(chunks: list[Chunk]) -> list[Chunk]:
             and any(c.type == "COMMA" for c in chunks[i + 1 :])
         )  # 'not in the box, where I had looked for it, but …'  # fmt: skip
         comment = chunk.type == "REL" and after in ("VERB", "TVERB") and chunks[i + 1].value.lemma in _COMMENTING
-        if _type(chunks, i - 1) == "COMMA" and comment:  # '…, which made everyone laugh'
-            return _without_asides([*chunks[: i - 1], *chunks[_end(chunks, i + 2, _BREAKS) :]])
-        if _type(chunks, i - 1) != "COMMA" or not (told or compared or so or searched):
+        if type_at(chunks, i - 1) == "COMMA" and comment:  # '…, which made everyone laugh'
+            return _without_asides([*chunks[: i - 1], *chunks[end_before(chunks, i + 2, _BREAKS) :]])
+        if type_at(chunks, i - 1) != "COMMA" or not (told or compared or so or searched):
             continue
         end = next((k for k in range(i + 2, len(chunks)) if chunks[k].type in ("COMMA", "CUT")), None)
-        if end is not None and told and _type(chunks, i - 2) == "NOT":
+        if end is not None and told and type_at(chunks, i - 2) == "NOT":
             return _without_asides([*chunks[: i - 1], *chunks[end + 1 :]])
         if end is not None:
             return _without_asides([*chunks[: i - 1], *chunks[end:]])
@@ -292,22 +341,25 @@ def _without_insertions(chunks: list[Chunk]) -> list[Chunk]:
         subject = [c.type for c in chunks[first:i] if c.type != "ADVERB"]
         if chunk.type not in ("CUT", "COMMA") or subject not in (["NP"], ["NP", "OF", "NP"]):
             continue
-        ones = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun == "one" and chunks[i + 1].value.plural
+        ones = type_at(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun == "one" and chunks[i + 1].value.plural
         if chunk.type == "COMMA" and ones:  # 'bags, small ones on top, large ones below, are stored …'
             end = next((k for k in range(i, len(chunks)) if chunks[k].type in FINITE), 0) - 1
-            fits = _type(chunks, end) == "COMMA" and not {"PUT", "SUB", "REL"} & {c.type for c in chunks[i:end]}
+            fits = type_at(chunks, end) == "COMMA" and not {"PUT", "SUB", "REL"} & {c.type for c in chunks[i:end]}
         else:
             end = next((k for k in range(i + 1, len(chunks)) if chunks[k].type == chunk.type), 0)
             counts = {"THERE"} if chunk.type == "COMMA" else FINITE | {"OF"}
-            fits = _type(chunks, end + 1) in FINITE and not counts.isdisjoint(c.type for c in chunks[i + 1 : end])
+            fits = type_at(chunks, end + 1) in FINITE and not counts.isdisjoint(c.type for c in chunks[i + 1 : end])
         if fits:
-            return [*chunks[:i], *(_empty(c) for c in chunks[i : end + 1]), *chunks[end + 1 :]]
+            return [*chunks[:i], *(emptied(c) for c in chunks[i : end + 1]), *chunks[end + 1 :]]
     return chunks
 
 
 def _with_counted_labels(chunks: list[Chunk]) -> list[Chunk]:
     """Return *forks: two, left of the plate* as *two forks, left of the plate*."""
-    if [_type(chunks, k) for k in range(3)] != ["NP", "COLON", "NP"] or _type(chunks, 3) not in _ENDS | {"PREP", "ADV"}:
+    if [type_at(chunks, k) for k in range(3)] != ["NP", "COLON", "NP"] or type_at(chunks, 3) not in _ENDS | {
+        "PREP",
+        "ADV",
+    }:
         return chunks
     thing, number = chunks[0].value, chunks[2].value
     bare = not (number.head or number.pronoun or number.adjectives or number.owner)
@@ -315,7 +367,7 @@ def _with_counted_labels(chunks: list[Chunk]) -> list[Chunk]:
         return chunks
     counted = replace(thing, count=number.count, plural=number.count > 1)
     whole = Chunk("NP", chunks[0].start, chunks[2].end, counted, chunks[0].span)
-    return [whole, *chunks[3 + (_type(chunks, 3) == "COMMA") :]]
+    return [whole, *chunks[3 + (type_at(chunks, 3) == "COMMA") :]]
 
 
 def _without_resumed_subjects(chunks: list[Chunk]) -> list[Chunk]:
@@ -324,7 +376,7 @@ def _without_resumed_subjects(chunks: list[Chunk]) -> list[Chunk]:
     for i, chunk in enumerate(chunks):
         resumes = (
             chunk.type == "NP" and chunk.value.pronoun in ("it", "they") and bool(found) and found[-1].type == "NP"
-            and _type(chunks, i + 1) in FINITE and (len(found) == 1 or found[-2].type in JOINT_TYPES | {"ADVERB"})
+            and type_at(chunks, i + 1) in FINITE and (len(found) == 1 or found[-2].type in JOINT_TYPES | {"ADVERB"})
             and bool(found[-1].value.head) and found[-1].value.plural is (chunk.value.pronoun == "they")
         )  # fmt: skip
         if not resumes:
@@ -347,11 +399,11 @@ def _with_existential_have(chunks: list[Chunk]) -> list[Chunk]:
 def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
     """Return the second verb of *I stood the candle on it and poured water around it* as one in the past."""
     for i, chunk in enumerate(chunks):
-        if chunk.type != "TPART" or _type(chunks, i - 1) != "AND" or chunk.value.form != "past":
+        if chunk.type != "TPART" or type_at(chunks, i - 1) != "AND" or chunk.value.form != "past":
             continue
         first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
-        spoken = _type(chunks, first) == "NP" and chunks[first].value.pronoun in ("me", "we")
-        if spoken and _type(chunks, first + 1) in FINITE:
+        spoken = type_at(chunks, first) == "NP" and chunks[first].value.pronoun in ("me", "we")
+        if spoken and type_at(chunks, first + 1) in FINITE:
             chunks[i] = Chunk("TVERB", chunk.start, chunk.end, replace(chunk.value, past=True), chunk.span)
     return chunks
 
@@ -359,25 +411,59 @@ def _with_verbs_of_one_person(chunks: list[Chunk]) -> list[Chunk]:
 def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Put an object that stands first after its verb: *the rest you'll find on the shelf*, *the bread I put it …*."""
     for i, chunk in enumerate(chunks):
-        before, verb = _type(chunks, i - 1), chunks[i + 2] if i + 2 < len(chunks) else None
+        before = type_at(chunks, i - 1)
         first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
+        at = i + 1  # of the person
+        while (
+            first
+            and type_at(chunks, at) in ("COMMA", "AND")
+            and "NP" in (type_at(chunks, at + 1), type_at(chunks, at + 2))
+        ):
+            at += 2 if type_at(chunks, at + 1) == "NP" else 3
+        verb = chunks[at + 1] if at + 1 < len(chunks) else None
         if not first or verb is None or verb.type not in ("VERB", "TVERB"):
             continue
-        person = _type(chunks, i + 1) == "NP" and chunks[i + 1].value.pronoun in ("me", "you", "we", "he", "she")
+        person = type_at(chunks, at) == "NP" and chunks[at].value.pronoun in ("me", "you", "we", "he", "she")
         if not person or verb.value.lemma not in _FOUND_OR_PUT:
             continue
-        again = verb.type == "TVERB" and _type(chunks, i + 3) == "NP" and chunks[i + 3].value.pronoun in ("it", "they")
-        place = i + 3 + again
+        again = verb.type == "TVERB" and type_at(chunks, at + 2) == "NP"
+        again = again and chunks[at + 2].value.pronoun in ("it", "they")
+        place = at + 2 + again
+        place += type_at(chunks, place) == "ADVERB"
         end = next((k for k in range(place, len(chunks)) if chunks[k].type in JOINT_TYPES), len(chunks))
         goes_on = any(c.type in FINITE for c in chunks[place:end]) or (
-            "COMMA" in (c.type for c in chunks[end : end + 1]) and _type(chunks, end + 1) in FINITE
+            "COMMA" in (c.type for c in chunks[end : end + 1]) and type_at(chunks, end + 1) in FINITE
         )
-        if goes_on or _type(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
+        if goes_on or type_at(chunks, place) not in ("PREP", "ADV") or (verb.type == "TVERB" and not again):
             continue
-        if not again and not before:
+        if not again and not before and at == i + 1:
             continue  # 'the chair you see on the left' describes one thing
+        if at > i + 1:  # 'soy, vinegar and oil I keep behind the tray' are behind it
+            be = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+            return [*chunks[:at], be, *_with_objects_after_verbs(chunks[place:])]
         moved = Chunk("TVERB", verb.start, verb.end, verb.value, verb.span)
-        return [*chunks[:i], chunks[i + 1], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+        return [*chunks[:i], chunks[at], moved, chunk, *_with_objects_after_verbs(chunks[place:])]
+    return chunks
+
+
+def _with_parts_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
+    """Put what is said of a part before the verb at the end: *the tweezers, points to the left, lie along the edge*."""
+    for i in range(1, len(chunks) - 3):
+        subject, part = chunks[i - 1], chunks[i + 1]
+        if [type_at(chunks, i + k) for k in (-1, 0, 1)] != ["NP", "COMMA", "NP"] or not subject.value.head:
+            continue
+        if type_at(chunks, i - 2) not in JOINT_TYPES | {"", "ADVERB"} or type_at(chunks, i + 2) not in _PREDICATES:
+            continue
+        own = part.value.owner is not None and part.value.owner.pronoun in ("it", "they")
+        if not part.value.head or not (own or (part.value.determiner is None and part.value.owner is None)):
+            continue
+        end = end_before(chunks, i + 2, JOINT_TYPES)
+        if type_at(chunks, end) != "COMMA" or type_at(chunks, end + 1) not in FINITE:
+            continue
+        if any(chunk.type in FINITE | {"REL"} for chunk in chunks[i + 2 : end]):
+            continue
+        last = end_before(chunks, end + 1, JOINT_TYPES)
+        return [*chunks[:i], *chunks[end + 1 : last], *chunks[i:end], *_with_parts_after_verbs(chunks[last:])]
     return chunks
 
 
@@ -397,13 +483,13 @@ def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
                 found.append(Chunk("REL", chunk.start, chunk.start + 1, None, chunk.span))
                 waiting = Chunk("ADV", chunk.start, chunk.end, chunk.value, chunk.span)
                 continue
-            before = next((c for c in reversed(found) if c.type == "NP" and c.value.head), None)
+            before = next((c for c in reversed(found) if c.type == "NP" and _names_thing(c.value)), None)
             if before is not None:
                 found.append(Chunk("CUT", chunk.start, chunk.start, None, chunk.span))
         elif chunk.type == "NP" and chunk.value.pronoun == "which" and i and chunks[i - 1].type == "PREP":
             if waiting is not None and chunks[i - 1].span == waiting.span:
                 continue
-            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and c.value.head), None)
+            before = next((c for c in reversed(found[:-2]) if c.type == "NP" and _names_thing(c.value)), None)
             if before is not None:
                 value = NounPhrase(chunk.span, before.value.head, "the", plural=before.value.plural)
                 chunk = Chunk("NP", chunk.start, chunk.end, value, chunk.span)
@@ -412,6 +498,11 @@ def _with_relative_places(chunks: list[Chunk]) -> list[Chunk]:
             found.append(waiting)
             waiting = None
     return found
+
+
+def _names_thing(phrase: NounPhrase) -> bool:
+    """Return True for a thing and not for its place: *a drawer at the front, in which …*."""
+    return bool(phrase.head) and not is_place(phrase)
 
 
 def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
@@ -427,12 +518,36 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
             and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
             and i + 1 < len(chunks)
             and chunks[i + 1].type in FINITE
-            and not (chunks[i + 1].type == "TVERB" and _type(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head))
+            and not (
+                chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head)
+            )
         )
         if contact:
-            found.append(_put_in("REL", chunk))
+            found.append(put_in("REL", chunk))
         found.append(chunk)
     return found
+
+
+def _with_place_labels(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *centre of table: fruit bowl* and *top drawer: pens, tape* as places with their things."""
+    colon = 1
+    while [type_at(chunks, colon), type_at(chunks, colon + 1)] == ["OF", "NP"]:
+        colon += 2
+    if [type_at(chunks, 0), type_at(chunks, colon), type_at(chunks, colon + 1)] != ["NP", "COLON", "NP"]:
+        return chunks
+    place, thing = chunks[0].value, chunks[colon + 1].value
+    if place.determiner not in (None, "the") or not place.head or not thing.head or is_place(thing):
+        return chunks
+    noun = last_word(place.head.rstrip("0123456789 "))
+    holds = noun in VESSELS | HOLDERS or noun in SURFACES
+    if not is_place(place) and (not holds or place.plural or last_word(thing.head) in VESSELS | HOLDERS | SURFACES):
+        return chunks
+    if any(chunk.type in FINITE for chunk in chunks[colon:]) or (is_place(place) and place.plural):
+        return chunks
+    word = "at" if is_place(place) else "in" if noun in VESSELS | HOLDERS else "on"
+    relator = Relator(Preposition(word, {"in": "inside"}.get(word, word)))
+    comma = Chunk("COMMA", chunks[colon].start, chunks[colon].end, None, chunks[colon].span)
+    return [put_in("PREP", chunks[0], relator), *chunks[:colon], comma, *chunks[colon + 1 :]]
 
 
 def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
@@ -443,7 +558,7 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
         ends = i + 1 == len(chunks) or chunks[i + 1].type in JOINT_TYPES | {"OF"}
         aside = (
             len(found) > 1 and found[-1].type == "COMMA" and found[-2].type == "NP"
-            and _type(chunks, i + 1) in _ENDS
+            and type_at(chunks, i + 1) in _ENDS
         )  # fmt: skip
         kept_in = (
             i == 2 and ends and [c.type for c in chunks[:3]] == ["NP", "COLON", "NP"] and not chunk.value.plural
@@ -452,17 +567,21 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             and not any(other.type in FINITE for other in chunks)
         )  # fmt: skip
         noted = (
-            chunk.type == "NP" and not found and ends and _type(chunks, i + 1) == "COMMA" and not chunk.value.plural
+            chunk.type == "NP" and not found and ends and type_at(chunks, i + 1) == "COMMA" and not chunk.value.plural
             and chunk.value.head in PLACE_NOUNS and chunk.value.determiner is None and chunk.value.owner is None
             and not any(other.type in FINITE for other in chunks)
         )  # fmt: skip
+        on = bool(found) and found[-1].type == "PREP" and found[-1].value.preposition.relation in ("on", "at", "inside")
+        if on and chunk.type == "ADV" and chunk.value.preposition.phrase in PLACE_NOUNS:  # 'kettle on left'
+            side = NounPhrase(chunk.span, chunk.value.preposition.phrase)
+            chunk = Chunk("NP", chunk.start, chunk.end, side, chunk.span)
         if noted:  # 'limes? front left, in a bowl, knife across it'
-            found.append(_put_in("PREP", chunk, at))
+            found.append(put_in("PREP", chunk, at))
             for k in range(i + 2, len(chunks) - 2):
                 if chunks[k].type == "COMMA" and chunks[k + 1].type == "NP" and chunks[k + 2].type in _PREDICATES:
-                    chunks[k] = _cut(chunks[k])
+                    chunks[k] = cut(chunks[k])
         if kept_in:  # 'gloves: left-hand pocket'
-            found.append(_put_in("PREP", chunk, Relator(Preposition("in", "inside"))))
+            found.append(put_in("PREP", chunk, Relator(Preposition("in", "inside"))))
         if (
             chunk.type == "NP"
             and ends
@@ -478,7 +597,7 @@ def _with_telegraphic_places(chunks: list[Chunk]) -> list[Chunk]:
             and any(other.type == "NP" for other in found)
             and (not any(other.type in FINITE for other in found) or (aside and found[-2].value.determiner is not None))
         ):
-            found.append(_put_in("PREP", chunk, at))
+            found.append(put_in("PREP", chunk, at))
         found.append(chunk)
     return found
 
@@ -492,47 +611,60 @@ def _with_measures_denied(chunks: list[Chunk]) -> list[Chunk]:
             metres, hedge, bound = following.value
             following.value = (metres, hedge, "<" if bound == ">" else ">")
             continue
-        told = chunk.type == "PUT" and _type(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
-        if told and _type(chunks, i + 1) == "NP" and _type(chunks, i - 2) == "NP":
+        told = chunk.type == "PUT" and type_at(chunks, i - 1) == "NP" and chunks[i - 1].value.pronoun in ("you", "we")
+        if told and type_at(chunks, i + 1) == "NP" and type_at(chunks, i - 2) == "NP":
             chunk = Chunk("TVERB", chunk.start, chunk.end, chunk.value, chunk.span)
         found.append(chunk)
     return found
 
 
 def _with_destinations(chunks: list[Chunk]) -> list[Chunk]:
-    """Return *she moved the pen to the drawer* as *in the drawer*."""
-    for i, chunk in enumerate(chunks[:-3]):
-        moved = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
-        if moved and chunks[i + 2].type == "PREP" and chunks[i + 2].value.preposition.phrase == "to":
-            noun = last_word(chunks[i + 3].value.head) if chunks[i + 3].type == "NP" else ""
+    """Return *she moved the pen to the drawer* and *it was moved from the desk to the drawer* as *in the drawer*."""
+    for i, chunk in enumerate(chunks[:-2]):
+        active = chunk.type == "TVERB" and chunk.value.lemma in _MOVING and chunks[i + 1].type == "NP"
+        passive = chunk.type == "PART" and chunk.value.lemma in _MOVING and type_at(chunks, i - 1) == "BE"
+        at = i + 1 + active  # of the places
+        if not (active or passive):
+            continue
+        origin = type_at(chunks, at) == "PREP" and chunks[at].value.preposition.relation == "from"
+        if origin and [type_at(chunks, at + k) for k in (1, 2)] == ["NP", "PREP"]:
+            del chunks[at : at + 2]
+        to = type_at(chunks, at) == "PREP" and chunks[at].value.preposition.phrase == "to"
+        if to and type_at(chunks, at + 1) == "NP":
+            noun = last_word(chunks[at + 1].value.head)
             relation = "inside" if noun in VESSELS | HOLDERS else "on" if noun in SURFACES else "at"
-            chunks[i + 2].value = Relator(Preposition("to", relation))
+            chunks[at] = replace(chunks[at], value=Relator(Preposition("to", relation)))
+            if passive and not chunks[i - 1].value.modal:
+                chunks[i - 1] = replace(chunks[i - 1], value=replace(chunks[i - 1].value, past=False))
     return chunks
 
 
 def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
     """End the clause of a note before what is said of a part: *rear left corner, lid closed*."""
     for i, chunk in enumerate(chunks):
-        beside = [_type(chunks, i + k) for k in (-1, 1)] == ["NP", "NP"] and _type(chunks, i - 2) in ("PREP", "OF")
+        before = [c.type for c in chunks[:i] if c.type != "ADVERB"][-2:]
+        beside = type_at(chunks, i + 1) == "NP" and before in (["PREP", "NP"], ["OF", "NP"])
         if chunk.type != "COMMA" or not beside:
             continue
         part = chunks[i + 1].value
-        told = _type(chunks, i + 2) in ("PART", "ADJP") and _type(chunks, i + 3) in _ENDS
+        told = type_at(chunks, i + 2) in ("PART", "ADJP") and type_at(chunks, i + 3) in _ENDS
         verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
-        other = not part.head and (part.pronoun == "one" or part.count is not None) and _type(chunks, i + 2) == "PART"
-        hangs = [_type(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and _type(chunks, i + 5) in _ENDS
+        other = not part.head and (part.pronoun == "one" or part.count is not None) and type_at(chunks, i + 2) == "PART"
+        hangs = [type_at(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and type_at(
+            chunks, i + 5
+        ) in _ENDS
         hangs = hangs and part.determiner is None and chunks[i + 4].value.pronoun == "it"
-        own = last_word(part.head) in PARTS and _type(chunks, i + 2) in ("ADJP", "PART", "TPART")
+        own = last_word(part.head) in PARTS and type_at(chunks, i + 2) in ("ADJP", "PART", "TPART")
         bare = part.determiner is None and part.owner is None and not part.adjectives
         # 'four chairs around it, one fallen' and 'behind it, lid open towards you'
         if (verbless and (other or hangs)) or (bare and (own or (told and verbless))):
-            chunks[i] = _cut(chunk)
+            chunks[i] = cut(chunk)
     return chunks
 
 
 def _with_label_nouns(chunks: list[Chunk]) -> list[Chunk]:
     """Return a label that is a colour too as a noun: *cream: side pocket*."""
-    if _type(chunks, 0) == "ADJP" and _type(chunks, 1) == "COLON" and len(chunks[0].value) == 1:
+    if type_at(chunks, 0) == "ADJP" and type_at(chunks, 1) == "COLON" and len(chunks[0].value) == 1:
         word = chunks[0].value[0].word
         chunks[0] = Chunk("NP", chunks[0].start, chunks[0].end, NounPhrase(chunks[0].span, word), chunks[0].span)
     return chunks
@@ -542,8 +674,14 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
-        lay = _type(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
-        if chunk.type == "COMMA" and (_type(chunks, i + 1) in ("BE", "VERB") or lay) and _type(chunks, i + 2) == "NP":
+        lay = (
+            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+        )
+        if (
+            chunk.type == "COMMA"
+            and (type_at(chunks, i + 1) in ("BE", "VERB") or lay)
+            and type_at(chunks, i + 2) == "NP"
+        ):
             first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA", "AND"}), default=0)
             clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
             if FINITE & set(clause) or "THERE" in clause:
@@ -564,14 +702,17 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")
-        after_list = _type(chunks, i - 1) == "COMMA" and _type(chunks, i - 2) == "NP" and _type(chunks, i - 3) == "AND"
-        if whole and after_list and _type(chunks, i + 1) in ("PREP", "ADV"):
+        after_list = (
+            type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and type_at(chunks, i - 3) == "AND"
+        )
+        if whole and after_list and type_at(chunks, i + 1) in ("PREP", "ADV"):
             phrase = NounPhrase(chunk.span, pronoun=chunk.value, plural=True)
             chunk = Chunk("NP", chunk.start, chunk.end, phrase, chunk.span)
         found.append(chunk)
     return found
 
 
+_SEATS = frozenset({"place", "pride", "spot", "position", "seat"})
 _COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "prevent", "explain", "save", "help", "seem"})
 """Verbs of *which* that comment on a whole clause."""
 _MOVING = frozenset({"move", "shift", "transfer", "relocate", "return"})
@@ -596,7 +737,7 @@ def _with_aimed_parts(chunks: list[Chunk]) -> list[Chunk]:
         has = before.type == "TVERB" and before.value.lemma == "have"
         if not owned or not (has or before.type in ("WITH", "COMMA")):
             continue
-        to = after.type == "PREP" and after.value.preposition.relation == "to" and _type(found, i + 2) == "NP"
+        to = after.type == "PREP" and after.value.preposition.relation == "to" and type_at(found, i + 2) == "NP"
         aims = to or after.type in ("PART", "TPART", "ADV")
         aims = aims or (after.type == "PREP" and after.value.preposition.relation in ("pointing", "facing"))
         if to:

@@ -8,7 +8,11 @@ from deixis.grammar.english.tree import Sentence
 from deixis.grammar.english.vocabulary.nouns import PEOPLE
 from deixis.grammar.english.vocabulary.verbs import SAYING
 
-PAST_RELATIVE = re.compile(r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b", re.IGNORECASE)
+PAST_RELATIVE = re.compile(
+    r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b"
+    r"|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
+    re.IGNORECASE,
+)
 """Beginning of a relative clause in the past."""
 
 LEFT = re.compile(r"^[\s,;]*but\s+(?:i|we|he|she|they|someone)\s+(?:left|put|placed)\b", re.IGNORECASE)
@@ -27,7 +31,7 @@ WHILE_DOING = re.compile(
 )
 """Condition at the beginning of a sentence: *when driving, …*; what tells a viewpoint is not one."""
 CONDITION = re.compile(
-    r"\s*(?:if|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
+    r"\s*(?:if(?!\s+you\s+(?:look|peek|peep|peer|open|lift)\b[^,]*,\s*you\b)|unless|whenever|assuming|suppose|supposing|provided|providing|in\s+case|in\s+the\s+event|"
     r"(?:as|so)\s+long\s+as|(?:only|even)\s+if|on\s+condition|depending\s+on)\b"
     r"|\s*(?:given|granted|with)\s+(?:any\s+|a\s+bit\s+of\s+|enough\s+|sufficient\s+|more\s+)?"
     r"(?:luck|room|space|time)\b[^,.;?]*,"
@@ -36,9 +40,10 @@ CONDITION = re.compile(
 )
 """Beginning of a sentence that holds under a condition: *if …*, *in the event of …, …*, *should it rain, …*."""
 UNSURE_RELATIVE = re.compile(
-    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|should\b|might\b|may\b|could\b|would\b)", re.IGNORECASE
+    r"\b(?:which|that|who)\s+(?:(?:was|were|is|are)\s+to\b|(?<!,\swhich\s)should\b|might\b|may\b|could\b|would\b)",
+    re.IGNORECASE,
 )
-"""Beginning of a relative clause that tells what should be or might be."""
+"""Beginning of a relative clause that tells what should be or might be; *…, which should …* adds an instruction."""
 
 OBLIGED = frozenset({"should", "ought", "shall"})
 REVOKED = re.compile(
@@ -79,6 +84,19 @@ UNREAL = re.compile(
     r"legend|myth|poem|song|film|movie|dream|nightmare|cartoon|joke|riddle|painting|mural|tapestry|portrait)\b"
     r"|\b(?:think|dream|talk|read|hear|speak|complain)(?:s|ing|ed)?\s+(?:of|about)\b"
     r"|\bwill\s+have\s+(?:been|stood|lain|\w+ed)\b"
+    r"|\b(?:i|we)(?:['\u2019](?:m|re|ve\s+been)|\s+(?:am|are|was|were|have\s+been))\s+(?:told|informed|assured|given\s+to)\b"
+    r"|\b(?:wants|wanted)\s+(?:the|an?|my|his|her|our|their|it|them)\b|\bover\s+(?:my|his|her|our)\s+dead\s+body\b"
+    r"|\b(?:supposedly|allegedly|reportedly|purportedly|ostensibly|theoretically|hypothetically)\b"
+    r"|^\s*picture\s+this\b|\bis\s+(?:an?\s+)?(?:accident\s+waiting|bad\s+luck|good\s+luck|recipe\s+for|(?:fire\s+)?hazard|"
+    r"crime|sin|joke|figment|fantasy|fiction|lie|illusion|dream)\b"
+    r"|\bnothing\s+like\s+(?:as|so)\b"
+    r"|\b(?:it|things)\s+looks?\s+(?:as\s+(?:if|though)|like)\b"
+    r"|\b(?:theory|theories|story|account|version|testimony|rumou?r|legend|myth|tradition|report|guess|hypothesis)\s+"
+    r"(?:puts?|places?|has|locates?|says?|holds?|goes|claims?|suggests?)\b"
+    r"|\b(?:says?|tells?|suggests?|shows?|proves?|know|knows|thinks?)\s+(?:us\s+)?(?:otherwise|differently)\b"
+    r"|(?:^|[,;]\s*)(?:the|this|that|one|an?)\s+(?:old\s+)?(?:picture|photo|photograph|painting|drawing|catalogue|advert(?:isement)?|"
+    r"brochure|leaflet|postcard|poster|film|video)\s+(?:pictures?|shows?|depicts?|portrays?)\b"
+    r"|\b(?:mistake|error|myth|misconception|illusion)\s+(?:to|that)\b"
     r"|^\s*on\s+the\s+(?:cover|front\s+page|back\s+cover|poster|postcard|stamp|billboard)\b[^,.;]*,",
     re.IGNORECASE,
 )
@@ -109,8 +127,14 @@ FRAMED = re.compile(
     re.IGNORECASE,
 )
 """Beginning of a sentence that tells of another world than the one on the table: *in theory*, *the moment it is …*."""
+SELDOM = re.compile(
+    r"(?:\bnot|n['\u2019]t)\s+(?:always|usually|normally|generally|often|necessarily|every\s+day|all\s+the\s+time)\b|"
+    r"^\s*(?:very\s+)?few\s+(?!of\b)",
+    re.IGNORECASE,
+)
+"""Words by which something is so at times, or of some things."""
 UNSURE = re.compile(
-    r"\b(?:not|n['\u2019]t|hardly|never|far\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
+    r"(?:\bnot|n['\u2019]t|\bhardly|\bnever|\bfar\s+from)\s+(?:really\s+|quite\s+|so\s+|at\s+all\s+|even\s+)?"
     r"(?:sure|certain|convinced|clear)\b|\b(?:unsure|uncertain|unclear|doubtful|unlikely)\s+(?:if|that|whether|the|an?)\b",
     re.IGNORECASE,
 )

@@ -22,6 +22,7 @@ from deixis.grammar.english.discourse.commitment import (
     REPORTED,
     REVOKED,
     SAID_AFTER,
+    SELDOM,
     UNREAL,
     UNSURE,
     condition_of,
@@ -101,7 +102,9 @@ class Discourse(Statements):
         listed = phrase.members or (phrase,)
         label = self.text[phrase.span[1] :].lstrip().startswith(":") and phrase.plural and bool(phrase.head)
         if label and phrase.determiner is None and not phrase.predicates and not self.how.uncertain:
-            self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            labelled = self._introduce(phrase)  # 'tyre levers: blue ones in the mug, …'
+            if labelled is not None:
+                self.references.recent.insert(0, Focus(labelled, [], None, sentence))
             return
         if not any(p.predicates or p.of or p.count for p in (phrase, *listed)):
             return
@@ -137,20 +140,26 @@ class Discourse(Statements):
 
     def _with_shared_places(self, listed: tuple[NounPhrase, ...]) -> Iterator[NounPhrase]:
         """Yield the things of a note; *oil and vinegar behind it* are one coordination, both behind it."""
-        waiting: NounPhrase | None = None
-        for part, following in zip(listed, (*listed[1:], None), strict=True):
-            if waiting is not None:
-                members = (waiting, replace(part, predicates=()))
-                span = (waiting.span[0], part.span[1])
-                yield NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
-                waiting = None
-            elif (
-                following is not None and len(listed) > 2 and not part.predicates and following.predicates
-                and self.text[part.span[1] : following.span[0]].strip() in ("and", "&")
-            ):  # fmt: skip
-                waiting = part
-            else:
-                yield part
+        waiting: list[NounPhrase] = []
+        placed = False
+        for part in listed:
+            if not part.predicates:
+                waiting.append(part)
+                continue
+            joined = bool(waiting) and len(listed) > 2 and self._joined_to(waiting[-1], part)
+            sharing = len(waiting) if joined and not placed else int(joined)  # all of 'lemons, limes and a knife on it'
+            yield from waiting[: len(waiting) - sharing]
+            if sharing:
+                members = (*waiting[-sharing:], replace(part, predicates=()))
+                span = (members[0].span[0], part.span[1])
+                part = NounPhrase(span, plural=True, members=members, joined_by="and", predicates=part.predicates)
+            yield part
+            waiting, placed = [], True
+        yield from waiting
+
+    def _joined_to(self, part: NounPhrase, following: NounPhrase) -> bool:
+        """Return True if *and* stands between two things of a note."""
+        return self.text[part.span[1] : following.span[0]].strip(" ,") in ("and", "&")
 
     def _ask_about(self, phrase: NounPhrase | None) -> None:
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
@@ -259,7 +268,7 @@ class Discourse(Statements):
         unreal = unreal or FRAMED.search(whole) or UNSURE.search(whole) or FUTURE.match(whole)
         if clause.mood is Mood.COMMAND:
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
-        if unreal and positive:
+        if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
             self.text[self.references.start : self.end]
@@ -384,8 +393,8 @@ class Discourse(Statements):
 
     def _nothing(self, subject: NounPhrase, clause: Clause) -> None:
         """Read *nothing lies between the boots*, *no stopper was found*."""
-        predicates = clause.predicates
-        if all(p.relation == "there" for p in predicates):
+        predicates = tuple(p for p in clause.predicates if p.relation != "there")  # 'anywhere near it'
+        if not predicates:
             for phrase in subject.members or (subject,):
                 if phrase.head and last_word(phrase.head) not in GENERAL:
                     self._absent(phrase)
@@ -403,6 +412,8 @@ class Discourse(Statements):
             self._say(known, tuple(replace(p, positive=True) for p in predicates), None)
             return
         specific = bool(subject.head) and last_word(subject.head) not in GENERAL and subject.pronoun is None
+        surface = self.references.surface_noun
+        specific = specific and not any(last_word(a.head) == surface for p in predicates for a in p.arguments)
         if specific and all(p.arguments and p.relation in DIRECTIONS | {"near", "next_to"} for p in predicates):
             thing = self.references.find(replace(subject, determiner="the", predicates=()))
             if thing is not None:  # 'no flowers may stand in front of the cross', which may or may not be there

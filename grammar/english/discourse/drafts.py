@@ -10,7 +10,7 @@ from deixis.grammar.english.discourse.entities import Entity, Role
 from deixis.grammar.english.discourse.references import References
 from deixis.grammar.english.discourse.surfaces import surface_noun
 from deixis.grammar.english.tree import Mood, NounPhrase, Predicate, Sentence, Span
-from deixis.grammar.english.vocabulary.nouns import HEADED, last_word
+from deixis.grammar.english.vocabulary.nouns import HEADED, PEOPLE, last_word
 from deixis.ontology.graph.claims import COLLECTIVE
 
 MIN_PAST_OF_STORY = 3
@@ -121,7 +121,7 @@ class Drafting:
             turned = TURNED_AWAY.search(self.text[slice(*how.span)]) is not None
             if turned and value == "viewer":
                 value = "away"
-            elif turned and arguments:
+            elif turned and (arguments or value in PEOPLE):
                 how = replace(how, positive=not how.positive)
             if self.part == "handle" and all(last_word(s.noun) in HEADED for s in subjects):
                 how = replace(how, by_handle=True)

@@ -119,9 +119,10 @@ class Mentions(Drafting, ABC):
         elif phrase.predicates and entity.role not in (Role.PERSON, Role.ABSTRACT):
             outer = self.how
             self.how = replace(outer, positive=True, quantifier=None, weight=1.0, optional=False)
-            if not self.story and PAST_RELATIVE.search(self.text[slice(*phrase.span)]):
+            own = self.text[phrase.span[0] : self._end_of_own(phrase)]
+            if not self.story and PAST_RELATIVE.search(own):
                 self.how = replace(self.how, past=True)
-            if UNSURE_RELATIVE.search(self.text[slice(*phrase.span)]):
+            if UNSURE_RELATIVE.search(own):
                 self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
             self._say(entity, phrase.predicates, phrase, focus=False)
             self.how = outer
@@ -129,6 +130,12 @@ class Mentions(Drafting, ABC):
             if restriction.subject is entity and restriction.others:
                 self.restricted = {entity: (restriction.others[-1].itself, phrase.predicates[-1].span[1])}
         return entity
+
+    def _end_of_own(self, phrase: NounPhrase) -> int:
+        """Return the end of the words that say something of a phrase itself, and not of a thing in its restrictions."""
+        last = phrase.predicates[-1]
+        inner = [argument for argument in last.arguments if argument.predicates]
+        return min((a.predicates[0].span[0] for a in inner), default=phrase.span[1])
 
     def _describe(self, entity: Entity, phrase: NounPhrase, new: bool) -> None:
         plain = replace(self.how, positive=True, weight=1.0, optional=False, quantifier=None, alternative=None)

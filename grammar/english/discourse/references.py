@@ -28,7 +28,7 @@ from deixis.ontology.inflection import singulars
 MAX_COUNTED = 1000
 """Largest number of a noun phrase that is read as so many things."""
 NAMED = re.compile(
-    r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my)\b)[a-z]+\s+)*?[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
+    r"\b(?:the|a|an|your|my|[A-Z]\w+['\u2019]s)\s+((?:(?!(?:the|a|an|your|my|is|are|was|were)\b)[a-z]+\s+)*?(?!(?:is|are|was|were)\b)[a-z]+)(?=\s+(?:and|then|so|,)|[,;:])",
     re.IGNORECASE,
 )
 """Noun phrase at the end of a clause."""
@@ -505,6 +505,9 @@ class References:
             )
             pair = pair or next((f for f in self.recent if f.subject is not None and f.others), None)
             last = self.recent[0].subject if self.recent else None
+            here = [entity for entity in self.named if entity is not besides]
+            if len(here) > 1:  # 'between the mug and the bowl, but closer to the latter'
+                return here[-2 if word == "former" else -1]
             if last is not None and not last.noun and len(last.members) > 1:
                 return last.members[0 if word == "former" else -1]
             return None if pair is None else pair.subject if word == "former" else pair.others[0]
@@ -581,9 +584,10 @@ class References:
             return self._new(replace(phrase, head=phrase.of.head, of=None), Role.THING)  # 'two of the beads'
         group = group or self.last_group(besides)
         further = phrase.determiner in ("a", "an", "another") and phrase.pronoun == "one"
+        second = relation is None and phrase.pronoun == "other" and phrase.determiner == "the" and not phrase.plural
         if further and group is not None and group.noun and phrase.of is None:
             return self._new(replace(phrase, head=group.noun, pronoun=None), group.role)  # 'a third one'
-        if further and phrase.of is None and (last := self._last_thing(besides)) is not None:
+        if (further or (second and group is None)) and phrase.of is None and (last := self._last_thing(besides)):
             return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)  # 'on it, a smaller one'
         if group is None or not group.members:
             return self._another_one(phrase, besides, relation)
@@ -634,6 +638,9 @@ class References:
         return self._new(replace(phrase, head=last.noun, pronoun=None), Role.THING)
 
     def _last_noun(self) -> str | None:
+        last = self.recent[0].subject if self.recent else None
+        if last is not None and last.noun and (last.itself.members or last.plural) and last.role is Role.THING:
+            return last.noun  # 'three buttons on the panel: the red one …'
         return self.entities[-1].noun if self.entities else None
 
     def _singular(self, relation: str | None, besides: Entity | None) -> Entity | None:
@@ -643,11 +650,19 @@ class References:
             and OPPOSITES[relation] == last.relation and last.subject is not besides
         ):  # fmt: skip
             return last.others[0]
+        listed = self.recent[-1] if self.recent else None
+        if (
+            listed is not None and listed.sentence == self.sentence and relation in OPPOSITES and listed.others
+            and OPPOSITES[relation] == listed.relation and besides is not None and listed.subject is not besides
+        ):  # fmt: skip
+            return listed.others[0]  # 'a fork to the left of the plate and a knife to the right of it'
         several: Entity | None = None
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others]:
                 if entity is None or entity is besides or entity.role in (Role.VIEWER, Role.PERSON, Role.ABSTRACT):
                     continue
+                if relation is not None and entity.itself.absent:
+                    continue  # 'no cushion lies on the bench, but there is a rug under it'
                 entity = entity.whole if entity.role is Role.PART and entity.whole is not None else entity
                 if entity.itself.members or entity is besides:
                     continue

@@ -41,8 +41,22 @@ SUPPORTS = frozenset(
         "table",
         "doily",
         "tile",
+        "tier",
+        "platform",
+        "plinth",
+        "pedestal",
+        "easel",
+        "trivet",
+        "peg",
+        "hook",
+        "nail",
+        "hanger",
     ]
 )
+
+
+_MUTUAL = {"next_to": "near", "against": "touching"}
+"""Relation of each to the others, by the relation to *each other*."""
 
 
 def _whole(entity: Entity) -> Entity:
@@ -73,7 +87,11 @@ class Relations(Mentions):
                 self._relate(subject, replace(predicate, arguments=(member,)), others)
             self.how = outer
             return
-        if subject.size == 2 and any(a.pronoun == "other" and a.determiner == "each" for a in predicate.arguments):
+        mutual = any(a.pronoun == "other" and a.determiner == "each" for a in predicate.arguments)
+        if mutual and _MUTUAL.get(relation, relation) + "_each_other" in COLLECTIVE:
+            self._add(f"{_MUTUAL.get(relation, relation)}_each_other", (subject,), ())
+            return
+        if mutual and subject.size == 2:
             first, second = subject.leaves()
             self._pair(first, relation, second, False)
             self._pair(second, relation, first, False)
@@ -121,7 +139,10 @@ class Relations(Mentions):
             self._add(name, (subject,), tuple(entities + more), value=value)
             return
         if predicate.degree is Degree.SUPERLATIVE and relation in ("near", "far"):
-            self._add("nearest" if relation == "near" else "farthest", (subject,), tuple(entities))
+            name = "nearest" if relation == "near" else "farthest"
+            person = next((e.noun for e in entities if e.role in (Role.VIEWER, Role.PERSON)), None)
+            ends = () if person is not None else tuple(entities)
+            self._add(name, (subject,), ends, value=person)
             return
         if regions and not entities:
             self._at_region(subject, relation, regions[0])
@@ -130,7 +151,7 @@ class Relations(Mentions):
             self._between(subject, entities)
             return
         single = subject.size == 1 and not subject.plural and not entities
-        if single and relation in ("near_each_other", "parallel_each_other", "nested"):
+        if single and relation in ("near_each_other", "parallel_each_other", "touching_each_other", "nested"):
             return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
             if subject.itself.members:
@@ -162,7 +183,7 @@ class Relations(Mentions):
         if other.role is Role.VIEWER or other.role is Role.PERSON:
             self._add(relation, (subject,), (), value=other.noun)
         elif other.role is Role.SURFACE or subject.role is Role.SURFACE:
-            if subject.role is not Role.SURFACE and relation in ("on", "inside"):
+            if subject.role is not Role.SURFACE and relation in ("on", "inside") and not swapped:
                 self._add("on", (subject,), ())
                 if not self.how.positive and not swapped:
                     self._is_not_here(subject)

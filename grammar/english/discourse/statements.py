@@ -119,7 +119,7 @@ class Statements(Relations):
             relation, value = ("nested" if value.startswith("nest") else "stacked"), None
         elif relation in ("upside_down", "empty", "open", "closed"):
             value = None
-        elif value is None or relation == "other" or value in NOT_STATES:
+        elif value is None or relation in ("other", "position") or value in NOT_STATES:
             return
         self._add(relation, (subject,), (), value=value)
 
@@ -258,7 +258,7 @@ class Statements(Relations):
         for phrase in predicate.arguments:
             thing = self._introduce(phrase, None, subject)
             if thing is not None:
-                relation = "inside" if last_word(thing.noun) in VESSELS - SUPPORTS else "on"
+                relation = "inside" if last_word(thing.noun) in (VESSELS | HOLDERS) - SUPPORTS else "on"
                 self.shared = (relation, [thing])
                 self._add(relation, (subject,), (thing,))
 

@@ -77,12 +77,14 @@ def surface_noun(sentences: tuple[Sentence, ...]) -> str | None:
             for phrase in _own_and_members(clause.subject):
                 if last_word(phrase.head) in SPREAD and last_word(phrase.head) not in objects:
                     counts[last_word(phrase.head)] = counts.get(last_word(phrase.head), 0) + 1
+            for predicate in clause.predicates:
+                objects |= set(_placed(predicate))
     counts = {noun: number for noun, number in counts.items() if noun not in objects}
     return max(counts, key=lambda noun: counts[noun]) if counts else None
 
 
 def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
-    for argument in predicate.arguments:
+    for argument in predicate.arguments if not predicate.reversed else ():
         of_place = predicate.relation in PLACES or argument.of is not None
         if predicate.relation not in OF_SURFACES and not of_place:
             continue
@@ -93,6 +95,16 @@ def _count_surfaces(predicate: Predicate, counts: dict[str, int]) -> None:
             if noun in SURFACES and phrase.determiner not in ("a", "an") and not told_apart and not held:
                 counts[noun] = counts.get(noun, 0) + (3 if of_place else 1)
         _count_restrictions(argument, counts)
+
+
+def _placed(predicate: Predicate) -> Iterator[str]:
+    """Yield the nouns of surfaces that have a place beside a thing: *on the tray behind the board*."""
+    for argument in predicate.arguments:
+        for own in argument.predicates:
+            beside = own.relation in ("left", "right", "behind", "in_front", "next_to") and not own.reversed
+            outer = [last_word(a.head) for a in own.arguments if a.head]
+            if beside and outer and not any(noun in SURFACES | SURROUNDINGS for noun in outer):
+                yield last_word(argument.head)
 
 
 def _count_restrictions(phrase: NounPhrase | None, counts: dict[str, int]) -> None:

@@ -36,7 +36,7 @@ position: frontmost, rearmost, backmost, extreme
 state: open, opened, closed, shut, empty, full, broken, clean, dirty, wet, dry, lit, unlit, new, old, older, newer
 state: folded, unfolded, rolled, made, unmade, messy, tidy, neat, upright, vertical, horizontal, diagonal, tilted
 state: upside-down, inverted, nested, stacked, empty-handed, visible, hidden, half-open, half-closed, unopened, bare
-state: crooked, rotated, slanted, sideways, freestanding, standalone, free-standing, stand-alone, loose, lone
+state: dead, crooked, rotated, slanted, sideways, freestanding, standalone, free-standing, stand-alone, loose, lone
 state: framed, padded, cushioned, striped, patterned, checkered, plaid, floral, solid, plain, dotted, worn, used, unused
 state: uncovered, parallel, perpendicular, stationary, askew, slim-line, ajar, level
 count: few, fewer, fewest
@@ -151,6 +151,7 @@ def degree_of(word: str) -> tuple[str, Degree]:
                 if (
                     len(lemma) > 1
                     and lemma in known
+                    and (lemma != stem[:-1] + "y" or stem.endswith("i"))  # 'happier', and not 'grater' of 'gray'
                     and not (lemma == stem[:-1] and stem[-1:] not in (*stem[-2:-1], "i"))
                 ):
                     return lemma, degree

@@ -438,6 +438,8 @@ HOLDERS = frozenset(
     [
         "drawer", "pocket", "compartment", "holder", "rack", "basket", "bin", "slot", "pouch", "sleeve", "holster",
         "crate", "chest", "cupboard", "folder", "envelope", "block", "kit", "hole", "satchel", "purse", "suitcase",
+        "glovebox", "locker", "wardrobe", "closet", "fridge", "freezer", "safe", "sack", "wallet", "quiver", "sheath",
+        "scabbard", "cage", "hutch", "niche", "alcove", "pigeonhole", "backpack", "rucksack", "handbag", "briefcase",
     ]
 )  # fmt: skip
 """Nouns of things, other than vessels, that things are inside of."""

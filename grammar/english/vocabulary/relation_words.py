@@ -22,6 +22,12 @@ NOT_PLACES = word_set(
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 
+NEVER_PLACES = word_set(
+    "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
+    " misapprehension spell treaty name circumstance principle nature rumour rumor honour honor behalf occasion"
+)
+"""Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""
+
 # Relation words that take an object. The key is the relation's name in the ontology; '-' is no spatial relation.
 _PREPOSITIONS = """
 material: made of, made out of, made from, made up of, built of, built from, composed of, consisting of
@@ -31,6 +37,7 @@ inside: in, inside, inside of, within, into, in side of
 at: at
 by: by
 near: near, near to, close to, nearby, around by, in the vicinity of, not far from, close by, near by, closed to
+near: within reach of, within easy reach of, a stone 's throw from, hard by
 next_to: next to, beside, adjacent to, alongside, along side, along side of, right by, aside, besides, nex to, next
 next_to: to the side of, near to next
 each_side: either side of, to either side of, on either side of, on each side of, on both sides of
@@ -42,7 +49,7 @@ behind: from behind, out from behind, on the far side of, the far side of
 -: clockwise from, counterclockwise from, anticlockwise from, clockwise of
 far: far from, far away from, away from, well away from, as far as possible from, as far away as possible from
 near: as close as possible to, as near as possible to
-far: apart from, clear of, well clear of
+far: apart from, clear of, well clear of, out of reach of, well back from, back from
 in_front: in front of, before, infront of, ahead of, in the front of, at the front of, in from of, in front
 behind: behind, behind of, in back of, beyond, past, in the back of, at the back of, to the back of, in rear of
 above: above, over, up above
@@ -103,6 +110,11 @@ below: below, down below, underneath
 on: on top
 middle: centrally, dead centre, dead center, in dead centre, smack in the middle, bang in the middle, slap in the middle
 top: up top, up high, high up, at top
+left: at left
+right: at right
+middle: at centre, at center, in centre, in center, in middle
+behind: at rear, at back
+in_front: at front
 beside: beside
 inside: inside, within
 outside: outside

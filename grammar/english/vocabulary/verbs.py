@@ -27,6 +27,12 @@ posture: affix, hinge, anchor, glue, screw, bolt, secure
 posture: nail, tape, strap, wrap, lift, drag, raise, build builds built built building
 posture: fall falls fell fallen falling
 posture: pin, slot, lock, recess, lodge, sandwich, crowd, cram, carry, tip, shelve, park
+posture: draw draws drew drawn drawing, strew strews strewed strewn strewing, sweep sweeps swept swept sweeping
+posture: sink sinks sank sunk sinking, wind winds wound wound winding, drive drives drove driven driving, stash
+posture: weave weaves wove woven weaving
+posture: sling slings slung slung slinging, preset presets preset preset presetting
+posture: thrust thrusts thrust thrust thrusting, burn burns burnt burnt burning, loop, huddle, snuggle
+posture: deposit, follow, bundle, plop, plonk, dump, snap, hoist, lash, moor, plaster, paste, stencil
 lean: lean leans leant leant leaning, prop, lean
 face: face, stare, gaze, peer, view
 point: point, aim, direct, open
@@ -43,7 +49,7 @@ other: eat eats ate eaten eating, drink drinks drank drunk drinking, write write
 other: takes took taken, open, close, know knows knew known knowing, give gives gave given giving, call, work, happen
 other: lose loses lost lost losing, sell sells sold sold selling, buy buys bought bought buying
 other: steal steals stole stolen stealing, forget forgets forgot forgotten forgetting, send sends sent sent sending
-other: follow, shift, transfer, relocate, return
+other: listen, shift, transfer, relocate, return
 other: describe, mention, do does did done doing, set, share, watch, finish, order, ask, prefer, wait, notice
 other: see sees seen seen seeing
 other: ignore, disregard, skip, exclude
@@ -57,6 +63,7 @@ posture: slump, wait, live, hover, nestle, linger, lounge, encircle, ring, range
 posture: plant, heap, drizzle, spoon, load, thread, sprinkle, pack, feed, tilt, swing swings swung swung swinging, scoop
 posture: travel, trail, dot, ladle, step
 other: replace, provide, require, protect, prevent, receive, create, explain, reduce, avoid, knock
+other: rinse, tighten, loosen, unscrew, unplug, preheat, assemble, remove, repeat, mind, admire, inspect
 other: destroy, believe, weigh, bake, allow
 other: bind binds bound bound binding, upholster, gild, enamel, lacquer, varnish
 posture: clamp, clip, stow, slip, sew sews sewed sewn sewing, string strings strung strung stringing, lower
@@ -111,7 +118,8 @@ TRANSITIVE_RELATIONS = {
 """Relation of a transitive verb between its subject and its object, and whether they change places."""
 
 FIND_VERBS = word_set(
-    "choose find select pick locate identify click want take use get grab hit lift spot point search chose need"
+    "choose find select pick locate identify click want take use get grab hit lift spot point search chose need note"
+    " notice observe"
 )
 
 PUT_VERBS = word_set(
@@ -183,7 +191,7 @@ def verb_forms() -> dict[str, VerbForm]:
 
 
 _ONLY_PARTICIPLES = word_set(
-    "clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
+    "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""

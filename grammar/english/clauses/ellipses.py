@@ -1,0 +1,187 @@
+"""Fill in clauses that share words with the one before, and undo clefts: *so is the cup*, *one of which …*."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk
+from deixis.grammar.english.clauses.editing import cut, end_before, type_at
+from deixis.grammar.english.clauses.places import is_place
+from deixis.grammar.english.tree import NounPhrase
+from deixis.grammar.english.vocabulary.tables import word_set
+
+_LOOKING = word_set("look peek peep peer search check open lift")
+"""Verbs by which the reader is sent to a place."""
+_SEEING = word_set("see find notice discover spot")
+"""Verbs by which the reader is told what is there."""
+_NOT_THERE = word_set("facing pointing to at from through")
+"""Relations of *look* that do not say where the thing is that one sees."""
+
+
+def filled_in(chunks: list[Chunk]) -> list[Chunk]:
+    """Return the chunks of a sentence in which each clause has its own words.
+
+    Parameters
+    ----------
+    chunks
+        Chunks of a sentence in the order of the text.
+
+    Returns
+    -------
+    list of Chunk
+        Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
+    """
+    for rewrite in (
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions, _with_members_apart,
+        _with_contrasts_at_subjects,
+    ):  # fmt: skip
+        chunks = rewrite(chunks)
+    return chunks
+
+
+def _with_there_as_being(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *there stands a clock in the corner* as *there is a clock in the corner*."""
+    found = list(chunks)
+    for i in range(1, len(found)):
+        verb = found[i]
+        if found[i - 1].type == "THERE" and verb.type in ("VERB", "TVERB", "PUT") and verb.value.kind == "posture":
+            found[i] = Chunk("BE", verb.start, verb.end, replace(verb.value, lemma="be", kind="be"), verb.span)
+    return found
+
+
+def _with_repeated_predicates(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the ruler is in the case, and so is the pen* with what is said of the ruler said of the pen."""
+    for i, chunk in enumerate(chunks):
+        if chunk.type not in JOINT_TYPES | {"UNKNOWN"}:
+            continue
+        end = i
+        while type_at(chunks, end) in JOINT_TYPES - {"SUB"}:
+            end += 1
+        thing = _subject_of_ellipsis(chunks, end)
+        if thing is None:
+            continue
+        start = max((k + 1 for k in range(i) if chunks[k].type in JOINT_TYPES - {"COMMA"}), default=0)
+        verb = end_before(chunks[:i], start, FINITE)
+        if verb >= i or not {"PREP", "ADV"} & {c.type for c in chunks[verb:i]}:
+            continue
+        rest = end_before(chunks, end + 2, JOINT_TYPES)
+        return [*chunks[:i], cut(chunk), thing, *chunks[verb:i], *_with_repeated_predicates(chunks[rest:])]
+    return chunks
+
+
+def _subject_of_ellipsis(chunks: list[Chunk], at: int) -> Chunk | None:
+    """Return the subject of *so is X*, *as does X*, *neither is X* and *X is too*; None for another clause."""
+    first, types = chunks[at : at + 1], [type_at(chunks, at + k) for k in range(4)]
+    if not first or types[3] not in JOINT_TYPES | {""}:
+        return None
+    word = first[0].value if types[0] in ("UNKNOWN", "SUB", "ADVERB") else None
+    negated = types[0] == "NP" and first[0].value.pronoun == "neither" and not first[0].value.head
+    if types[1] in FINITE and types[2] == "NP" and (word in ("so", "as") or negated) and _is_auxiliary(chunks[at + 1]):
+        return chunks[at + 2]
+    too = types[:3] == ["NP", types[1], "ADVERB"] and chunks[at + 2].value in ("too", "as well")
+    return first[0] if too and types[1] in FINITE and _is_auxiliary(chunks[at + 1]) else None
+
+
+def _is_auxiliary(verb: Chunk) -> bool:
+    return verb.value.lemma in ("be", "do", "have") and verb.value.modal is None
+
+
+def _without_clefts(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *it is the fork that lies on the left* as *the fork lies on the left*."""
+    for i, chunk in enumerate(chunks):
+        begins = chunk.type == "NP" and chunk.value.pronoun == "it" and type_at(chunks, i - 1) in JOINT_TYPES | {""}
+        if not begins:
+            continue
+        rel = end_before(chunks, i, frozenset({"REL", "CUT", "SUB"}))
+        if type_at(chunks, i + 1) == "BE" and type_at(chunks, i + 2) == "PREP" and type_at(chunks, rel) == "REL":
+            seen = [type_at(chunks, rel + k) for k in (1, 2)] in (["NP", "TVERB"], ["NP", "VERB"])
+            if seen and chunks[i + 1].value.positive:  # 'it is on the dresser that you will find the corkscrew'
+                return [*chunks[:i], *chunks[i + 2 : rel], *chunks[rel + 1 :]]
+        if [type_at(chunks, i + k) for k in (1, 2)] != ["BE", "NP"]:
+            continue
+        be, thing = chunks[i + 1].value, chunks[i + 2].value
+        end = i + 3
+        while [type_at(chunks, end), type_at(chunks, end + 1)] == ["OF", "NP"]:
+            end += 2
+        definite = bool(thing.head) and (thing.determiner in ("the", "this", "that") or thing.owner is not None)
+        plain = be.positive and be.modal is None and not be.adverbs and not be.past
+        if definite and plain and type_at(chunks, end) == "REL" and type_at(chunks, end + 1) in FINITE:
+            return [*chunks[:i], *chunks[i + 2 : end], *_without_clefts(chunks[end + 1 :])]
+    return chunks
+
+
+def _with_contrasts_at_subjects(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *the fork lies on the left, not the knife* with what is denied beside the subject."""
+    for i in range(2, len(chunks)):
+        denied = chunks[i]
+        if denied.type != "NP" or not denied.value.negated or type_at(chunks, i + 1) not in JOINT_TYPES | {""}:
+            continue
+        at_place = (
+            type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and is_place(chunks[i - 2].value)
+        )
+        first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
+        told = type_at(chunks, first) == "NP" and type_at(chunks, first + 1) in FINITE
+        if at_place and told and denied.value.head and not is_place(denied.value):
+            comma = chunks[i - 1]
+            moved = [chunks[first], comma, denied, replace(comma), *chunks[first + 1 : i - 1]]
+            return [*chunks[:first], *moved, *chunks[i + 1 :]]
+    return chunks
+
+
+def _with_places_looked_at(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *if you look behind it, you will see a box* as *behind it, you will see a box*."""
+    for i, chunk in enumerate(chunks):
+        start = i - 1 if type_at(chunks, i - 1) == "SUB" else i
+        begins = (
+            chunk.type == "NP" and chunk.value.pronoun == "you" and type_at(chunks, start - 1) in JOINT_TYPES | {""}
+        )
+        if not begins or type_at(chunks, i + 1) not in ("VERB", "TVERB") or chunks[i + 1].value.lemma not in _LOOKING:
+            continue
+        if start < i and chunks[start].value not in ("if", "when", "once"):
+            continue
+        end = end_before(chunks, i + 2, JOINT_TYPES)
+        seen = end + 1 + (type_at(chunks, end + 1) == "ADVERB")
+        sees = [type_at(chunks, seen + k) for k in range(3)] == ["NP", "TVERB", "NP"] and (
+            chunks[seen].value.pronoun in ("you", "we", "one")
+        )
+        if type_at(chunks, end) not in ("COMMA", "AND") or not sees or chunks[seen + 1].value.lemma not in _SEEING:
+            continue
+        last = end_before(chunks, seen + 3, JOINT_TYPES)
+        if type_at(chunks, i + 2) == "PREP" and chunks[i + 2].value.preposition.relation not in _NOT_THERE:
+            if {"PREP", "ADV"} & {c.type for c in chunks[seen + 3 : last]}:
+                continue
+            comma = Chunk("COMMA", chunks[end].start, chunks[end].end, None, chunks[end].span)
+            return [*chunks[:start], *chunks[i + 2 : end], comma, *chunks[end + 1 :]]
+        if type_at(chunks, i + 2) == "NP" and "PREP" in [c.type for c in chunks[seen + 3 : last]]:
+            return [*chunks[:start], *chunks[i:end], cut(chunks[end]), *chunks[end + 1 :]]  # 'if you open the box, …'
+    return chunks
+
+
+def _with_exceptions(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *all but one clause* as two: *all spoons are in it except the ladle, which is in the sink*."""
+    for i, chunk in enumerate(chunks):
+        excepts = chunk.type == "PREP" and chunk.value.preposition.phrase in ("except", "except for", "besides")
+        if excepts and [type_at(chunks, i + k) for k in (1, 2, 3)] == ["NP", "COMMA", "REL"]:
+            return [*chunks[:i], cut(chunk), chunks[i + 1], *_with_exceptions(chunks[i + 3 :])]
+    return chunks
+
+
+def _with_members_apart(chunks: list[Chunk]) -> list[Chunk]:
+    """Return *three cups, one of which is on the tray* and *…, of whom the child sits …* as two clauses."""
+    found: list[Chunk] = []
+    at = 0
+    while at < len(chunks):
+        types = [type_at(chunks, at + k) for k in range(4)]
+        after = chunks[at + 1 : at + 4]
+        among = types[:3] == ["COMMA", "PREP", "NP"] and after[0].value.preposition.relation == "among"
+        if among and after[1].value.pronoun == "which":
+            found.append(cut(chunks[at]))
+            at += 3
+        elif types == ["COMMA", "NP", "OF", "NP"] and not after[0].value.head and after[2].value.pronoun == "which":
+            they = NounPhrase(after[2].span, pronoun="they", plural=True)
+            found += [cut(chunks[at]), *after[:2], replace(after[2], value=they)]
+            at += 4
+        else:
+            found.append(chunks[at])
+            at += 1
+    return found
