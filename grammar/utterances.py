@@ -16,7 +16,7 @@ from typing import Any
 
 from deixis.errors import DeixisError
 from deixis.grammar.files import read_text
-from deixis.ontology.strict_json import json_type, parse_json
+from deixis.ontology.strict_json import json_type, parse_json_line
 
 MAX_CHARACTERS = 5_000
 """Maximum number of characters of an utterance."""
@@ -141,9 +141,7 @@ def utterances_of_lines(lines: Iterable[str], file: str = "<utterances>") -> tup
     'anna'
     """
     found = [
-        _utterance(
-            parse_json(line, f"{file}:{number}", UtteranceError, no_number="is not a number"), f"{file}:{number}"
-        )
+        _utterance(parse_json_line(line, file, number, UtteranceError, "is not a number"), f"{file}:{number}")
         for number, line in enumerate(lines, 1)
         if line.strip()
     ]

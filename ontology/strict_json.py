@@ -80,6 +80,45 @@ def parse_json(text: str, file: str, error: type[DeixisError], no_number: str | 
         raise error(f"{file}: {wrong}") from wrong
 
 
+def parse_json_line(text: str, file: str, line: int, error: type[DeixisError], no_number: str | None) -> Any:
+    """Return the data in a line of a file of JSON lines.
+
+    Parameters
+    ----------
+    text
+        The line.
+    file
+        Name of the file, for messages.
+    line
+        Number of the line, from 1.
+    error, no_number
+        As for :func:`parse_json`.
+
+    Returns
+    -------
+    object
+        The parsed data.
+
+    Raises
+    ------
+    error
+        As :func:`parse_json` raises it, with the number of the line.
+
+    Examples
+    --------
+    >>> parse_json_line('{"x" 1}', "t.jsonl", 7, DeixisError, None)
+    Traceback (most recent call last):
+        ...
+    deixis.errors.DeixisError: t.jsonl:7:6: this is not valid JSON: a ':' is missing between the key and its value
+    """
+    try:
+        return parse_json(text, f"{file}:{line}", error, no_number)
+    except error as wrong:
+        if isinstance(wrong.__cause__, json.JSONDecodeError):  # it counts its own lines
+            return parse_json("\n" * (line - 1) + text.removeprefix("\ufeff"), file, error, no_number)
+        raise
+
+
 CLOSING = {"{": "}", "[": "]"}
 """Closing bracket of each opening one."""
 

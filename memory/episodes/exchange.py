@@ -25,11 +25,15 @@ from deixis.memory.folder import EPISODES, size
 from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.errors import FluentError
 from deixis.reasoning.temporal.fluent import Statement
+from deixis.text_files import read_text
 
 ENDING = ".episodes.json"
 """Ending of the exported files."""
 
 FORMAT, VERSION = "deixis-episodes", 1
+
+MAX_FILE_CHARACTERS = 2**30
+"""Maximum number of characters of an export that is imported."""
 
 IMPORT = "import"
 """Name under which the log of the blackboard records what was imported."""
@@ -132,10 +136,7 @@ def import_file(memory: Path, file: Path) -> int:
     RejectedWriteError
         If the blackboard refuses a fluent; nothing is changed then.
     """
-    try:
-        text = file.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ImportFormatError(f"{file}: not readable as UTF-8: {error}") from error
+    text = read_text(file, ImportFormatError, MAX_FILE_CHARACTERS)
     origin, _ = read_episodes(text, str(file))
     with Blackboard.open(memory, create=True, origin=origin) as board:
         return import_episodes(board, text, str(file))
@@ -192,7 +193,7 @@ def read_episodes(text: str, file: str) -> tuple[datetime, tuple[EpisodicFluent,
         if origin.tzinfo is None:
             raise ImportFormatError(f"{file}: the origin of times must have a time zone")
         return origin, tuple(map(_of_list, data["fluents"]))
-    except (ValueError, KeyError, TypeError, RecursionError, EpisodeError, FluentError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError, EpisodeError, FluentError) as error:
         if isinstance(error, ImportFormatError):
             raise
         raise ImportFormatError(f"{file}: not an export of episodes: {str(error).splitlines()[0]}") from error

@@ -169,7 +169,7 @@ class Subscription:
             try:
                 if self._concerns(change):
                     self._callback(change)
-            except Exception as error:  # whatever a module raises must not end the subscription
+            except BaseException as error:  # whatever a module raises, SystemExit too, must not end the subscription
                 first, self._error = self._error is None, f"{type(error).__name__}: {one_line(error)}"
                 self._called = None
                 if first:

@@ -186,6 +186,8 @@ def is_archive(file: Path) -> bool:
         False also for a file that cannot be read.
     """
     try:
+        if not file.is_file():
+            return False  # also for a pipe, which would be waited for
         with file.open("rb") as opened:
             return opened.read(len(_BEGINNING)) == _BEGINNING
     except OSError:

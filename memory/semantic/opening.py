@@ -16,7 +16,7 @@ import pyoxigraph as ox
 
 from deixis.memory import folder as files
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError, ReadOnlyMemoryError
-from deixis.memory.folder import FolderState, committed
+from deixis.memory.folder import EPISODES, FolderState, committed
 from deixis.memory.owner import OwnerLock, ReaderLock, begin_opening
 from deixis.memory.semantic.migrations import MIGRATIONS
 from deixis.memory.semantic.rdf import ledger
@@ -229,6 +229,8 @@ def _nothing(folder: Path, state: FolderState) -> str:
         return f"there is no memory at {folder}"
     if has_views(folder):
         return f"the memory at {folder} has views, but no lessons yet"
+    if (folder / EPISODES).is_dir():
+        return f"the memory at {folder} has episodes, but no lessons yet"
     return f"there is no memory yet in the empty folder {folder}"
 
 

@@ -159,7 +159,7 @@ def holes(view: View, on: NDArray[np.bool_], settings: NoteSettings) -> tuple[st
     # A cell is a hole if it has far fewer points than usual.
     usual = float(np.median(total[table]))
     empty = whole & (total < 0.2 * usual)
-    share = empty.sum() / whole.sum()
+    share = empty.sum() / max(int(whole.sum()), 1)  # an image of a few cells may have no whole one
     if share <= settings.max_hole_share:
         return ()
     return (f"{share:.0%} of the visible table has no depth: shiny, dark or transparent objects there are missing",)

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from deixis.ontology.strict_json import json_type, parse_json
+from deixis.ontology.strict_json import json_type, parse_json_line
 from deixis.perception.checks import shown
 from deixis.perception.errors import PointingError
 from deixis.perception.pointing.skeleton import MAX_REACH, Position, Skeleton
+from deixis.text_files import read_lines
 
 MAX_LINE_CHARACTERS = 100_000
 MAX_LINES = 1_000_000
@@ -53,16 +54,7 @@ def read_skeletons(path: str | Path) -> SkeletonFile:
     PointingError
         If the file cannot be read, or a line is not a skeleton; with file and line.
     """
-    source = Path(path)
-    try:
-        with source.open(encoding="utf-8-sig") as lines:
-            return skeletons_of_lines(lines, str(path))
-    except OSError as error:
-        raise PointingError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise PointingError(
-            f"{path}: the file is not UTF-8 (byte {error.start}); give a .skeleton.jsonl file"
-        ) from error
+    return skeletons_of_lines(read_lines(path, PointingError, MAX_LINE_CHARACTERS), str(path))
 
 
 def skeletons_of_lines(lines: Iterable[str], file: str = "<skeletons>") -> SkeletonFile:
@@ -103,7 +95,7 @@ def skeletons_of_lines(lines: Iterable[str], file: str = "<skeletons>") -> Skele
             raise PointingError(f"{where}: more than {MAX_LINES:,} lines; split the file")
         if len(line) > MAX_LINE_CHARACTERS:
             raise PointingError(f"{where}: more than {MAX_LINE_CHARACTERS:,} characters in a line; a line is one frame")
-        skeleton, complete = _skeleton(parse_json(line, where, PointingError, no_number=None), where)
+        skeleton, complete = _skeleton(parse_json_line(line, file, number, PointingError, no_number=None), where)
         if not complete:
             unseen.append(number)
         if skeleton.at <= last.get(skeleton.person, -math.inf):

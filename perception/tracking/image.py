@@ -77,7 +77,10 @@ def optics_of(cloud: PointCloud, sample: int = 2000) -> Optics | None:
     zero = np.zeros_like(rays)
     terms = np.concatenate([np.hstack([rays, zero, -at[:, :1] * rays]), np.hstack([zero, rays, -at[:, 1:] * rays])])
     matrix = np.linalg.eigh(terms.T @ terms)[1][:, 0].reshape(3, 3)
-    matrix /= np.linalg.norm(matrix[2])
+    scale = np.linalg.norm(matrix[2])
+    if scale == 0:  # all points at one place
+        return None
+    matrix /= scale
     matrix *= np.sign(np.median(rays @ matrix[2])) or 1.0
     matrix = np.array([[size, 0, middle[0]], [0, size, middle[1]], [0, 0, 1.0]]) @ matrix
     seen = rays @ matrix.T

@@ -21,9 +21,13 @@ from deixis.perception.clouds.cloud_file import read_cloud, write_cloud
 from deixis.perception.clouds.depth import Intrinsics
 from deixis.perception.errors import CloudError
 from deixis.perception.tracking.frame import Frame
+from deixis.text_files import read_lines
 
 TIMES = "times.csv"
 """Name of the file of a recorded sequence that holds the names of its clouds and their times."""
+
+MAX_TIMES_LINE = 10_000
+"""Maximum number of characters in a line of the file of times."""
 
 CLOUD_SUFFIXES = frozenset({".pcd", ".ply", ".npz", ".png", ".npy"})
 """Suffixes of files that a folder of clouds may contain; PNG and NPY are depth images, which need intrinsics."""
@@ -194,18 +198,22 @@ def recording(frames: Iterable[Frame], folder: str | Path) -> Iterator[Frame]:
         If the folder is not empty.
     """
     place = Path(folder)
-    place.mkdir(parents=True, exist_ok=True)
-    if any(place.iterdir()):
-        raise CloudError(f"{place}: the folder is not empty; give a new one")
-    with (place / TIMES).open("w", newline="", encoding="utf-8") as times:
-        writer = csv.writer(times)
-        writer.writerow(["file", "seconds"])
-        for number, frame in enumerate(frames):
-            name = f"{number:06d}.pcd"
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        if any(place.iterdir()):
+            raise CloudError(f"{place}: the folder is not empty; give a new one")
+        (place / TIMES).write_text("file,seconds\n", encoding="utf-8")
+    except OSError as error:
+        raise CloudError(f"{place}: cannot be written: {error.strerror}") from error
+    for number, frame in enumerate(frames):
+        name = f"{number:06d}.pcd"
+        try:
             write_cloud(place / name, frame.cloud)
-            writer.writerow([name, f"{frame.at:.6f}"])
-            times.flush()
-            yield frame
+            with (place / TIMES).open("a", encoding="utf-8") as times:
+                times.write(f"{name},{frame.at:.6f}\n")
+        except OSError as error:
+            raise CloudError(f"{place / name}: cannot be written: {error.strerror}") from error
+        yield frame
 
 
 def _times(file: Path) -> list[tuple[str, float]] | None:
@@ -213,19 +221,16 @@ def _times(file: Path) -> list[tuple[str, float]] | None:
     if not file.is_file():
         return None
     found = []
-    with file.open(newline="", encoding="utf-8") as lines:
-        for number, row in enumerate(csv.reader(lines), start=1):
-            if number == 1 and row[:1] == ["file"]:
-                continue
-            try:
-                name, at = row[0], float(row[1])
-            except (IndexError, ValueError):
-                raise CloudError(
-                    f"{file}:{number}: each line must be the name of a file and seconds, got {row}"
-                ) from None
-            if Path(name).name != name:
-                raise CloudError(f"{file}:{number}: the name of a file must have no folder, got '{name}'")
-            found.append((name, at))
+    for number, row in enumerate(csv.reader(read_lines(file, CloudError, MAX_TIMES_LINE)), start=1):
+        if number == 1 and row[:1] == ["file"]:
+            continue
+        try:
+            name, at = row[0], float(row[1])
+        except (IndexError, ValueError):
+            raise CloudError(f"{file}:{number}: each line must be the name of a file and seconds, got {row}") from None
+        if Path(name).name != name:
+            raise CloudError(f"{file}:{number}: the name of a file must have no folder, got '{name}'")
+        found.append((name, at))
     return found
 
 
@@ -302,7 +307,7 @@ class LatestFrames:
                         self.dropped += 1
                     self._queue.append(frame)
                     self._changed.notify()
-        except Exception as error:  # it is raised again where the frames are used
+        except BaseException as error:  # also SystemExit of a driver; it is raised again where the frames are used
             self._error = error
         finally:
             with self._changed:

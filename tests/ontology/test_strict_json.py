@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from deixis.errors import DeixisError
-from deixis.ontology.strict_json import parse_json
+from deixis.ontology.strict_json import parse_json, parse_json_line
 
 
 @pytest.mark.parametrize(
@@ -33,3 +33,10 @@ def test_a_mistake_comes_with_what_to_do(text: str, message: str) -> None:
         parse_json(text, "t.json", DeixisError, None)
     assert place in str(caught.value)
     assert f"this is not valid JSON: {what}" in str(caught.value)
+
+
+def test_mistakes_in_a_file_of_json_lines_have_their_line() -> None:
+    with pytest.raises(DeixisError, match=r"^t.jsonl:3:9: .* the '\{' at 3:4 is not closed"):
+        parse_json_line('\ufeff[1,{"a":', "t.jsonl", 3, DeixisError, None)
+    with pytest.raises(DeixisError, match=r"^t.jsonl:3: the JSON is nested too deeply"):
+        parse_json_line("[" * 50_000, "t.jsonl", 3, DeixisError, None)

@@ -96,6 +96,11 @@ class EpisodicFluent:
         """True if no upper bound of the finish is known, so that the fluent belongs to the current situation."""
         return math.isinf(self.finish.upper)
 
+    @property
+    def started_by(self) -> float:
+        """Latest time of the start in seconds; its earliest one where the latest is unknown, else -infinity."""
+        return self.start.upper if math.isfinite(self.start.upper) else self.start.lower
+
     def may_hold(self, start: float, end: float) -> bool:
         """Return whether the fluent may hold at some time of a window.
 

@@ -113,17 +113,13 @@ class StandardInput:
         except (OSError, ValueError) as error:
             raise DeixisError(f"standard input: cannot be read ({error})") from error
 
-
-def read_text(file: Path) -> str:
-    """Return the text of a file; raise DeixisError if it cannot be read or is not UTF-8."""
-    from deixis.errors import DeixisError
-
-    try:
-        return file.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise DeixisError(f"{file}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise DeixisError(f"{file}: the file is not UTF-8 (byte {error.start})") from error
+    def lines(self, most: int = MAX_ANSWER) -> Iterator[str]:
+        """Yield the lines until the end, each cut after ``most`` characters."""
+        while line := self.readline(most):
+            rest = line
+            while rest and not rest.endswith("\n"):
+                rest = self.readline(most)
+            yield line
 
 
 def note_change(memory: Path) -> None:

@@ -18,6 +18,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import to_fs_path
 from pygls.workspace import ServerTextPosition, ServerTextRange
 
+from deixis.errors import DeixisError
 from deixis.grammar.files import MAX_FILE_BYTES
 from deixis.lsp.completion import Role, completions
 from deixis.lsp.diagnostics import Problem, errors, warnings
@@ -27,6 +28,7 @@ from deixis.lsp.english import EnglishText, english_completions, english_fixes, 
 from deixis.lsp.hover import hover
 from deixis.lsp.symbols import mentions_of, symbols
 from deixis.ontology.graph.facts import Source
+from deixis.printable import shortened
 from deixis.version import VERSION
 
 PAUSE = 0.3
@@ -359,13 +361,48 @@ def _meet(first: types.Range, second: types.Range) -> bool:
 
 
 def _is_defect(record: logging.LogRecord) -> bool:
-    """Return False for the record of a request that was refused with a reason, such as a name that is taken."""
-    return record.exc_info is None or record.exc_info[0] is not JsonRpcInvalidParams
+    """Return False for the record of a request that was refused with a reason, or that ended with the input."""
+    kind = None if record.exc_info is None else record.exc_info[0]
+    return kind not in (JsonRpcInvalidParams, asyncio.CancelledError)
+
+
+class LineFormatter(logging.Formatter):
+    """Format of log entries as one line each: an error by its class and its message."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the first line of the message, and the error.
+
+        Parameters
+        ----------
+        record
+            The log entry.
+
+        Returns
+        -------
+        str
+            The line.
+        """
+        first, error = record.getMessage().partition("\n")[0], record.exc_info[1] if record.exc_info else None
+        return first if error is None else f"{first}: {type(error).__name__}: {shortened(' '.join(str(error).split()))}"
 
 
 def serve() -> None:
-    """Answer an editor on standard input and output until it closes them; print anything else on standard error."""
+    """Answer an editor on standard input and output until it closes them; print anything else on standard error.
+
+    Raises
+    ------
+    DeixisError
+        If standard input or output is closed.
+    """
+    if sys.stdin is None or sys.stdout is None:
+        raise DeixisError(
+            "the language server needs standard input and output, got a closed one; start it in an editor"
+        )
+    log = logging.StreamHandler(sys.stderr)
+    log.addFilter(_is_defect)
+    if not os.environ.get("DEIXIS_DEBUG"):
+        log.setFormatter(LineFormatter())
+    logging.basicConfig(handlers=[log], level=logging.WARNING)
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")  # pygls closes it at the end
     sys.stdout = sys.stderr
-    logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_defect)
     build_server().start_io(sys.stdin.buffer, answers)

@@ -14,8 +14,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from deixis.errors import DeixisError
 from deixis.memory.episodes.fluents.changes import Add, Change, Finish, Update
 from deixis.memory.episodes.fluents.episode import MAX_TEXT, EpisodicFluent, Origin, Source, episodic
+from deixis.ontology.strict_json import parse_json
 from deixis.perception.formats.scene_json import read_scene, scene_to_dict
 from deixis.perception.scene import Scene
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
@@ -393,8 +395,8 @@ class Diary:
         """
         nameless = {each.statement.subject for each in self.board.now(Pattern(predicate=NAMELESS))}
         found = self.board.now(Pattern(predicate=UNNAMED))
-        scenes = {each.statement.subject: read_scene(json.loads(each.statement.object or "{}")) for each in found}
-        return {id: (scene, id in nameless) for id, scene in scenes.items()}
+        scenes = {each.statement.subject: _scene_of(each.statement.object) for each in found}
+        return {id: (scene, id in nameless) for id, scene in scenes.items() if scene is not None}
 
     def named(self, tables: Collection[str], name: str | None, by: str, at: float, event: str | None) -> None:
         """Write that a person named the layout of tables, or gave no name for it.
@@ -434,4 +436,12 @@ class Diary:
 
 def _end(fluent: EpisodicFluent, at: float) -> Change:
     """Return the end of a fluent at a time, or shortly after its start if that is later."""
-    return Finish(fluent.id, max(at, fluent.start.upper + MOMENT))
+    return Finish(fluent.id, max(at, fluent.started_by + MOMENT))
+
+
+def _scene_of(text: str | None) -> Scene | None:
+    """Return the scene in a text; None for one that has no scene, as others may have written it."""
+    try:
+        return read_scene(parse_json(text or "", "<table>", DeixisError, no_number=None))
+    except DeixisError:
+        return None

@@ -437,7 +437,7 @@ def run_until_stopped(module: Module, board: Board, stopped: threading.Event, re
     while not stopped.is_set():
         try:
             return module.run(board, stopped)
-        except Exception as error:  # whatever a module raises, the robot goes on
+        except BaseException as error:  # whatever a module raises, SystemExit too, the robot goes on
             line = f"the module '{module.name}' failed and is run again: {type(error).__name__}: {one_line(error)}"
             if line != last_line:
                 report(line)

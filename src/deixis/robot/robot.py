@@ -317,6 +317,8 @@ class Robot:
         """Read the tables that an earlier run kept."""
         assert self._diary is not None
         for id, (scene, nameless) in self._diary.kept().items():
+            if len(scene.objects) < MIN_THINGS or len(scene.objects[0].minimum) < 3:
+                continue  # written by others
             index, kind = place_among(self.unnamed, scene, self.session.ontology, self.session.meaning())
             self.unnamed[index : index + 1] = [replace(kind.with_kept(id), asked=kind.asked or nameless)]
             self._resumed = scene

@@ -289,3 +289,43 @@ def test_any_mixture_of_control_characters(tmp_path: Path, pieces: list[str], co
     assert code in (0, 1, 2)
     assert "defect" not in err
     assert not UNSAFE.search(out + err)
+
+
+ENDLESS: list[list[object]] = [
+    ["refer", "--batch", "@"], ["refer", "the fork", SCENE, "--models", "@"], ["relation", "left", "--models", "@"],
+    ["query", "-f", "@"], ["learn-relation", "--descriptions", "@", "-o", "weights.json"], ["point", "@", SCENE],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", ENDLESS, ids=lambda command: " ".join(map(str, command[:2])))
+def test_an_endless_file_is_refused_at_once(command: list[object], tmp_path: Path) -> None:
+    memory = ["--memory", tmp_path / "m"] if command[0] == "query" else []
+    code, out, err = deixis(*["/dev/zero" if part == "@" else part for part in command], *memory)
+    assert (code, out) == (2, "") and "/dev/zero: this is not a regular file" in err
+
+
+@pytest.mark.parametrize("ending", [".ttl", ".zip", ".episodes.json"])
+def test_import_does_not_wait_for_a_pipe(ending: str, tmp_path: Path) -> None:
+    pipe = tmp_path / f"pipe{ending}"
+    os.mkfifo(pipe)
+    code, _, err = deixis("memory", "import", pipe, "--memory", tmp_path / "m")
+    assert code == 2 and "pipe" in err
+
+
+def test_a_batch_names_lines_that_are_nested_too_deeply(tmp_path: Path) -> None:
+    (tmp_path / "b.jsonl").write_text("[" * 50_000 + '\n{"text": "a", "text": "b"}\n', encoding="utf-8")
+    code, out, _ = deixis("refer", "--batch", tmp_path / "b.jsonl")
+    assert (
+        code == 0
+        and "line 1: not JSON: the JSON is nested too deeply" in out
+        and "line 2: not JSON: the key 'text' occurs twice" in out
+    )
+
+
+def test_a_check_of_episodes_out_of_time_is_undecided(tmp_path: Path) -> None:
+    memory = ["--memory", tmp_path]
+    assert deixis("episodes", "add", "t1", "left", "t2", "--start", 1, *memory)[0] == 0
+    code, out, err = deixis("episodes", "check", "--time-limit", 0, *memory)
+    assert code == 3 and out == "1 fluent: undecided\n" and "time limit reached before 1 of 1 fluents" in err
+    code, out, _ = deixis("episodes", "check", "--time-limit", 0, "--json", *memory)
+    assert code == 3 and json.loads(out)["consistent"] is None

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import signal
+import sys
 from collections.abc import Iterator
 
 import pytest
 from commands import deixis
 
+from deixis.__main__ import main
 from deixis.cli.interrupts import noting_interrupts
 
 
@@ -55,3 +57,14 @@ def test_where_the_signal_is_ignored_it_stays_so() -> None:
         signal.raise_signal(signal.SIGINT)
         assert not interrupted.is_set()
     assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+
+
+def test_an_interrupt_while_the_program_loads_is_quiet(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Interrupted:
+        def __getattr__(self, name: str) -> object:
+            raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "deixis.cli.app", Interrupted())
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 130

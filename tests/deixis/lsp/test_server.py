@@ -14,6 +14,8 @@ from typing import Any
 import pytest
 
 import deixis
+from deixis.errors import DeixisError
+from deixis.lsp.server import serve
 
 URI = "file:///tea.layout"
 TEXT = "layout tea seen from chair\n𐐀 left of plaet; left(knife, plate)\nfork lft of plate"
@@ -158,3 +160,36 @@ def test_a_text_in_english_is_checked_and_explained(client: Client) -> None:
     asked = {"textDocument": {"uri": uri}, "position": place(0, 5)}
     assert "`left(fork, plate)`" in client.ask("textDocument/hover", asked)["result"]["contents"]["value"]
     assert client.ask("textDocument/documentSymbol", asked)["result"] == []
+
+
+def message(body: object) -> bytes:
+    data = body if isinstance(body, bytes) else json.dumps(body).encode()
+    return b"Content-Length: %d\r\n\r\n%b" % (len(data), data)
+
+
+BROKEN = (
+    message({"jsonrpc": "2.0", "id": 1, "method": "textDocument/hover", "params": None}),
+    message({"jsonrpc": "2.0", "id": 2, "method": "initialize", "params": {"capabilities": {}, "processId": None}}),
+    message(b"{bad"), message([1, 2]), message({"jsonrpc": "2.0", "method": 5}),
+    message({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": {
+        "uri": URI, "languageId": "x", "version": 1, "text": TEXT}}}),
+    b"Content-Length: 500\r\n\r\n{",
+)  # fmt: skip
+
+
+def test_a_broken_client_gets_a_line_for_each_mistake() -> None:
+    environment = {**os.environ, "PYTHONPATH": str(Path(deixis.__file__).parents[1])}
+    command = [sys.executable, "-m", "deixis", "lsp"]
+    done = subprocess.run(
+        command, input=b"".join(BROKEN), capture_output=True, env=environment, timeout=60, check=False
+    )
+    told = done.stderr.decode()
+    assert done.returncode == 0 and b'"capabilities"' in done.stdout
+    assert "Traceback" not in told and 3 <= len(told.splitlines()) <= 12, told
+
+
+@pytest.mark.parametrize("stream", ["stdin", "stdout"])
+def test_a_closed_stream_is_an_error(stream: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, stream, None)
+    with pytest.raises(DeixisError, match="needs standard input and output"):
+        serve()

@@ -134,3 +134,18 @@ def test_subscribers_to_a_fluent_and_to_a_shape_get_only_those(tmp_path: Path) -
         assert other.wait(board.sequence, BUSY_SECONDS)
     assert of_fluent == ["add", "finish"]
     assert unsure == ["update f2", "delete f2"]
+
+
+def test_callback_that_exits_is_called_again() -> None:
+    calls: list[int] = []
+
+    def accept(change: Logged) -> None:
+        calls.append(change.sequence)
+        if len(calls) == 1:
+            raise SystemExit(3)
+
+    with Blackboard.transient() as board:
+        subscriber = board.subscribe("exits", Pattern(), accept)
+        board.write(Add(on("f1")), by="test")
+        assert subscriber.wait(board.sequence, BUSY_SECONDS)
+    assert calls == [1, 1]

@@ -17,6 +17,7 @@ from timing import processor_time_below
 from deixis.errors import DeixisError
 from deixis.memory import folder as files
 from deixis.memory import owner as disk
+from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.errors import MemoryBusyError, MemoryFormatError, MemoryWriteError
 from deixis.memory.folder import VERSION
 from deixis.memory.semantic import opening
@@ -304,3 +305,9 @@ def test_opening_is_quick(kept: Path) -> None:
     SemanticMemory.open(kept).close()
     with processor_time_below(2):
         SemanticMemory.open(kept).close()
+
+
+def test_a_memory_of_episodes_alone_is_not_called_empty(tmp_path: Path) -> None:
+    Blackboard.open(tmp_path, create=True).close()
+    with pytest.raises(MemoryFormatError, match="has episodes, but no lessons yet"):
+        SemanticMemory.open(tmp_path)

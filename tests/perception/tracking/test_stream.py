@@ -102,3 +102,34 @@ def test_error_of_a_source_reaches_the_reader() -> None:
 
     with pytest.raises(CloudError, match="unplugged"):
         list(LatestFrames(Camera()).frames())
+
+
+@pytest.mark.parametrize(
+    ("data", "what"),
+    [
+        (b"file,seconds\n\xff\xfe.pcd,1\n", "not UTF-8"),
+        (b"file,seconds\n" + b"a" * 200_000 + b",1\n", "times.csv:2: a"),
+    ],
+    ids=["bytes", "long line"],
+)
+def test_times_that_are_no_text_are_refused(tmp_path: Path, data: bytes, what: str) -> None:
+    (tmp_path / "a.pcd").touch()
+    (tmp_path / "times.csv").write_bytes(data)
+    with pytest.raises(CloudError, match=what):
+        list(FolderSource(tmp_path).frames())
+
+
+def test_times_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    write_cloud(tmp_path / "a.pcd", cloud(1))
+    (tmp_path / "times.csv").write_text("\ufefffile,seconds\na.pcd,2\n", encoding="utf-8")
+    assert [frame.at for frame in FolderSource(tmp_path).frames()] == [2.0]
+
+
+def test_driver_that_exits_is_an_error_of_the_source() -> None:
+    class Exits:
+        def frames(self) -> Iterator[Frame]:
+            yield from frames(1)
+            raise SystemExit(5)
+
+    with pytest.raises(SystemExit):
+        list(LatestFrames(Exits()).frames())

@@ -15,6 +15,7 @@ from deixis.perception.detection.detect import detect
 from deixis.perception.errors import CloudError
 from deixis.perception.simulator.films.motion import Action, Bring, FilmedFrame, Move, PassOver, Rest, TakeAway, film
 from deixis.perception.simulator.laying import Placement
+from deixis.perception.tracking.image import optics_of
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.thing import Situation
 from deixis.perception.tracking.tracker import Tracker
@@ -170,3 +171,7 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
         gc.collect()
         assert [each() is None for each in kept] == [False, True], "the pipeline of the mug is freed with its memory"
         assert np.unique(tracker.owners()).tolist() == [-1, 0]
+
+
+def test_image_of_a_single_place_has_no_optics() -> None:
+    assert optics_of(PointCloud(np.tile(np.float32([0, 0, 1]), (768, 1)), organised=(24, 32))) is None

@@ -94,9 +94,9 @@ def learn_relation(
 
 def _learn_reference(descriptions: Path, out: Path | None, strength: float, as_json: bool) -> None:
     """Learn the weights of ``deixis refer`` from a file of descriptions, and write them to ``out``."""
-    from deixis.cli.output import read_text
     from deixis.errors import DeixisError
     from deixis.report.descriptions.relation import learned_reference_lines, learned_reference_to_dict
+    from deixis.text_files import read_text
     from deixis.workflows.descriptions.learn_reference import learn_reference, write_reference
 
     if out is None:

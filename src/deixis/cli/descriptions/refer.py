@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -154,25 +153,15 @@ def _remember(text: str, scene: Scene, picked: str, memory: Path) -> None:
 
 
 def _answer_lines(file: str, until: float, model: Model | None) -> None:
-    from deixis.cli.output import read_text
+    from deixis.text_files import read_text
     from deixis.workflows.descriptions.refer import refer_batch
 
     if file == "-":
-        lines, folder = _standard_lines(), Path()
+        lines, folder = StandardInput().lines(MAX_LINE), Path()
     else:
-        lines, folder = iter(read_text(Path(file)).splitlines()), Path(file).parent
+        lines, folder = iter(read_text(file).splitlines()), Path(file).parent
     for answer in refer_batch(lines, folder, until, model):
         print_line(json.dumps(answer, ensure_ascii=False))
-
-
-def _standard_lines() -> Iterator[str]:
-    """Yield the lines of standard input; a longer line is cut after MAX_LINE characters."""
-    source = StandardInput()
-    while line := source.readline(MAX_LINE):
-        rest = line
-        while rest and not rest.endswith("\n"):
-            rest = source.readline(MAX_LINE)
-        yield line
 
 
 def _terminal(out: object) -> Answerer:

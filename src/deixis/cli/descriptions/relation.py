@@ -78,13 +78,13 @@ def read_models(path: Path | None) -> RelationModels:
     from deixis.errors import OntologyError
     from deixis.ontology.models.relation_triples import models_from_turtle
     from deixis.reasoning.grounding.evidence.words.meaning import shipped_models
+    from deixis.text_files import read_text
 
     if path is None:
         return shipped_models()
+    text = read_text(path, OntologyError)
     try:
-        found = models_from_turtle(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise OntologyError(f"{path}: cannot be read: {error.strerror}") from error
+        found = models_from_turtle(text)
     except ValueError as error:
         raise OntologyError(f"{path}: {error}") from error
     if not found:

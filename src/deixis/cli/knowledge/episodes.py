@@ -13,6 +13,7 @@ import typer
 from deixis.answers import count
 from deixis.cli.common import (
     NO,
+    UNDECIDED,
     AsJson,
     MemoryDir,
     print_json,
@@ -40,6 +41,10 @@ Triple = Annotated[
 Window = Annotated[
     tuple[float, float] | None, typer.Option(metavar="FROM TO", help="Only what may hold in this time, in seconds.")
 ]
+
+
+CONSISTENCY = {True: "consistent", False: "contradictory", None: "undecided"}
+"""Wording of the result of a check."""
 
 
 class OriginName(StrEnum):
@@ -262,7 +267,7 @@ def check(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Check whether fluents can all be true, in time, in space and by the ontology; exit 1 if not."""
+    """Check whether fluents can all be true, in time, in space and by the ontology; exit 1 if not, 3 if undecided."""
     from deixis.ontology.tbox import default_ontology
     from deixis.workflows.knowledge.episodes import check_consistency
 
@@ -270,16 +275,18 @@ def check(
         fluents = board.holding(_pattern(*pattern), *(window or (None, None)))
     found = check_consistency(fluents, default_ontology(), time_limit, logical=ontology)
     conflicts = {"time": found.temporal, "space": found.spatial, "ontology": found.logical}
+    undecided = found.consistent and bool(found.undecided)
+    consistent = None if undecided else found.consistent
     if as_json:
         lists = {**conflicts, "undecided": found.undecided}
-        print_json({"consistent": found.consistent, "fluents": len(fluents), **{k: list(v) for k, v in lists.items()}})
+        print_json({"consistent": consistent, "fluents": len(fluents), **{k: list(v) for k, v in lists.items()}})
     else:
         print_lines(f"{kind}: {line}" for kind, lines in conflicts.items() for line in lines)
         for note in found.undecided:
             print_note(note)
-        print_line(f"{count(len(fluents), 'fluent')}: {'consistent' if found.consistent else 'contradictory'}")
-    if not found.consistent:
-        raise typer.Exit(NO)
+        print_line(f"{count(len(fluents), 'fluent')}: {CONSISTENCY[consistent]}")
+    if consistent is not True:
+        raise typer.Exit(UNDECIDED if undecided else NO)
 
 
 @episodes_app.command("classes")

@@ -43,9 +43,9 @@ def query(
     as_json: AsJson = False,
 ) -> None:
     """Run a SPARQL query over the memory; if it reaches a limit, exit 3 and print no rows."""
-    from deixis.cli.output import read_text
     from deixis.errors import DeixisError
     from deixis.session import Session
+    from deixis.text_files import read_text
 
     if (sparql is None) == (file is None):
         raise DeixisError("query: give either a query or a file with -f")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from deixis.cli.common import AsJson, MemoryDir, print_json, print_line, print_written
+from deixis.cli.output import StandardInput
 from deixis.errors import DeixisError
 
 if TYPE_CHECKING:
@@ -75,12 +76,15 @@ def run(
     In a terminal, type to talk to it: names, layouts and questions.
     """
     from deixis.memory.on_demand import default_memory
-    from deixis.plots.live_story import write_story
+    from deixis.plots.figure import require_picture
+    from deixis.plots.live_story import OVERVIEW, write_story
     from deixis.robot.live.run import live_robot
     from deixis.robot.live.story import StorySettings
 
     settings = StorySettings(source, layout, seed, rate, _text(intrinsics), grows, _text(words), live, camera)
-    view = not (plain or as_json) and sys.stdout.isatty()
+    view = not (plain or as_json) and sys.stdout is not None and sys.stdout.isatty()
+    if story is not None:
+        require_picture(story / OVERVIEW)  # before the story, which happens once
     lines: deque[str] = deque(maxlen=SHOWN_LINES)
 
     def report(line: str) -> None:
@@ -90,7 +94,7 @@ def run(
 
     with live_robot(memory or default_memory(), settings, report, processes) as robot:
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
-        if sys.stdin.isatty():
+        if sys.stdin is not None and sys.stdin.isatty():
             typing.start()
         with _watched(robot, lines) if view else nullcontext():
             robot.wait()
@@ -126,13 +130,16 @@ def _text(path: Path | None) -> str | None:
 
 
 def _listen(robot: LiveRobot, report: Callable[[str], None]) -> None:
-    """Tell the robot each line that is typed."""
-    for line in sys.stdin:
-        if line.strip():
-            try:
-                robot.says(line.strip())
-            except DeixisError as error:
-                report(str(error))
+    """Tell the robot each line that is typed, until the input ends or cannot be read."""
+    try:
+        for line in StandardInput().lines():
+            if line.strip():
+                try:
+                    robot.says(line.strip())
+                except DeixisError as error:
+                    report(str(error))
+    except DeixisError as error:
+        report(str(error))
 
 
 @contextmanager

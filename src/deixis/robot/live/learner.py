@@ -132,6 +132,10 @@ class Learner(Module):
 
     def _react(self, change: Logged, fluent: EpisodicFluent, board: Board) -> None:
         """Decide what follows from a change."""
+        if fluent.statement.predicate == ENDED:  # the story ends also where the memory cannot be opened
+            if change.kind == "add":
+                self._add((self.name, DONE, "story"), fluent.start.lower, board)
+            return
         if self._robot is None:  # the memory is opened when it is first needed
             self._robot = Robot(self._memory, board)
         statement, at = fluent.statement, fluent.start.lower
@@ -148,8 +152,6 @@ class Learner(Module):
             self._shown(fluent, board)
         elif statement.predicate == SAID and statement.object is not None:
             self._heard(statement.object, fluent, board)
-        elif statement.predicate == ENDED:
-            self._add((self.name, DONE, "story"), at, board)
 
     def _look(self, file: Path, at: float, board: Board) -> None:
         if not file.exists():

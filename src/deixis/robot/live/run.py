@@ -14,7 +14,7 @@ from deixis.memory.episodes.experiences import put_episode
 from deixis.memory.episodes.fluents.changes import Add, Finish, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.printable import printed_line
-from deixis.reasoning.temporal.bounds import Bounds
+from deixis.reasoning.temporal.bounds import MAX_SECONDS, Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE, SAYS
@@ -256,7 +256,7 @@ def _end_earlier(board: Blackboard) -> None:
     """End what an earlier run left as the present: it ceased to hold at an unknown time before now."""
     now = board.seconds()
     left = [each for predicate in STATES for each in board.now(Pattern(predicate=predicate))]
-    ends = [(each.id, each.start.upper + MOMENT) for each in left]
+    ends = [(each.id, min(each.started_by + MOMENT, MAX_SECONDS)) for each in left]
     changes = [Finish(id, Bounds(first, max(now, first))) for id, first in ends]
     if changes:
         board.write(*changes, by="robot")

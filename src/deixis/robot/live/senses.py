@@ -187,7 +187,7 @@ class Senses(Module):
             writer.finish()
         except MemoryWriteError:
             raise  # the runtime reports it, and calls run() again, which goes on with the next event
-        except Exception as error:  # the story would begin again, which would only repeat the error
+        except BaseException as error:  # the story would begin again, which would only repeat the error
             writer.fail(_reason(error))
 
 
@@ -639,7 +639,7 @@ def _printable(utterance: Utterance) -> Utterance:
     return replace(utterance, text=text, speaker=speaker)
 
 
-def _reason(error: Exception) -> str:
+def _reason(error: BaseException) -> str:
     return str(error) if isinstance(error, DeixisError) else f"{type(error).__name__}: {error}"
 
 

@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError, OntologyError
+from deixis.ontology.strict_json import parse_json
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import DescriptionError, SettingError
+from deixis.text_files import read_text
 from deixis.workflows.descriptions.refer import (
     line_of_batch,
     model_with,
@@ -180,12 +182,11 @@ def read_reference(file: Path) -> Model:
     OntologyError
         If the file cannot be read or is not a file of weights.
     """
+    text = read_text(file, OntologyError)
     try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise OntologyError(f"{file}: cannot be read: {error.strerror}") from error
-    except (ValueError, RecursionError) as error:
-        raise OntologyError(f"{file}: not JSON: {error}; 'deixis learn-relation --descriptions' writes one") from error
+        data = parse_json(text, str(file), OntologyError, no_number=None)
+    except OntologyError as error:
+        raise OntologyError(f"{error}; 'deixis learn-relation --descriptions' writes such a file") from error
     return model_with(_weights(data, file))
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.errors import DeixisError
+from deixis.ontology.strict_json import json_mistake, parse_json
 from deixis.perception.scene import Scene
 from deixis.reasoning.errors import DescriptionError
 from deixis.reasoning.grounding.reference.answer import DECIDED, Frame, Question, Reference, Turn
@@ -242,9 +243,12 @@ def line_of_batch(line: str, required: Sequence[str], others: Sequence[str] = ()
     """
     form = ", ".join(f'"{key}": …' for key in required)
     try:
-        data = json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise DescriptionError(f"not JSON: {error}; write {{{form}}}") from error
+        data = parse_json(line, "", DescriptionError, no_number=None)
+    except DescriptionError as error:
+        wrong, reason = error.__cause__, str(error).removeprefix(": ")
+        if isinstance(wrong, json.JSONDecodeError):
+            reason = f"column {wrong.colno}: {json_mistake(wrong.doc, wrong.pos, wrong.msg)}"
+        raise DescriptionError(f"not JSON: {reason}; write {{{form}}}") from error
     if not isinstance(data, dict) or not all(isinstance(data.get(key), str) for key in required):
         texts = " and ".join([", ".join(map(repr, required[:-1])), repr(required[-1])])
         raise DescriptionError(f"a line must be an object with the texts {texts}; write {{{form}}}")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Delete
 from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
 from deixis.ontology.rdf.triples import content_key
+from deixis.ontology.strict_json import parse_json
 from deixis.perception.scene import Scene
 from deixis.reasoning.attributes.attribute import MEASURES, Attribute, Example
 from deixis.reasoning.errors import DescriptionError
@@ -25,6 +27,9 @@ from deixis.workflows.descriptions.attributes import examples_of, new_adjectives
 
 CALLED, NOT_CALLED = "calledAs", "notCalledAs"
 """Predicates of things that a word was used of, and of those that it was not used of."""
+
+LARGEST = 1e30
+"""Bound of a measure; a larger one was not written by :func:`remember_sentence`."""
 
 
 def remember_sentence(board: Blackboard, text: str, scene: Scene, target: str, by: str = "user") -> str:
@@ -93,11 +98,47 @@ def remembered_attributes(board: Blackboard) -> dict[str, Attribute]:
     found: dict[str, list[Example]] = {}
     for predicate, positive in ((CALLED, True), (NOT_CALLED, False)):
         for fluent in board.now(Pattern(predicate=predicate)):
-            entry = json.loads(fluent.statement.object or "{}")
-            measures = np.array([np.nan if value is None else value for value in entry["measures"]], dtype=np.float64)
-            if len(measures) == len(MEASURES):
-                found.setdefault(entry["word"], []).append(Example(measures, entry["label"], positive))
+            entry = entry_of(fluent.statement.object)
+            if entry is not None:
+                measures = [np.nan if value is None else value for value in entry["measures"]]
+                example = Example(np.array(measures, dtype=np.float64), entry["label"], positive)
+                found.setdefault(entry["word"], []).append(example)
     return {word: Attribute(word, tuple(examples)) for word, examples in found.items()}
+
+
+def entry_of(text: str | None) -> dict[str, Any] | None:
+    """Return what an object of ``calledAs`` or ``notCalledAs`` says.
+
+    Anyone may write to the blackboard, so a text may be anything.
+
+    Parameters
+    ----------
+    text
+        The object.
+
+    Returns
+    -------
+    dict or None
+        The keys ``word``, ``label``, ``measures`` and ``text``; None for a text that is not such an entry.
+
+    Examples
+    --------
+    >>> entry_of("shiny") is None
+    True
+    """
+    try:
+        entry = parse_json(text or "", "", DescriptionError, "is not a measure")
+    except DescriptionError:
+        return None
+    if not isinstance(entry, dict) or not isinstance(entry.get("measures"), list):
+        return None
+    measures = [value for value in entry["measures"] if value is not None]
+    fits = len(entry["measures"]) == len(MEASURES) and all(
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < LARGEST for value in measures
+    )
+    label = entry.get("label")
+    texts = isinstance(entry.get("word"), str) and isinstance(entry.get("text"), str)
+    return entry if fits and texts and (label is None or isinstance(label, str)) else None
 
 
 def forget_sentence(board: Blackboard, sentence: str, by: str = "user") -> None:

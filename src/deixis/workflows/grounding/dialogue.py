@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ import numpy as np
 
 from deixis.errors import DeixisError
 from deixis.ontology.relations.relation import nearest
+from deixis.ontology.strict_json import parse_json
 from deixis.printable import shortened, visible_line
 from deixis.reasoning.grounding.matching.problem import UNMATCHED
 from deixis.reasoning.grounding.questions.inquiry import ExchangeOutcome, Inquiry
@@ -27,6 +27,7 @@ from deixis.reasoning.grounding.questions.selection import (
     answers_of,
 )
 from deixis.reasoning.grounding.questions.situation import Situation, spoken
+from deixis.text_files import read_text
 
 _WORDS = {
     YES: ("yes", "y", "true"),
@@ -35,7 +36,7 @@ _WORDS = {
     ABSENT: ("absent", "none", "neither", "not there", "missing"),
 }
 
-MAX_ORACLE_BYTES = 2**20
+MAX_ORACLE_CHARACTERS = 2**20
 
 
 class OracleError(DeixisError, ValueError):
@@ -384,18 +385,9 @@ def read_oracle(file: str | Path, situation: Situation, out: TextIO) -> Oracle:
     OracleError
         If the file is malformed, names a thing that is not in the scene, or gives one thing to two objects.
     """
-    path = Path(file)
-    try:
-        if path.is_file() and path.stat().st_size > MAX_ORACLE_BYTES:
-            raise OracleError(f"{path}: a truth file must have at most {MAX_ORACLE_BYTES // 2**20} MiB")
-        data = json.loads(path.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise OracleError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise OracleError(f"{path}: the file is not UTF-8 (byte {error.start})") from error
-    except (ValueError, RecursionError) as error:
-        raise OracleError(f"{path}: not JSON: {error}") from error
-    return Oracle(checked_truth(data, str(path), situation), out)
+    text = read_text(file, OracleError, MAX_ORACLE_CHARACTERS)
+    data = parse_json(text, str(file), OracleError, no_number=None)
+    return Oracle(checked_truth(data, str(file), situation), out)
 
 
 def checked_truth(data: Any, where: str, situation: Situation) -> dict[str, str | None]:

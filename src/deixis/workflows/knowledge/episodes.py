@@ -25,6 +25,7 @@ from deixis.ontology.graph.graph import RelationGraph
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
+from deixis.reasoning.errors import LimitError
 from deixis.reasoning.temporal.errors import TemporalConflictError
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
 from deixis.reasoning.temporal.timeline import Timeline
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
     from deixis.ontology.lessons.types import LayoutConcept, Lesson
     from deixis.perception.scene import Scene
     from deixis.workflows.knowledge.learn import Learned, Recording
+
+TIMELINE = 100
+"""Number of fluents whose times are checked together."""
 
 MAX_SITUATIONS = 200
 """Maximum number of situations of an aggregate whose spatial consistency is checked."""
@@ -255,15 +259,20 @@ def check_consistency(
     """
     deadline = Deadline.after(time_limit)
     undecided: list[str] = []
-    temporal = tuple(_temporal(fluents, deadline))
+    temporal = tuple(_temporal(fluents, deadline, undecided))
     spatial = tuple(_spatial(fluents, ontology, deadline, undecided))
-    found = tuple(_logical(fluents, ontology, deadline)) if logical else ()
+    found = tuple(_logical(fluents, ontology, deadline, undecided)) if logical else ()
     return Consistency(temporal, spatial, found, tuple(undecided))
 
 
-def _temporal(fluents: Sequence[EpisodicFluent], deadline: Deadline) -> Iterator[str]:
-    timeline = Timeline()
-    for each in fluents:
+def _temporal(fluents: Sequence[EpisodicFluent], deadline: Deadline, undecided: list[str]) -> Iterator[str]:
+    for number, each in enumerate(fluents):
+        if deadline.passed:
+            left = len(fluents) - number
+            undecided.append(f"time limit reached before {left} of {len(fluents)} fluents were checked in time")
+            break
+        if number % TIMELINE == 0:  # the times of one fluent do not depend on those of another
+            timeline = Timeline()
         try:
             timeline.add(each.fluent, max(0.1, deadline.left))
         except TemporalConflictError as conflict:
@@ -299,21 +308,27 @@ def _spatial(
             continue
         seen.add(ids)
         if deadline.passed:
-            undecided.append("the time limit left situations unchecked in space")
+            undecided.append("time limit reached before all situations were checked in space")
             return
         facts = [
             Fact(each.statement.subject, (known[each.statement.predicate],), str(each.statement.object))
             for each in held
         ]
         names = sorted({name for fact in facts for name in (fact.subject, fact.object)})
-        implied = Implications(RelationGraph.from_facts(ontology.relations, names, facts), max(0.1, deadline.left))
-        conflict = None if implied.consistent else find_conflict(implied)
+        try:
+            implied = Implications(RelationGraph.from_facts(ontology.relations, names, facts), max(0.1, deadline.left))
+            conflict = None if implied.consistent else find_conflict(implied)
+        except LimitError as error:
+            undecided.append(f"at {time:g} s: {error}")
+            continue
         if conflict is not None:
             stated = ", ".join(map(str, conflict.facts))
             yield f"at {time:g} s: {conflict.reason} ({stated})"
 
 
-def _logical(fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: Deadline) -> Iterator[str]:
+def _logical(
+    fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: Deadline, undecided: list[str]
+) -> Iterator[str]:
     import pyoxigraph as ox
 
     from deixis.memory.episodes.rdf.observations import TYPE, statement_triple, thing_iri
@@ -332,7 +347,15 @@ def _logical(fluents: Sequence[EpisodicFluent], ontology: Ontology, deadline: De
         elif statement.object is not None and statement.predicate in ontology.relations:
             triples.add(statement_triple(statement))
     text = (ox.serialize(with_blank_nodes(triples), format=ox.RdfFormat.N_TRIPLES) or b"").decode("utf-8")
-    if not entail(text, LogicEngine.RL, max(0.1, deadline.left)).consistent:
+    if deadline.passed:
+        undecided.append("time limit reached before the fluents were checked by the ontology")
+        return
+    try:
+        consistent = entail(text, LogicEngine.RL, deadline.left).consistent
+    except LimitError:
+        undecided.append("time limit reached before the check of the fluents by the ontology was done")
+        return
+    if not consistent:
         kinds = "; ".join(sorted(str(each.statement) for each in fluents if each.statement.predicate == "isA"))
         yield f"the kinds and relations contradict the ontology: {kinds}"
 

@@ -32,7 +32,7 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.temporal.fluent import Statement
 from deixis.view_store import SETTLES, ViewStore, category_name
-from deixis.workflows.descriptions.remembered_attributes import CALLED, NOT_CALLED
+from deixis.workflows.descriptions.remembered_attributes import CALLED, NOT_CALLED, entry_of
 from deixis.workflows.knowledge.sentences import plain
 from deixis.workflows.layouts.read import as_scene
 
@@ -315,7 +315,8 @@ class _Chosen:
 def _words(statement: Statement) -> str:
     """Return the sentence that a fluent holds: what a person said, or what taught an adjective; else nothing."""
     if statement.predicate in (CALLED, NOT_CALLED):
-        return str(json.loads(statement.object or "{}").get("text", ""))
+        entry = entry_of(statement.object)
+        return "" if entry is None else str(entry["text"])
     return statement.object or "" if statement.predicate == "said" else ""
 
 

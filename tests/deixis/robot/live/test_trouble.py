@@ -21,12 +21,16 @@ from deixis.memory.errors import MemoryWriteError
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.tracking.frame import Frame
+from deixis.reasoning.temporal.bounds import Bounds
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.live.learner import NOT_SEEN, SAYS, Learner
+from deixis.robot.diary import UNNAMED
+from deixis.robot.live.learner import DONE, NOT_SEEN, SAYS, Learner
 from deixis.robot.live.outbox import Outbox
-from deixis.robot.live.senses import ENDED, NOTICED, SAID, TABLE, Senses
-from deixis.robot.live.story import Event, Story
+from deixis.robot.live.run import live_robot
+from deixis.robot.live.senses import DROPPED, ENDED, NOTICED, SAID, TABLE, Senses
+from deixis.robot.live.story import Event, Story, StorySettings
 from deixis.robot.modules import Module, ModuleBoard, run_until_stopped
+from deixis.robot.robot import Robot
 
 EMPTY = PointCloud(np.zeros((0, 3), np.float32))
 SEEN = Source(Origin.SEEN, "test")
@@ -232,3 +236,48 @@ def test_an_outbox_writes_each_change_once_in_order(steps: list[str]) -> None:
                 own.failures = 0
         assert [change.id for change in board.changes()] == added
     assert refused == 0
+
+
+@pytest.mark.parametrize("error", [SystemExit(5), KeyboardInterrupt(), ValueError("no camera")], ids=repr)
+def test_whatever_a_camera_raises_ends_the_story_with_it(tmp_path: Path, error: BaseException) -> None:
+    class Broken(StoryOf):
+        def frames(self) -> Iterator[Frame]:
+            raise error
+
+    with Blackboard.transient() as board:
+        take_in(Broken(tmp_path), board)
+        (reason,) = noted(board, ENDED)
+    assert str(reason).startswith(type(error).__name__)
+
+
+def test_the_story_is_done_also_where_the_memory_does_not_open(tmp_path: Path) -> None:
+    (tmp_path / "memory").write_text("not a memory")
+    learner = Learner(str(tmp_path / "memory"))
+    with Blackboard.transient() as board:
+        board.write(Add(episodic("f1", ("story", ENDED), start=1.0, source=SEEN)), by="test")
+        for change in list(board.changes()):
+            learner.changed(change, ModuleBoard(board, learner))
+        assert noted(board, DONE) == ["story"]
+
+
+@pytest.mark.parametrize("start", [Bounds(), Bounds(upper=1e9), Bounds(3.0)], ids=str)
+def test_a_run_begins_after_states_with_unknown_times(tmp_path: Path, start: Bounds) -> None:
+    left = episodic("f1", ("senses", DROPPED, "many"), start=start, source=SEEN)
+    with Blackboard.open(tmp_path / "memory", create=True) as board:
+        board.write(Add(left), by="test")
+    (tmp_path / "clouds").mkdir()
+    with live_robot(tmp_path / "memory", StorySettings(str(tmp_path / "clouds")), print) as robot:
+        assert robot.wait(BUSY_SECONDS) and robot.dropped == 0
+
+
+@pytest.mark.parametrize(
+    "text", [None, "{bad", "[]", "{}", "5", '{"objects": [{"id": "a", "min": [0, 0], "max": [1, 1]}]}']
+)
+def test_a_table_that_others_wrote_is_left_out(tmp_path: Path, text: str | None) -> None:
+    with Blackboard.open(tmp_path, create=True) as board:
+        statement = ("table1", UNNAMED) if text is None else ("table1", UNNAMED, text)
+        board.write(Add(episodic("f1", statement, start=1.0, source=SEEN)), by="test")
+        learner = Learner(str(tmp_path))
+        robot = Robot(tmp_path, ModuleBoard(board, learner))
+        assert robot.unnamed == []
+        robot.close()

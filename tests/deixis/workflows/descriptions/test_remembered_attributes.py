@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 from commands import deixis as run
+from episodic_fluents import SEEN
 
 import deixis
 from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.episodes.fluents.changes import Add
+from deixis.memory.episodes.fluents.episode import episodic
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.errors import DescriptionError
 from deixis.workflows.descriptions.remembered_attributes import (
@@ -89,3 +92,21 @@ def test_learned_adjective_counts_in_grounding_until_taken_back(tmp_path: Path) 
         session.unlearn(Selection(sentence="the blick cup"))
         again, plain = (each.ground(script, scene).matches["blick_cup"] for each in (session, deixis))
         assert again.probability == plain.probability
+
+
+OTHERS = [
+    None, "{bad", "[]", "{}", "NaN", '{"word": "blick"}', '{"word": "blick", "label": 5, "measures": [], "text": "x"}',
+    '{"word": "blick", "label": null, "measures": ["a", 1e999], "text": "x"}', "[" * 5000,
+]  # fmt: skip
+
+
+def test_what_others_wrote_teaches_no_adjective(tmp_path: Path) -> None:
+    with Blackboard.open(tmp_path, create=True) as board:
+        remember_sentence(board, "the blick one", table(0), "o0")
+        before = remembered_attributes(board)["blick"].examples
+        for number, text in enumerate(OTHERS):
+            statement = ("t1", "calledAs") if text is None else ("t1", "calledAs", text)
+            board.write(Add(episodic(f"x{number}", statement, start=0.0, source=SEEN)), by="test")
+        assert len(remembered_attributes(board)["blick"].examples) == len(before)
+    with deixis.Session(tmp_path) as session:
+        assert len(session.unlearn(Selection(sentence="the blick one")).fluents) == 3

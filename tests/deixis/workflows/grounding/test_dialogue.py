@@ -122,7 +122,7 @@ def test_the_oracle_knows_what_is_not_there() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        ("{", "not JSON"),
+        ("{", "not valid JSON"),
         ([], "a truth file must be a JSON object"),
         ({"cup": 1}, "a truth file must be a JSON object"),
         ({"cup": "o22"}, "which is not in the scene; did you mean 'o2'?"),

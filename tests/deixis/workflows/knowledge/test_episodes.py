@@ -20,6 +20,7 @@ from deixis.memory.journal import write_together
 from deixis.ontology.tbox import default_ontology
 from deixis.perception.scene import Scene
 from deixis.workflows.knowledge.episodes import (
+    Consistency,
     Consolidation,
     Memory,
     check_consistency,
@@ -176,3 +177,15 @@ def test_finished_experience_is_consolidated_in_the_background(board: Blackboard
 def test_a_place_without_a_box_is_no_thing_of_a_scene(text: str, corners: tuple[tuple[float, ...], ...] | None) -> None:
     scene = scene_of([episodic("p", ("t1", "at", text), start=0.0, source=SEEN)], 1.0)
     assert (None if scene is None else (scene.objects[0].minimum, scene.objects[0].maximum)) == corners
+
+
+def test_check_without_time_left_decides_nothing() -> None:
+    things = [episodic(f"f{n}", (f"t{n}", "left", "t0"), start=0.0, source=SEEN) for n in range(1, 4)]
+    found = check_consistency(things, default_ontology(), time_limit=0.0)
+    assert found.consistent and len(found.undecided) == 3
+    assert all(line.startswith("time limit reached before") for line in found.undecided)
+
+
+def test_more_fluents_than_one_network_has_are_checked() -> None:
+    many = [episodic(f"f{n}", (f"t{n}", "shines"), start=0.0, source=SEEN) for n in range(5000)]
+    assert check_consistency(many, default_ontology(), BUSY_SECONDS, logical=False) == Consistency()

@@ -1,0 +1,107 @@
+"""Read text files of users within limits: never a folder or a device, and never more than a stated size."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from deixis.errors import DeixisError
+
+MAX_CHARACTERS = 100_000_000
+"""Maximum number of characters of a text that is read as a whole."""
+
+MAX_LINE_CHARACTERS = 1_000_000
+"""Maximum number of characters of a line."""
+
+
+def read_text(file: str | Path, error: type[DeixisError] = DeixisError, most: int = MAX_CHARACTERS) -> str:
+    """Return the text of a UTF-8 file, without a byte order mark.
+
+    Parameters
+    ----------
+    file
+        The file, or a pipe.
+    error
+        Class of the errors.
+    most
+        Maximum number of characters.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Raises
+    ------
+    DeixisError
+        Of the class ``error``, if the file cannot be read, is a folder or a device, is too large, or is not UTF-8.
+    """
+    with _opened(file, error) as text:
+        found = text.read(most + 1)
+    if len(found) > most:
+        raise error(f"{file}: the file must have at most {most:,} characters; split it")
+    return found
+
+
+def read_lines(
+    file: str | Path, error: type[DeixisError] = DeixisError, most: int = MAX_LINE_CHARACTERS
+) -> Iterator[str]:
+    """Yield the lines of a UTF-8 file one by one, with their ends and without a byte order mark.
+
+    Parameters
+    ----------
+    file
+        The file, or a pipe.
+    error
+        Class of the errors.
+    most
+        Maximum number of characters of a line.
+
+    Yields
+    ------
+    str
+        The lines.
+
+    Raises
+    ------
+    DeixisError
+        Of the class ``error``, if the file cannot be read, is a folder or a device, has a longer line, or is not UTF-8.
+    """
+    with _opened(file, error) as text:
+        number = 0
+        while line := text.readline(most + 1):
+            number += 1
+            if len(line) > most:
+                raise error(f"{file}:{number}: a line must have at most {most:,} characters; split it")
+            yield line
+
+
+@contextmanager
+def _opened(file: str | Path, error: type[DeixisError]) -> Iterator[TextIO]:
+    """Open a text file; what goes wrong while it is read is an error of the given class, too."""
+    try:
+        with open(file, encoding="utf-8-sig", opener=_without_waiting) as text:  # Path.open takes no opener
+            mode = os.fstat(text.fileno()).st_mode
+            if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
+                raise error(f"{file}: this is not a regular file; name a text file")
+            os.set_blocking(text.fileno(), True)
+            yield text
+    except IsADirectoryError:
+        raise error(f"{file}: this is a folder; name a file") from None
+    except UnicodeDecodeError as wrong:
+        raise error(f"{file}: the file is not UTF-8 (byte {wrong.start}); save it as UTF-8") from wrong
+    except OSError as wrong:
+        raise error(f"{file}: cannot be read: {wrong.strerror}") from wrong
+    except ValueError as wrong:
+        if isinstance(wrong, DeixisError):
+            raise
+        raise error(f"{file}: cannot be read: {wrong}") from wrong
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file without blocking; a pipe that no program writes to is empty."""
+    return os.open(path, flags | os.O_NONBLOCK)

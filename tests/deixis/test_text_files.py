@@ -1,0 +1,61 @@
+"""Text files of users: read within limits; what is not a text file is refused by its name."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from deixis.errors import DeixisError, OntologyError
+from deixis.text_files import read_lines, read_text
+
+READERS: list[Callable[[Path], object]] = [read_text, lambda file: list(read_lines(file))]
+
+
+def refused(read: Callable[[Path], object], file: Path) -> str:
+    with pytest.raises(DeixisError) as found:
+        read(file)
+    assert str(found.value).startswith(str(file).replace("\0", "\\u0000"))
+    return str(found.value)
+
+
+@pytest.mark.parametrize("read", READERS, ids=["text", "lines"])
+def test_what_is_not_a_text_file_is_refused_by_name(read: Callable[[Path], object], tmp_path: Path) -> None:
+    latin = tmp_path / "latin.txt"
+    latin.write_bytes(b"caf\xe9\n")
+    assert "this is a folder; name a file" in refused(read, tmp_path)
+    assert "this is not a regular file" in refused(read, Path("/dev/zero"))
+    assert "cannot be read: No such file" in refused(read, tmp_path / "missing.txt")
+    assert "not UTF-8 (byte 3); save it as UTF-8" in refused(read, latin)
+    assert "cannot be read: embedded null byte" in refused(read, tmp_path / "a\0b")
+
+
+@pytest.mark.parametrize("read", READERS, ids=["text", "lines"])
+def test_pipe_is_read_and_not_waited_for(read: Callable[[Path], object], tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    assert not read(pipe)  # no program writes to it
+    source, target = os.pipe()
+
+    def write() -> None:
+        os.write(target, b"a\nb")
+        os.close(target)
+
+    late = threading.Timer(0.2, write)
+    late.start()
+    assert read(Path(f"/dev/fd/{source}")) in ("a\nb", ["a\n", "b"])
+    late.join()
+    os.close(source)
+
+
+def test_texts_and_lines_have_a_largest_length(tmp_path: Path) -> None:
+    file = tmp_path / "long.txt"
+    file.write_text("\ufeffab\ncdef\n", encoding="utf-8")
+    assert read_text(file, most=8) == "ab\ncdef\n" and list(read_lines(file, most=5)) == ["ab\n", "cdef\n"]
+    with pytest.raises(OntologyError, match="at most 7 characters; split it"):
+        read_text(file, OntologyError, most=7)
+    with pytest.raises(OntologyError, match=r"long.txt:2: a line must have at most 4 characters"):
+        list(read_lines(file, OntologyError, most=4))
