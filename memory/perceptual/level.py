@@ -32,12 +32,18 @@ from deixis.memory.owner import Closing
 from deixis.memory.perceptual.database import keys
 from deixis.memory.perceptual.database.codec import ViewHeader, read_about, read_name, write_category, write_name
 from deixis.memory.perceptual.database.handle import Handle, WriteBatch, acquire, closed, release
-from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
+from deixis.memory.perceptual.protocol import (
+    Finding,
+    PerceptualMemory,
+    PerceptualStats,
+    Progress,
+    ViewKey,
+)
 from deixis.memory.perceptual.reading import Snapshot, glance, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken
 
 
-class LevelMemory(Closing):
+class LevelMemory(Closing, PerceptualMemory):
     """The perceptual memory in one folder, owned by this process until its last user closes it.
 
     Its methods are those of :class:`deixis.memory.perceptual.protocol.PerceptualMemory`.
@@ -134,25 +140,7 @@ class LevelMemory(Closing):
         return self.handle.folder
 
     def view(self, id: str) -> View:
-        """Return one view.
-
-        Parameters
-        ----------
-        id
-            Id of the view.
-
-        Returns
-        -------
-        View
-            View with its arrays.
-
-        Raises
-        ------
-        UnknownViewError
-            If there is no such view.
-        DamagedMemoryError
-            If the view is damaged.
-        """
+        """Return one view."""
         place = self.handle.place_of(check_name("a view's id", id))
         if place is not None:
             with self.handle as db:
@@ -165,87 +153,25 @@ class LevelMemory(Closing):
             return now.view(id)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over views, as they are at the time of the call.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        View
-            Views in the order of category and id, as they are at the time of the call.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        DamagedMemoryError
-            At a damaged view.
-        """
+        """Iterate over views, as they are at the time of the call."""
         return self.snapshot().views(category)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        ViewKey
-            Category, id and time of each view, in the order of :meth:`views`.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Iterate over category, id and time of views, without reading arrays."""
         return self.snapshot().listing(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of all categories.
-
-        Returns
-        -------
-        tuple of str
-            Names in order, of categories with a view or a record.
-        """
+        """Return the names of all categories."""
         with self.snapshot() as now:
             return now.categories()
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category.
-
-        Parameters
-        ----------
-        name
-            Name of the category.
-
-        Returns
-        -------
-        CategoryRecord
-            Record; its state is empty if nothing was learned.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Return the record of a category."""
         with self.snapshot() as now:
             return now.category(name)
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id.
-
-        Returns
-        -------
-        dict
-            Ids of lessons by the ids of views.
-        """
+        """Return the lesson of each view that belongs to one, by the view's id."""
         with self.snapshot() as now:
             return now.lessons_of_views()
 
@@ -273,13 +199,7 @@ class LevelMemory(Closing):
         return None if sealed is None else read_name(key, sealed)
 
     def teachings(self) -> dict[str, tuple[Json, ...]]:
-        """Return all teachings of each view that was taught more than once, by the view's id.
-
-        Returns
-        -------
-        dict
-            Teachings in turn, as JSON, by the ids of views.
-        """
+        """Return all teachings of each view that was taught more than once, by the view's id."""
         with self.snapshot() as now:
             return now.teachings()
 
@@ -316,146 +236,45 @@ class LevelMemory(Closing):
             return tuple(view for view in views if now.get(keys.name_key(keys.LESSON, view)) is not None)
 
     def stats(self) -> PerceptualStats:
-        """Return the size of the memory.
-
-        Returns
-        -------
-        PerceptualStats
-            Numbers of views, categories and batches, and the size in bytes.
-        """
+        """Return the size of the memory."""
         with self.snapshot() as now:
             return now.stats()
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return what differs from what was written.
-
-        Parameters
-        ----------
-        progress
-            Called with the number of views done, and the number of all views.
-
-        Returns
-        -------
-        tuple of Finding
-            One finding for each damaged place; empty for a sound memory.
-        """
+        """Return what differs from what was written."""
         with self.snapshot() as now:
             return now.verify(progress)
 
     def snapshot(self) -> Snapshot:
-        """Return a snapshot of the memory, unchanged by later writes.
-
-        Returns
-        -------
-        Snapshot
-            Read access to the content at the time of the call; close it after use.
-        """
+        """Return a snapshot of the memory, unchanged by later writes."""
         return Snapshot(self.handle)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Return a lock that keeps other threads from writing.
-
-        Returns
-        -------
-        AbstractContextManager[object]
-            Context manager that holds the lock; a thread may enter it repeatedly.
-        """
+        """Return a lock that keeps other threads from writing."""
         return self.handle.writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch in one step.
-
-        Parameters
-        ----------
-        batch
-            Views and records to write, and those to remove.
-        sync
-            If True, the batch also survives a crash of the machine.
-
-        Raises
-        ------
-        UnknownViewError
-            If a view to forget does not exist.
-        MemoryWriteError
-            If the change cannot be written; nothing is changed then.
-        """
+        """Write a batch in one step."""
         with self.exclusive():
             self.handle.write(self.writing(batch), sync)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches of new views, all or none.
-
-        Parameters
-        ----------
-        batches
-            Batches of new views, which are read one at a time. Errors that it raises are passed on.
-        new
-            Ids of all these views.
-
-        Raises
-        ------
-        MemoryWriteError
-            If the change cannot be written; nothing is changed then.
-        """
+        """Write batches of new views, all or none."""
         with self.exclusive():
             self.handle.write_all(map(self.writing, batches), new)
 
     def rename(self, old: str, new: str) -> None:
-        """Rename a category.
-
-        Parameters
-        ----------
-        old
-            Name of the category.
-        new
-            New name of it.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If there is no such category.
-        RejectedWriteError
-            If the new name is in use.
-        """
+        """Rename a category."""
         with self.exclusive():
             self.handle.write(self.renaming(old, new), sync=True)
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another.
-
-        Parameters
-        ----------
-        source
-            Category whose views are moved; it ceases to exist.
-        into
-            Category that receives them.
-        record
-            New record of ``into``. Without it the category has no learned state, as neither old one describes these
-            views.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If one of the categories is unknown.
-        RecordError
-            If the categories are equal, or the record is of another one.
-        """
+        """Move the views of one category to another."""
         with self.exclusive():
             self.handle.write(self.merging(source, into, record), sync=True)
 
     def forget(self, category: str) -> None:
-        """Forget a category with its views.
-
-        Parameters
-        ----------
-        category
-            Name of the category.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If there is no such category.
-        """
+        """Forget a category with its views."""
         with self.exclusive():
             self.handle.write(self.forgetting(category), sync=True)
 

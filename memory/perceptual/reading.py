@@ -29,7 +29,13 @@ from deixis.memory.perceptual.database.codec import (
 )
 from deixis.memory.perceptual.database.handle import Handle, Places, closed, read_places
 from deixis.memory.perceptual.database.layout import VERSION
-from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
+from deixis.memory.perceptual.protocol import (
+    Finding,
+    PerceptualReading,
+    PerceptualStats,
+    Progress,
+    ViewKey,
+)
 from deixis.memory.perceptual.records import CategoryRecord, Json, View, check_name
 from deixis.ontology.relations.relation import nearest
 
@@ -39,7 +45,7 @@ MAX_LISTED = 5
 _WRONG = (MemoryFormatError, MemoryWriteError, ValueError)
 
 
-class Snapshot(Closing):
+class Snapshot(Closing, PerceptualReading):
     """A snapshot of a database, until it is closed.
 
     Every value is verified: all have a checksum of this program, and all except arrays are also read with LevelDB's.
@@ -209,25 +215,7 @@ class Snapshot(Closing):
             return self._then.by_id
 
     def view(self, id: str) -> View:
-        """Return one view.
-
-        Parameters
-        ----------
-        id
-            Id of the view.
-
-        Returns
-        -------
-        View
-            View with its arrays.
-
-        Raises
-        ------
-        UnknownViewError
-            If there is no such view.
-        DamagedMemoryError
-            If the view is damaged.
-        """
+        """Return one view."""
         header = self.about(id)
         if header is None:
             raise unknown_view(id)
@@ -255,25 +243,7 @@ class Snapshot(Closing):
             return stored_arrays(self._open, header)
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over the views, reading them one by one.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        View
-            Views in the order of category and id, as they are at the time of the call.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        DamagedMemoryError
-            At a damaged view.
-        """
+        """Iterate over the views, reading them one by one."""
         return self._views(self._beginning(category))
 
     def _views(self, begin: bytes) -> Iterator[View]:
@@ -295,23 +265,7 @@ class Snapshot(Closing):
         return read_view(header, arrays if found == key else None)
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        ViewKey
-            Category, id and time of each view, in the order of :meth:`views`.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Iterate over category, id and time of views, without reading arrays."""
         found = (read_about(*pair) for pair in self.pairs(self._beginning(category)))
         return (ViewKey(header.category, header.id, keys.moment(header.time)) for header in found)
 
@@ -322,13 +276,7 @@ class Snapshot(Closing):
         return keys.category_prefix(category)
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of the categories, with one look-up each, however many views they have.
-
-        Returns
-        -------
-        tuple of str
-            Names in order, of categories with a view or a record.
-        """
+        """Return the names of the categories, with one look-up each, however many views they have."""
         names = {key[1:].decode() for key, _ in self.pairs(keys.CATEGORY)}
         pair = self.first_after(keys.VIEW, keys.VIEW)
         while pair is not None:
@@ -338,23 +286,7 @@ class Snapshot(Closing):
         return tuple(sorted(names))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category.
-
-        Parameters
-        ----------
-        name
-            Name of the category.
-
-        Returns
-        -------
-        CategoryRecord
-            Record; its state is empty if nothing was learned.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Return the record of a category."""
         self.require(name)
         sealed = self.get(keys.name_key(keys.CATEGORY, name))
         return CategoryRecord(name) if sealed is None else read_category(name, sealed)
@@ -401,23 +333,11 @@ class Snapshot(Closing):
             raise unknown_category(category, self.categories())
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id.
-
-        Returns
-        -------
-        dict
-            Ids of lessons by the ids of views.
-        """
+        """Return the lesson of each view that belongs to one, by the view's id."""
         return {key[1:].decode(): read_name(key, sealed) for key, sealed in self.pairs(keys.LESSON)}
 
     def teachings(self) -> dict[str, tuple[Json, ...]]:
-        """Return all teachings of each view that was taught more than once, by the view's id.
-
-        Returns
-        -------
-        dict
-            Teachings in turn, as JSON, by the ids of views.
-        """
+        """Return all teachings of each view that was taught more than once, by the view's id."""
         found = ((key, read_name(key, sealed)) for key, sealed in self.pairs(keys.TEACHINGS))
         return {key[1:].decode(): tuple(json.loads(turns)) for key, turns in found}
 
@@ -452,13 +372,7 @@ class Snapshot(Closing):
         return read_counts(self.get(keys.COUNT))
 
     def stats(self) -> PerceptualStats:
-        """Return the counts, and the bytes on the disk.
-
-        Returns
-        -------
-        PerceptualStats
-            Numbers of views, categories and batches, and the size in bytes.
-        """
+        """Return the counts, and the bytes on the disk."""
         counts = self.counts()
         return PerceptualStats(
             views=counts.views,
@@ -470,18 +384,7 @@ class Snapshot(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return everything that differs from what was written.
-
-        Parameters
-        ----------
-        progress
-            Called with the number of views done, and the number of all views.
-
-        Returns
-        -------
-        tuple of Finding
-            One finding for each damaged place; empty for a sound memory.
-        """
+        """Return everything that differs from what was written."""
         return tuple(_findings(self, progress))
 
 

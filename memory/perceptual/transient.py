@@ -19,7 +19,14 @@ from deixis.memory.errors import UnknownViewError
 from deixis.memory.owner import Closing
 from deixis.memory.perceptual.database.handle import closed
 from deixis.memory.perceptual.database.layout import VERSION
-from deixis.memory.perceptual.protocol import Finding, PerceptualStats, Progress, ViewKey
+from deixis.memory.perceptual.protocol import (
+    Finding,
+    PerceptualMemory,
+    PerceptualReading,
+    PerceptualStats,
+    Progress,
+    ViewKey,
+)
 from deixis.memory.perceptual.reading import unknown_category, unknown_view
 from deixis.memory.perceptual.records import Batch, CategoryRecord, Json, View, check_merging, check_name, name_taken
 
@@ -35,7 +42,7 @@ class _StoredViews:
     teachings: dict[str, tuple[Json, ...]] = field(default_factory=dict)
 
 
-class TransientReading(Closing):
+class TransientReading(Closing, PerceptualReading):
     """Read access to one content; the methods are those of ``PerceptualReading``."""
 
     def __init__(self, content: _StoredViews) -> None:
@@ -52,46 +59,14 @@ class TransientReading(Closing):
         return self._kept
 
     def view(self, id: str) -> View:
-        """Return one view.
-
-        Parameters
-        ----------
-        id
-            Id of the view.
-
-        Returns
-        -------
-        View
-            View with its arrays.
-
-        Raises
-        ------
-        UnknownViewError
-            If there is no such view.
-        """
+        """Return one view."""
         check_name("a view's id", id)
         if id not in self._content.views:
             raise unknown_view(id)
         return self._content.views[id]
 
     def views(self, category: str | None = None) -> Iterator[View]:
-        """Iterate over views in order.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        View
-            Views in the order of category and id, as they are at the time of the call.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Iterate over views in order."""
         found = [view for view in self._content.views.values() if category is None or view.category == category]
         if category is not None and not found:
             self._require(category)
@@ -103,53 +78,15 @@ class TransientReading(Closing):
             yield view
 
     def listing(self, category: str | None = None) -> Iterator[ViewKey]:
-        """Iterate over category, id and time of views, without reading arrays.
-
-        Parameters
-        ----------
-        category
-            Name of a category; all categories by default.
-
-        Yields
-        ------
-        ViewKey
-            Category, id and time of each view, in the order of :meth:`views`.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Iterate over category, id and time of views, without reading arrays."""
         return (ViewKey(view.category, view.id, view.time) for view in self.views(category))
 
     def categories(self) -> tuple[str, ...]:
-        """Return the names of all categories.
-
-        Returns
-        -------
-        tuple of str
-            Names in order, of categories with a view or a record.
-        """
+        """Return the names of all categories."""
         return tuple(sorted({view.category for view in self._content.views.values()} | set(self._content.records)))
 
     def category(self, name: str) -> CategoryRecord:
-        """Return the record of a category.
-
-        Parameters
-        ----------
-        name
-            Name of the category.
-
-        Returns
-        -------
-        CategoryRecord
-            Record; its state is empty if nothing was learned.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If the category is unknown.
-        """
+        """Return the record of a category."""
         self._require(name)
         return self._content.records.get(name, CategoryRecord(name))
 
@@ -159,33 +96,15 @@ class TransientReading(Closing):
             raise unknown_category(category, self.categories())
 
     def lessons_of_views(self) -> dict[str, str]:
-        """Return the lesson of each view that belongs to one, by the view's id.
-
-        Returns
-        -------
-        dict
-            Ids of lessons by the ids of views.
-        """
+        """Return the lesson of each view that belongs to one, by the view's id."""
         return dict(self._content.lessons)
 
     def teachings(self) -> dict[str, tuple[Json, ...]]:
-        """Return all teachings of each view that was taught more than once, by the view's id.
-
-        Returns
-        -------
-        dict
-            Teachings in turn, as JSON, by the ids of views.
-        """
+        """Return all teachings of each view that was taught more than once, by the view's id."""
         return dict(self._content.teachings)
 
     def stats(self) -> PerceptualStats:
-        """Return the size of the memory.
-
-        Returns
-        -------
-        PerceptualStats
-            Numbers of views, categories and batches, and the bytes of the descriptors.
-        """
+        """Return the size of the memory."""
         arrays = [array for view in self._content.views.values() for array in view.descriptors.values()]
         return PerceptualStats(
             views=len(self._content.views),
@@ -197,23 +116,12 @@ class TransientReading(Closing):
         )
 
     def verify(self, progress: Progress | None = None) -> tuple[Finding, ...]:
-        """Return no findings, because dictionaries are never damaged.
-
-        Parameters
-        ----------
-        progress
-            Called with the number of views done, and the number of all views.
-
-        Returns
-        -------
-        tuple of Finding
-            Empty.
-        """
+        """Return no findings, because dictionaries are never damaged."""
         _ = self._content
         return ()
 
 
-class TransientMemory(TransientReading):
+class TransientMemory(TransientReading, PerceptualMemory):
     """A memory that ends with the process; the methods are those of ``PerceptualMemory``."""
 
     def __init__(self) -> None:
@@ -221,40 +129,15 @@ class TransientMemory(TransientReading):
         self._writing = threading.RLock()
 
     def snapshot(self) -> TransientReading:
-        """Return a snapshot of the memory, unchanged by later writes.
-
-        Returns
-        -------
-        TransientReading
-            Read access to the content at the time of the call.
-        """
+        """Return a snapshot of the memory, unchanged by later writes."""
         return TransientReading(self._content)
 
     def exclusive(self) -> AbstractContextManager[object]:
-        """Return a lock that keeps other threads from writing.
-
-        Returns
-        -------
-        AbstractContextManager[object]
-            Context manager that holds the lock; a thread may enter it repeatedly.
-        """
+        """Return a lock that keeps other threads from writing."""
         return self._writing
 
     def write(self, batch: Batch, sync: bool = False) -> None:
-        """Write a batch in one step.
-
-        Parameters
-        ----------
-        batch
-            Views and records to write, and those to remove.
-        sync
-            Ignored: the memory ends with the process.
-
-        Raises
-        ------
-        UnknownViewError
-            If a view to forget does not exist.
-        """
+        """Write a batch in one step."""
         with self._writing:
             views, records = dict(self._content.views), dict(self._content.records)
             for view_id in batch.forgotten:
@@ -277,15 +160,7 @@ class TransientMemory(TransientReading):
             self._kept = _StoredViews(views, records, self._content.batches + 1, lessons, teachings)
 
     def write_all(self, batches: Iterable[Batch], new: Sequence[str]) -> None:
-        """Write batches of new views, all or none.
-
-        Parameters
-        ----------
-        batches
-            Batches of new views, which are read one at a time. Errors that it raises are passed on.
-        new
-            Ids of all these views.
-        """
+        """Write batches of new views, all or none."""
         with self._writing:
             before = self._content
             try:
@@ -296,22 +171,7 @@ class TransientMemory(TransientReading):
                 raise
 
     def rename(self, old: str, new: str) -> None:
-        """Rename a category.
-
-        Parameters
-        ----------
-        old
-            Name of the category.
-        new
-            New name of it.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If there is no such category.
-        RejectedWriteError
-            If the new name is in use.
-        """
+        """Rename a category."""
         check_name("a category's name", new)
         with self._writing:
             record = self.category(old)
@@ -320,25 +180,7 @@ class TransientMemory(TransientReading):
             self._move(old, CategoryRecord(new, record.state, record.metadata))
 
     def merge(self, source: str, into: str, record: CategoryRecord | None = None) -> None:
-        """Move the views of one category to another.
-
-        Parameters
-        ----------
-        source
-            Category whose views are moved; it ceases to exist.
-        into
-            Category that receives them.
-        record
-            New record of ``into``. Without it the category has no learned state, as neither old one describes these
-            views.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If one of the categories is unknown.
-        RecordError
-            If the categories are equal, or the record is of another one.
-        """
+        """Move the views of one category to another."""
         check_merging(source, into, record)
         with self._writing:
             self._require(into)
@@ -346,18 +188,7 @@ class TransientMemory(TransientReading):
             self._move(source, record or CategoryRecord(into))
 
     def forget(self, category: str) -> None:
-        """Forget a category with its views.
-
-        Parameters
-        ----------
-        category
-            Name of the category.
-
-        Raises
-        ------
-        UnknownCategoryError
-            If there is no such category.
-        """
+        """Forget a category with its views."""
         with self._writing:
             self._require(category)
             views = {view_id: view for view_id, view in self._content.views.items() if view.category != category}
