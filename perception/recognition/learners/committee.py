@@ -13,7 +13,7 @@ from deixis.perception.recognition.learners.view_features import ViewFeatures
 VOTE, BELIEF = "majority vote", "Dempster-Shafer"
 
 
-class Committee:
+class Committee(Learner):
     """Learner that combines others by majority vote and by Dempster-Shafer evidence, and follows the best of all.
 
     The method is that of L. Seabra Lopes, A. Chauhan: Open-ended category learning for language acquisition, Connection
@@ -62,118 +62,41 @@ class Committee:
         return max(accuracies, key=lambda name: accuracies[name])
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return the prediction of the member or combination that answers now.
-
-        Parameters
-        ----------
-        view
-            View with the descriptors of this learner.
-
-        Returns
-        -------
-        Prediction
-            Scores of that member or combination.
-        """
+        """Return the prediction of the member or combination that answers now."""
         return self._predictions(view)[self.attended]
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Teach all members.
-
-        Parameters
-        ----------
-        category
-            Name of the category, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Teach all members."""
         self._changed()
         for member in self._members:
             member.learn(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Record which members were right, and correct every member.
-
-        Parameters
-        ----------
-        category
-            Category that the view shows, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Record which members were right, and correct every member."""
         self._watch(category, view)
         for member in self._members:
             member.correct(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Record which members were right, and confirm the answer to every member.
-
-        Parameters
-        ----------
-        category
-            Category that was predicted.
-        view
-            View with the descriptors of this learner.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Record which members were right, and confirm the answer to every member."""
         self._watch(category, view)
         for member in self._members:
             member.confirm(category, view)
 
     def forget(self, category: str) -> None:
-        """Forget the category in every member, but keep the record of success.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Forget the category in every member, but keep the record of success."""
         self._changed()
         for member in self._members:
             member.forget(category)
 
     def rename(self, category: str, name: str) -> None:
-        """Rename the category in every member.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-        name
-            New name of it.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known, or another one has the new name.
-        """
+        """Rename the category in every member."""
         self._changed()
         for member in self._members:
             member.rename(category, name)
 
     def merge(self, category: str, into: str) -> None:
-        """Merge the categories in every member.
-
-        Parameters
-        ----------
-        category
-            Category that is removed.
-        into
-            Category that keeps the knowledge of both.
-
-        Raises
-        ------
-        RecognitionError
-            If one of the categories is not known, or both are one category.
-        """
+        """Merge the categories in every member."""
         self._changed()
         for member in self._members:
             member.merge(category, into)

@@ -179,7 +179,7 @@ class Learner(Protocol):
         ...
 
 
-class TaughtViews(ABC):
+class TaughtViews(Learner, ABC):
     """Base class of learners that store views by category, and are notified when a category changes.
 
     A view is stored when it is taught and when a prediction is corrected, as in the open-ended protocol of Seabra Lopes
@@ -202,99 +202,33 @@ class TaughtViews(ABC):
         return sum(map(len, self._views.values()))
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Store the view.
-
-        Parameters
-        ----------
-        category
-            Name of the category, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Store the view."""
         self._views[category] = (*self._views.get(category, ()), view)
         self._added(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Store the view, as if it had been taught.
-
-        Parameters
-        ----------
-        category
-            Category that the view shows, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Store the view, as if it had been taught."""
         self.learn(category, view)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Store nothing.
-
-        Parameters
-        ----------
-        category
-            Category that was predicted.
-        view
-            View with the descriptors of this learner.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Store nothing."""
         require_known(category, self._views)
 
     def forget(self, category: str) -> None:
-        """Remove the category with all its views.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Remove the category with all its views."""
         require_known(category, self._views)
         del self._views[category]
         self._rebuilt(category, ())
 
     def rename(self, category: str, name: str) -> None:
-        """Rename the category, which keeps its place in the order.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-        name
-            New name of it.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known, or another one has the new name.
-        """
+        """Rename the category, which keeps its place in the order."""
         require_free(category, name, self._views)
         self._views = {name if old == category else old: views for old, views in self._views.items()}
         self._rebuilt(category, ())
         self._rebuilt(name, self._views[name])
 
     def merge(self, category: str, into: str) -> None:
-        """Append the views of the first category to those of the second.
-
-        Parameters
-        ----------
-        category
-            Category that is removed.
-        into
-            Category that keeps the knowledge of both.
-
-        Raises
-        ------
-        RecognitionError
-            If one of the categories is not known, or both are one category.
-        """
+        """Append the views of the first category to those of the second."""
         require_two(category, into, self._views)
         self._views[into] += self._views.pop(category)
         self._rebuilt(category, ())
@@ -302,18 +236,7 @@ class TaughtViews(ABC):
 
     @abstractmethod
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Return the prediction for a view.
-
-        Parameters
-        ----------
-        view
-            View with the descriptors of this learner.
-
-        Returns
-        -------
-        Prediction
-            Known categories with scores, the most likely first; empty if the view cannot be compared.
-        """
+        """Return the prediction for a view."""
 
     @abstractmethod
     def _added(self, category: str, view: ViewFeatures) -> None:

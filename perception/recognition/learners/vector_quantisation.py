@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deixis.perception.errors import RecognitionError
-from deixis.perception.recognition.learners.learner import Prediction, require_free, require_known, require_two
+from deixis.perception.recognition.learners.learner import Learner, Prediction, require_free, require_known, require_two
 from deixis.perception.recognition.learners.one_class import POOLED_DESCRIBERS
 from deixis.perception.recognition.learners.view_features import ViewFeatures, pooled
 
@@ -50,7 +50,7 @@ class _Prototypes:
     moved: NDArray[np.int64] = field(default_factory=lambda: np.zeros(1, np.int64))
 
 
-class VectorQuantisation:
+class VectorQuantisation(Learner):
     """Learner by incremental vector quantisation with features selected per category; it stores no views.
 
     The method is that of S. Kirstein, H. Wersing, H.-M. Gross, E. Koerner: A life-long learning vector quantization
@@ -94,18 +94,7 @@ class VectorQuantisation:
         return sum(len(one.places) for one in self._known.values() if one is not None)
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Rank the categories by the nearest prototype.
-
-        Parameters
-        ----------
-        view
-            View with the descriptors of this learner.
-
-        Returns
-        -------
-        Prediction
-            Scores are minus distances, ``unknown`` is the least distance; empty for a view without a descriptor.
-        """
+        """Rank the categories by the nearest prototype."""
         vector = pooled(view, self._descriptors)
         nearest = {} if vector is None else self._nearest(vector)
         if not nearest:
@@ -115,30 +104,14 @@ class VectorQuantisation:
         )
 
     def learn(self, category: str, view: ViewFeatures) -> None:
-        """Correct with a view that would be named wrongly, or else confirm.
-
-        Parameters
-        ----------
-        category
-            Name of the category, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Correct with a view that would be named wrongly, or else confirm."""
         if category in self._known and self.predict(view).best == category:
             self.confirm(category, view)
         else:
             self.correct(category, view)
 
     def correct(self, category: str, view: ViewFeatures) -> None:
-        """Add a prototype at the view, and move the wrong winner away from it.
-
-        Parameters
-        ----------
-        category
-            Category that the view shows, which may be new.
-        view
-            View with the descriptors of this learner.
-        """
+        """Add a prototype at the view, and move the wrong winner away from it."""
         vector = pooled(view, self._descriptors)
         if vector is None:
             self._known.setdefault(category, None)
@@ -153,20 +126,7 @@ class VectorQuantisation:
             known.moved = np.append(known.moved, 0)
 
     def confirm(self, category: str, view: ViewFeatures) -> None:
-        """Move the category's nearest prototype towards the view.
-
-        Parameters
-        ----------
-        category
-            Category that was predicted.
-        view
-            View with the descriptors of this learner.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Move the category's nearest prototype towards the view."""
         require_known(category, self.categories)
         vector = pooled(view, self._descriptors)
         if vector is None:
@@ -177,54 +137,17 @@ class VectorQuantisation:
             self._move(category, found[1], vector, 1.0)
 
     def forget(self, category: str) -> None:
-        """Remove the category with its prototypes and features.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known.
-        """
+        """Remove the category with its prototypes and features."""
         require_known(category, self.categories)
         del self._known[category]
 
     def rename(self, category: str, name: str) -> None:
-        """Rename the category, which keeps its place in the order.
-
-        Parameters
-        ----------
-        category
-            Name of a known category.
-        name
-            New name of it.
-
-        Raises
-        ------
-        RecognitionError
-            If the category is not known, or another one has the new name.
-        """
+        """Rename the category, which keeps its place in the order."""
         require_free(category, name, self.categories)
         self._known = {name if old == category else old: one for old, one in self._known.items()}
 
     def merge(self, category: str, into: str) -> None:
-        """Join the prototypes and the moments of both categories.
-
-        Parameters
-        ----------
-        category
-            Category that is removed.
-        into
-            Category that keeps the knowledge of both.
-
-        Raises
-        ------
-        RecognitionError
-            If one of the categories is not known, or both are one category.
-        """
+        """Join the prototypes and the moments of both categories."""
         require_two(category, into, self.categories)
         one, other = self._known[into], self._known.pop(category)
         if one is None or other is None:
