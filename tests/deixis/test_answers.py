@@ -38,6 +38,8 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
         "Inference": deixis.infer(SCRIPT),
         "Imagination": deixis.imagine(SCRIPT),
         "Retrieval": deixis.retrieve(SCENE, "examples"),
+        "Lint": deixis.lint("examples/contradiction.layout"),
+        "Telling": deixis.tell(SCRIPT),
     }
 
 

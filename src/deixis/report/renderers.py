@@ -70,27 +70,43 @@ RENDERERS = {
         "report.layouts.script:inference_lines",
         "report.knowledge.rows:inference_rows",
     ),
-    "Telling": Renderer("report.descriptions.tell:telling_to_dict", "report.descriptions.tell:telling_lines"),
+    "Telling": Renderer(
+        "report.descriptions.tell:telling_to_dict",
+        "report.descriptions.tell:telling_lines",
+        "report.descriptions.tell:telling_rows",
+    ),
     "Placements": Renderer(
         "report.knowledge.habits:habits_to_dict",
         "report.knowledge.habits:habits_lines",
         "report.knowledge.habits:habits_rows",
     ),
     "ActivityGrounding": Renderer(
-        "report.reasoning.activities:grounded_to_dict", "report.reasoning.activities:grounded_lines"
+        "report.reasoning.activities:grounded_to_dict",
+        "report.reasoning.activities:grounded_lines",
+        "report.reasoning.activities:grounded_rows",
     ),
     "Prediction": Renderer(
-        "report.reasoning.activities:predicted_to_dict", "report.reasoning.activities:predicted_lines"
+        "report.reasoning.activities:predicted_to_dict",
+        "report.reasoning.activities:predicted_lines",
+        "report.reasoning.activities:predicted_rows",
     ),
     "RecognisedActivity": Renderer(
-        "report.reasoning.activities:recognised_to_dict", "report.reasoning.activities:recognised_lines"
+        "report.reasoning.activities:recognised_to_dict",
+        "report.reasoning.activities:recognised_lines",
+        "report.reasoning.activities:recognised_rows",
     ),
-    "Recall": Renderer("report.knowledge.recall:recall_to_dict", "report.knowledge.recall:recall_lines"),
+    "Recall": Renderer(
+        "report.knowledge.recall:recall_to_dict",
+        "report.knowledge.recall:recall_lines",
+        "report.knowledge.recall:recall_rows",
+    ),
     "Unlearned": Renderer("report.knowledge.unlearn:unlearned_to_dict", "report.knowledge.unlearn:unlearned_lines"),
     "Shown": Renderer(
         "report.scenes.point:shown_to_dict", "report.scenes.point:shown_lines", "report.scenes.point:shown_rows"
     ),
-    "Lint": Renderer("report.layouts.lint:lint_to_dict", "report.layouts.lint:lint_lines"),
+    "Lint": Renderer(
+        "report.layouts.lint:lint_to_dict", "report.layouts.lint:lint_lines", "report.layouts.lint:lint_rows"
+    ),
     "Imagination": Renderer(
         "report.layouts.imagine:imagination_to_dict",
         "report.layouts.imagine:imagination_lines",

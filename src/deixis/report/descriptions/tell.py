@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from deixis.report.layouts.read import content_to_dict
@@ -71,3 +72,21 @@ def telling_to_dict(telling: Telling) -> dict[str, Any]:
 def _stated_to_dict(stated: StatedFact) -> dict[str, Any]:
     marks = {"condition": stated.condition, "past": stated.past, "uncertain": stated.uncertain}
     return content_to_dict(stated.content) | marks
+
+
+def telling_rows(telling: Telling) -> Iterator[dict[str, Any]]:
+    """Yield a row for each sentence.
+
+    Parameters
+    ----------
+    telling
+        Answer of ``deixis tell``.
+
+    Yields
+    ------
+    dict
+        ``sentence``, and the ``facts`` that it states, as text.
+    """
+    for sentence in telling.sentences:
+        facts = "; ".join(str(telling.facts[i].content) for i in sentence.facts)
+        yield {"sentence": sentence.text, "facts": facts}

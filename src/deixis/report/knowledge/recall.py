@@ -76,3 +76,24 @@ def _bounds(found: Recall, bounds: Bounds) -> dict[str, Any]:
         "seconds": [None if math.isinf(end) else end for end in ends],
         "time": [None if moment is None else moment.isoformat() for moment in moments],
     }
+
+
+def recall_rows(found: Recall) -> Iterator[dict[str, Any]]:
+    """Yield a row for each fluent that the answer rests on.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis recall``.
+
+    Yields
+    ------
+    dict
+        The ``fluent`` with its ``subject``, its ``name``, ``predicate``, ``object`` and ``other``, the bounds of its
+        start and finish in seconds (None for no bound), its ``certainty``, and ``origin`` and ``by`` of its source.
+    """
+    for fact in recall_to_dict(found)["facts"]:
+        row = {key: fact[key] for key in ("fluent", "subject", "name", "predicate", "object", "other")}
+        for end in ("start", "finish"):
+            row[f"earliest_{end}"], row[f"latest_{end}"] = fact[end]["seconds"]
+        yield row | {"certainty": fact["certainty"], "origin": fact["source"]["origin"], "by": fact["source"]["by"]}

@@ -61,3 +61,19 @@ def lint_to_dict(found: Lint) -> dict[str, Any]:
         for finding in found.findings
     ]
     return {"file": found.file, "warnings": warnings, "complete": found.complete}
+
+
+def lint_rows(found: Lint) -> Iterator[dict[str, Any]]:
+    """Yield a row for each warning.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis lint``.
+
+    Yields
+    ------
+    dict
+        The warning with the keys of its JSON: ``code``, ``message``, ``hint``, ``replacement``, ``file``, ``line``, ….
+    """
+    yield from lint_to_dict(found)["warnings"]

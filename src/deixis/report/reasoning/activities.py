@@ -160,3 +160,56 @@ def predicted_to_dict(found: Prediction) -> dict[str, Any]:
         ],
         "finished": found.finished,
     }
+
+
+def grounded_rows(found: ActivityGrounding) -> Iterator[dict[str, Any]]:
+    """Yield a row for each step.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis activity ground``.
+
+    Yields
+    ------
+    dict
+        ``step``, its ``fluent`` (None if it is missing) and ``probability``.
+    """
+    yield from grounded_to_dict(found)["steps"]
+
+
+def recognised_rows(found: RecognisedActivity) -> Iterator[dict[str, Any]]:
+    """Yield a row for each known activity, and one for none of them.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis activity recognise``.
+
+    Yields
+    ------
+    dict
+        ``activity`` (None for none of them) and ``probability``.
+    """
+    yield from recognised_to_dict(found)["probabilities"]
+
+
+def predicted_rows(found: Prediction) -> Iterator[dict[str, Any]]:
+    """Yield a row for each thing that may be laid next, and one for the end.
+
+    Parameters
+    ----------
+    found
+        Answer of ``deixis activity predict``.
+
+    Yields
+    ------
+    dict
+        ``kind`` (None for nothing more), ``probability``, and the place as ``x``, ``y`` and ``spread`` in metres, which
+        are None if it is unknown.
+    """
+    for thing in found.things:
+        x, y = (None, None) if thing.place is None else thing.place.place
+        spread = None if thing.place is None else thing.place.spread
+        yield {"kind": thing.kind, "probability": thing.probability, "x": x, "y": y, "spread": spread}
+    yield {"kind": None, "probability": found.finished, "x": None, "y": None, "spread": None}

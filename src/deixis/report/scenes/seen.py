@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import count
 from deixis.report.marks import doubt
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def taught_line(taught: Taught, name: str) -> str:
         Sentence for the terminal; it names the earlier category of a corrected view.
     """
     corrected = f", no longer of '{taught.before}'" if taught.before else ""
-    return f"{name} is a view of '{taught.category}'{corrected}; {taught.views} in all."
+    return f"{name} is a view of '{taught.category}'{corrected}; {count(taught.views, 'view')} in all."
 
 
 def taught_to_dict(taught: Taught) -> dict[str, Any]:

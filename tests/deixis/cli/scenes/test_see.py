@@ -104,9 +104,9 @@ def test_recognise_prints_one_line_a_thing_and_why_on_request(tables: Path) -> N
 def test_views_and_categories_can_be_taught_changed_and_removed(tables: Path, tmp_path: Path) -> None:
     scene, memory = tables / "7.scene.json", ("--memory", tmp_path / "memory")
     assert deixis("category", "list", "--json", *memory)[0] == 2  # there is no such memory yet
-    assert deixis("teach", scene, "o1", "Bread plate", *memory)[1] == "o1 is a view of 'Bread_plate'; 1 in all.\n"
+    assert deixis("teach", scene, "o1", "Bread plate", *memory)[1] == "o1 is a view of 'Bread_plate'; 1 view in all.\n"
     out = deixis("teach", scene, "o1", "saucer", *memory)[1]
-    assert out == "o1 is a view of 'saucer', no longer of 'Bread_plate'; 1 in all.\n"
+    assert out == "o1 is a view of 'saucer', no longer of 'Bread_plate'; 1 view in all.\n"
     assert json.loads(deixis("category", "list", "--json", *memory)[1]) == {"saucer": 1}
     deixis("teach", scene, "o5", "plate", *memory)
     assert deixis("category", "merge", "saucer", "plate", *memory)[0] == 0
@@ -172,7 +172,7 @@ def test_a_word_is_asked_for_until_something_is_pointed_at(
     code, out, _ = deixis("ask", "saucer", scene, *memory)
     assert code == 0
     assert "There is no object 'o99' in this scene." in out
-    assert "o1 is a view of 'saucer'; 1 in all." in out
+    assert "o1 is a view of 'saucer'; 1 view in all." in out
     assert "Here it is: o1" in deixis("ask", "saucer", scene, *memory)[1]
     assert "a view of 'fork'" in deixis("ask", "fork", scene, "--points-at", "o3", *memory)[1]
 
@@ -472,7 +472,7 @@ def test_a_word_that_differs_only_by_case_is_the_known_category(tables: Path, tm
 def test_a_viewpoint_that_no_scene_can_have_is_refused(tables: Path, viewpoint: str) -> None:
     code, out, err = deixis("perceive", tables / "7.pcd", "--viewpoint", viewpoint)
     assert (code, out) == (2, "")
-    assert "a viewpoint is a word" in err
+    assert "`viewpoint` must be a word" in err
 
 
 def test_names_that_go_nowhere_are_told(tables: Path, tmp_path: Path) -> None:
