@@ -110,7 +110,7 @@ class FixedPhraseChunker(JointChunker):
             and self.nouns.number(at + 1) is not None
         ):
             return Chunk("ADVERB", at, at + 3, "time")  # 'at 8 a.m.'
-        if norm in ("at", "by", "until", "from", "since") and self.nouns.number(at + 1) is not None and "clock" not in self.norms:
+        if norm in ("at", "by", "until", "from", "since") and self.nouns.number(at + 1) is not None and not {"clock", "o'clock"} & set(self.norms):
             end = at + 2 + (self.norms[at + 2] in ("sharp", "exactly"))
             if self.norms[end] in CLAUSE_ENDS | {"and"}:
                 return Chunk("ADVERB", at, end, "time")  # 'at eleven sharp'
