@@ -85,11 +85,15 @@ class FixedPhraseChunker(JointChunker):
         for phrase in _idioms().get(norm, ()):
             end = at + len(phrase)
             longer = related is not None and related[0] > end  # 'out of reach of the cat'
-            if tuple(self.norms[at:end]) == phrase and not longer and not (
-                (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
-                or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
-                or (phrase == ("above", "all") and self.norms[end] != ",")
-                or (phrase[-1] == "case" and self._previous() == "BE" and self.norms[end] in CLAUSE_ENDS)
+            if (
+                tuple(self.norms[at:end]) == phrase
+                and not longer
+                and not (
+                    (phrase in _BEFORE_NOUNS and self.nouns.starts(end))
+                    or (phrase == ("that", "is") and (self.norms[at - 1] != "," or self.norms[at + 2] in self._verbs))
+                    or (phrase == ("above", "all") and self.norms[end] != ",")
+                    or (phrase[-1] == "case" and self._previous() == "BE" and self.norms[end] in CLAUSE_ENDS)
+                )
             ):
                 return Chunk("ADVERB", at, end, " ".join(phrase))
         if norm == "from" or (
@@ -110,7 +114,11 @@ class FixedPhraseChunker(JointChunker):
             and self.nouns.number(at + 1) is not None
         ):
             return Chunk("ADVERB", at, at + 3, "time")  # 'at 8 a.m.'
-        if norm in ("at", "by", "until", "from", "since") and self.nouns.number(at + 1) is not None and not {"clock", "o'clock"} & set(self.norms):
+        if (
+            norm in ("at", "by", "until", "from", "since")
+            and self.nouns.number(at + 1) is not None
+            and not {"clock", "o'clock"} & set(self.norms)
+        ):
             end = at + 2 + (self.norms[at + 2] in ("sharp", "exactly"))
             if self.norms[end] in CLAUSE_ENDS | {"and"}:
                 return Chunk("ADVERB", at, end, "time")  # 'at eleven sharp'
@@ -180,7 +188,9 @@ class FixedPhraseChunker(JointChunker):
             return Chunk("ADVERB", at, end, "from where")
         if norm == "out" and self.norms[at + 1] == "of":
             end = at + 2 + (self.norms[at + 2] in ("my", "your", "his", "her", "our", "their", "the"))
-            if self.norms[end] in ("reach", "sight", "way", "place", "order") and (related is None or related[0] <= end):
+            if self.norms[end] in ("reach", "sight", "way", "place", "order") and (
+                related is None or related[0] <= end
+            ):
                 return Chunk("ADVERB", at, end + 1, "out of reach")
         if norm == "say" and self._previous() == "COMMA" and self.norms[at + 1] in prepositions():
             return Chunk("ADVERB", at, at + 1, norm)
@@ -249,8 +259,10 @@ class FixedPhraseChunker(JointChunker):
     def _subject_or_command(self, at: int) -> bool:
         """Return True if a subject with a determiner, a personal pronoun or a command begins here."""
         norm = self.norms[at]
-        return self.nouns.is_determiner(at) or norm in ("you", "we", "i", "they", "it") or (
-            norm in PUT_VERBS and self.nouns.is_determiner(at + 1)
+        return (
+            self.nouns.is_determiner(at)
+            or norm in ("you", "we", "i", "they", "it")
+            or (norm in PUT_VERBS and self.nouns.is_determiner(at + 1))
         )
 
     def _goal(self, at: int) -> int | None:

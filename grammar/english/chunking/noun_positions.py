@@ -354,7 +354,11 @@ class NounFinder:
                 return after_determiner and self._nounish(at + 1) is False and not self._takes_preposition(after)
             return True
         if form.form == "ing":
-            if before in ("other", "others", "one") and form.kind in ("posture", "lean") and self._predicate_follows(at):
+            if (
+                before in ("other", "others", "one")
+                and form.kind in ("posture", "lean")
+                and self._predicate_follows(at)
+            ):
                 return False  # 'the other standing on a coaster'
             if at + 1 < len(self.words) and self.words[at + 1].text[:1].isupper() and self.norms[at + 2] == "'s":
                 return False  # 'putting Anna's radio on it'

@@ -372,7 +372,10 @@ _BREADTHS = word_set("width breadth length")
 _ROLLED = word_set("rolled folded propped stacked piled wrapped coiled curled drawn tied")
 """Participles of which *up* is a part."""
 
-_AFTER_RIGHT = word_set("up down along across over in on at by behind next above below under underneath beside against between opposite there")
+_AFTER_RIGHT = word_set(
+    "up down along across over in on at by behind next above below under underneath beside against between opposite"
+    " there"
+)
 """Words before which *right* is an adverb."""
 
 _TURNED = frozenset({"turn", "angle", "tilt", "fold", "bend", "point"})

@@ -142,9 +142,12 @@ class VerbChunker(RelatorChunker):
             told = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
             return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if told else None
         spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
-        if last.value.modal is None or not spatial or last.value.lemma == "be" and self.chunks[-2].type == "NP":
+        placed = last.value.lemma == "be" and self.chunks[-2].type == "NP"  # 'it should be on the tray and rest'
+        if last.value.modal is None or not spatial or placed:
             return None
-        return Chunk("VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive))
+        return Chunk(
+            "VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive)
+        )
 
     def _is_base(self, at: int) -> bool:
         form = self._verbs.get(self.norms[at])
@@ -294,7 +297,12 @@ class VerbChunker(RelatorChunker):
             form.form == "past" and self._previous() == "NP" and self.norms[self.chunks[-1].start] in _SUBJECTS
         ):
             return self._finite(at, end, found)  # 'the cups you asked about'
-        if form.form == "past" and form.kind == "transitive" and self._previous() == "NP" and self.norms[at - 1] == "it":
+        if (
+            form.form == "past"
+            and form.kind == "transitive"
+            and self._previous() == "NP"
+            and self.norms[at - 1] == "it"
+        ):
             return self._finite(at, end, replace(found, past=True))  # 'it contained a tin'
         if form.form in ("past", "participle", "ing"):
             if self._previous() in ("PREP", "OF", "WITH", "THAN", "TVERB", "FIND", "PUT") and self.nouns.is_noun(end):
@@ -342,7 +350,9 @@ class VerbChunker(RelatorChunker):
                 return Chunk("ADVERB", at, end + 1, norm)
             if subject == "COMMA" and self._awaits_verb() and self._predicate_after(i):
                 return self._finite(at, end, found)  # 'the tweezers, points to the left, lie along the edge'
-            crosses = self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
+            crosses = (
+                self.norms[end] in ("over", "across", "round", "around", "on", "along") and self.norms[end + 1] == "to"
+            )
             if imperative and norm in _CROSSING and (crosses or self.norms[end] == "to"):
                 return Chunk("GO", at, end, found)  # 'move over to the other side'
             starts = norm in ("start", "begin") and self.norms[end] in ("at", "in", "on") and not self._previous()

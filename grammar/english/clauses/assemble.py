@@ -258,7 +258,9 @@ class Assembly:
                 misunderstood(span, f"'{verb.group.lemma}' did not happen here", "say where it is")
                 continue
             if verb.thing is not None and (
-                verb.group.lemma in _PLACING or _turns_over(verb) or (person and verb.group.lemma in _OWNING)
+                verb.group.lemma in _PLACING
+                or _turns_over(verb)
+                or (person and verb.group.lemma in _OWNING)
                 or (verb.group.lemma == "find" and verb.group.positive)
             ):
                 kept = {"keep"} if subject.phrase.pronoun in ("me", "we") else {"leave", "keep"}

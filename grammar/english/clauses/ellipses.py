@@ -11,9 +11,9 @@ from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _LOOKING = word_set("look peek peep peer search check open lift")
-"""Verbs by which the reader is sent to a place."""
+"""Verbs of a sentence that sends the reader to a place."""
 _SEEING = word_set("see find notice discover spot")
-"""Verbs by which the reader is told what is there."""
+"""Verbs of a sentence that says what is there."""
 _NOT_THERE = word_set("facing pointing to at from through")
 """Relations of *look* that do not say where the thing is that one sees."""
 
@@ -32,8 +32,8 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions, _with_members_apart,
-        _with_contrasts_at_subjects,
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -116,7 +116,9 @@ def _with_contrasts_at_subjects(chunks: list[Chunk]) -> list[Chunk]:
         denied = chunks[i]
         if denied.type != "NP" or not denied.value.negated or type_at(chunks, i + 1) not in JOINT_TYPES | {""}:
             continue
-        at_place = type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and is_place(chunks[i - 2].value)
+        at_place = (
+            type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and is_place(chunks[i - 2].value)
+        )
         first = max((k + 1 for k in range(i - 1) if chunks[k].type in JOINT_TYPES), default=0)
         told = type_at(chunks, first) == "NP" and type_at(chunks, first + 1) in FINITE
         if at_place and told and denied.value.head and not is_place(denied.value):
@@ -130,7 +132,9 @@ def _with_places_looked_at(chunks: list[Chunk]) -> list[Chunk]:
     """Return *if you look behind it, you will see a box* as *behind it, you will see a box*."""
     for i, chunk in enumerate(chunks):
         start = i - 1 if type_at(chunks, i - 1) == "SUB" else i
-        begins = chunk.type == "NP" and chunk.value.pronoun == "you" and type_at(chunks, start - 1) in JOINT_TYPES | {""}
+        begins = (
+            chunk.type == "NP" and chunk.value.pronoun == "you" and type_at(chunks, start - 1) in JOINT_TYPES | {""}
+        )
         if not begins or type_at(chunks, i + 1) not in ("VERB", "TVERB") or chunks[i + 1].value.lemma not in _LOOKING:
             continue
         if start < i and chunks[start].value not in ("if", "when", "once"):

@@ -14,8 +14,7 @@ from deixis.grammar.english.vocabulary.function_words import PERSONS
 _WITH_LISTS = frozenset({"between", "among", "next_to", "near", "with", "from", "opposite"})
 """Relations whose object is often a list."""
 _SUBORDINATE = frozenset(
-    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead",
-     "in case"}
+    {"if", "when", "while", "as", "once", "before", "after", "unless", "whether", "whenever", "instead", "in case"}
 )
 PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART", "ADJP", "WITH", "MEASURE"})
 IMPERATIVES = frozenset({"PUT", "FIND", "DO"})
@@ -323,8 +322,10 @@ def _list_then_verb(chunks: list[Chunk], types: list[str], at: int) -> bool:
             end, kinds = _run(types, i)
             if "COMMA" in kinds and "AND" not in kinds and "OR" not in kinds:
                 return False
-            if end >= len(types) or types[end] != "NP" or (
-                chunks[end].value.pronoun in ("it", "they") and types[end + 1 : end + 2] in (["BE"], ["VERB"])
+            if (
+                end >= len(types)
+                or types[end] != "NP"
+                or (chunks[end].value.pronoun in ("it", "they") and types[end + 1 : end + 2] in (["BE"], ["VERB"]))
             ):  # 'only a stool, and it is tucked underneath'
                 return False
             i = end
@@ -622,7 +623,13 @@ def _kind(
             placed += 2
         introduced = source[end].value.determiner in ("a", "an", "some") or source[end].value.count is not None
         between = any(c.type == "PREP" and c.value.preposition.relation in ("between", "among") for c in found)
-        if "THERE" in before and "PREP" in before and introduced and not between and types[placed : placed + 1] == ["PREP"]:
+        if (
+            "THERE" in before
+            and "PREP" in before
+            and introduced
+            and not between
+            and types[placed : placed + 1] == ["PREP"]
+        ):
             return "OJ"  # 'there is a hole in the middle of the board and a peg in the hole'
         if (
             found[-1].type == "NP"

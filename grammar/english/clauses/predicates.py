@@ -41,7 +41,21 @@ _REACHING = frozenset({"get", "come", "listen", "ask", "look"})
 _AT_THE_SUBJECT = frozenset({"inside", "on", "under", "beside", "above", "around", "in_front", "behind"})
 """Relations that, without an object, are to the thing that *with* is said of: *a dish with the swabs inside*."""
 _COVERING = frozenset(
-    {"spread", "drape", "throw", "sprinkle", "pour", "pull", "fold", "scatter", "wrap", "hook", "sling", "loop", "fling"}
+    {
+        "spread",
+        "drape",
+        "throw",
+        "sprinkle",
+        "pour",
+        "pull",
+        "fold",
+        "scatter",
+        "wrap",
+        "hook",
+        "sling",
+        "loop",
+        "fling",
+    }
 )
 """Verbs after which *over* means *on*."""
 _OUTER = frozenset({"back", "front", "side", "edge", "end", "corner"})

@@ -28,8 +28,29 @@ _ENDS = frozenset({"COMMA", "CUT", ""})
 _PREDICATES = frozenset({"PREP", "ADV", "PART", "TPART"})
 _BREAKS = frozenset({"COMMA", "CUT", "BUT"})
 _FOUND_OR_PUT = frozenset(
-    {"have", "see", "find", "keep", "put", "place", "leave", "set", "lay", "hang", "store", "notice", "stick", "line",
-     "arrange", "stack", "tuck", "stand", "hide", "want", "like"}
+    {
+        "have",
+        "see",
+        "find",
+        "keep",
+        "put",
+        "place",
+        "leave",
+        "set",
+        "lay",
+        "hang",
+        "store",
+        "notice",
+        "stick",
+        "line",
+        "arrange",
+        "stack",
+        "tuck",
+        "stand",
+        "hide",
+        "want",
+        "like",
+    }
 )
 """Verbs whose object is somewhere: *the rest you will find on the shelf*."""
 
@@ -54,14 +75,13 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
-        _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
-        _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
-        _without(_place_taken),
-        _without(_count_apart), _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
-        _with_telegraphic_places,
-        _without(_stranded), _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times,
+        _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
+        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
+        _without(_infinitive), _without(_place_taken), _without(_count_apart), _with_parts_after_verbs,
+        _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
+        _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -335,7 +355,10 @@ def _without_insertions(chunks: list[Chunk]) -> list[Chunk]:
 
 def _with_counted_labels(chunks: list[Chunk]) -> list[Chunk]:
     """Return *forks: two, left of the plate* as *two forks, left of the plate*."""
-    if [type_at(chunks, k) for k in range(3)] != ["NP", "COLON", "NP"] or type_at(chunks, 3) not in _ENDS | {"PREP", "ADV"}:
+    if [type_at(chunks, k) for k in range(3)] != ["NP", "COLON", "NP"] or type_at(chunks, 3) not in _ENDS | {
+        "PREP",
+        "ADV",
+    }:
         return chunks
     thing, number = chunks[0].value, chunks[2].value
     bare = not (number.head or number.pronoun or number.adjectives or number.owner)
@@ -390,7 +413,11 @@ def _with_objects_after_verbs(chunks: list[Chunk]) -> list[Chunk]:
         before = type_at(chunks, i - 1)
         first = chunk.type == "NP" and bool(chunk.value.head) and (before in JOINT_TYPES or not before)
         at = i + 1  # of the person
-        while first and type_at(chunks, at) in ("COMMA", "AND") and "NP" in (type_at(chunks, at + 1), type_at(chunks, at + 2)):
+        while (
+            first
+            and type_at(chunks, at) in ("COMMA", "AND")
+            and "NP" in (type_at(chunks, at + 1), type_at(chunks, at + 2))
+        ):
             at += 2 if type_at(chunks, at + 1) == "NP" else 3
         verb = chunks[at + 1] if at + 1 < len(chunks) else None
         if not first or verb is None or verb.type not in ("VERB", "TVERB"):
@@ -490,7 +517,9 @@ def _with_contact_clauses(chunks: list[Chunk]) -> list[Chunk]:
             and not (len(found) > 1 and found[-2].type in ("PREP", "OF"))
             and i + 1 < len(chunks)
             and chunks[i + 1].type in FINITE
-            and not (chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head))
+            and not (
+                chunks[i + 1].type == "TVERB" and type_at(chunks, i + 2) == "NP" and bool(chunks[i + 2].value.head)
+            )
         )
         if contact:
             found.append(put_in("REL", chunk))
@@ -620,7 +649,9 @@ def _with_labels_apart(chunks: list[Chunk]) -> list[Chunk]:
         told = type_at(chunks, i + 2) in ("PART", "ADJP") and type_at(chunks, i + 3) in _ENDS
         verbless = not any(c.type in FINITE | {"PUT"} for c in chunks)
         other = not part.head and (part.pronoun == "one" or part.count is not None) and type_at(chunks, i + 2) == "PART"
-        hangs = [type_at(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and type_at(chunks, i + 5) in _ENDS
+        hangs = [type_at(chunks, i + k) for k in (2, 3, 4)] == ["PART", "PREP", "NP"] and type_at(
+            chunks, i + 5
+        ) in _ENDS
         hangs = hangs and part.determiner is None and chunks[i + 4].value.pronoun == "it"
         own = last_word(part.head) in PARTS and type_at(chunks, i + 2) in ("ADJP", "PART", "TPART")
         bare = part.determiner is None and part.owner is None and not part.adjectives
@@ -642,8 +673,14 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     """Leave out the comma before the verb of a turned clause: *Behind it, propped against the wall, was a portrait*."""
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
-        lay = type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
-        if chunk.type == "COMMA" and (type_at(chunks, i + 1) in ("BE", "VERB") or lay) and type_at(chunks, i + 2) == "NP":
+        lay = (
+            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+        )
+        if (
+            chunk.type == "COMMA"
+            and (type_at(chunks, i + 1) in ("BE", "VERB") or lay)
+            and type_at(chunks, i + 2) == "NP"
+        ):
             first = max((k + 1 for k, c in enumerate(found) if c.type in JOINT_TYPES - {"COMMA", "AND"}), default=0)
             clause = [c.type for c in found[first:] if c.type not in ("ADVERB", "COMMA", "AND")]
             if FINITE & set(clause) or "THERE" in clause:
@@ -664,7 +701,9 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         whole = chunk.type == "ADVERB" and chunk.value in ("both", "all", "each")
-        after_list = type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and type_at(chunks, i - 3) == "AND"
+        after_list = (
+            type_at(chunks, i - 1) == "COMMA" and type_at(chunks, i - 2) == "NP" and type_at(chunks, i - 3) == "AND"
+        )
         if whole and after_list and type_at(chunks, i + 1) in ("PREP", "ADV"):
             phrase = NounPhrase(chunk.span, pronoun=chunk.value, plural=True)
             chunk = Chunk("NP", chunk.start, chunk.end, phrase, chunk.span)

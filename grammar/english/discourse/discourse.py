@@ -298,7 +298,11 @@ class Discourse(Statements):
             and not (
                 (last_word(subject.head) in REMOVABLE or _is_moved(clause, subject))
                 and any(
-                    (p.arguments and not p.reversed and not (subject.determiner is None and p.relation in ("facing", "pointing")))
+                    (
+                        p.arguments
+                        and not p.reversed
+                        and not (subject.determiner is None and p.relation in ("facing", "pointing"))
+                    )
                     or p.relation in PLACES
                     for p in predicates
                 )
