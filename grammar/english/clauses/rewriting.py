@@ -271,7 +271,9 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
     end = at + 2 + 2 * ([type_at(chunks, at + k) for k in (2, 3)] == ["OF", "NP"])
     if not place or type_at(chunks, end) not in ("PREP", "ADV"):
         return None
-    return end, Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
+    denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
+    group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
+    return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
 
 
 def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:
