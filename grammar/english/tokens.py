@@ -342,7 +342,7 @@ def without_request(words: list[Word]) -> bool:
     thing = words[verb + 1].norm if verb + 1 < len(words) else ""
     named = thing in POSSESSIVES or thing in ("the", "this", "that", "these", "those", "it", "them")
     if not asked or not named or words[verb].norm in _NOT_ASKED:
-        return False  # 'would you put a cup on it?' may mean that nobody would
+        return False  # 'would you put a cup on it?' may mean that no person would
     del words[start:verb]
     return True
 

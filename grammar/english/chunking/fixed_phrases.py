@@ -117,7 +117,7 @@ class FixedPhraseChunker(JointChunker):
         if (
             norm in ("at", "by", "until", "from", "since")
             and self.nouns.number(at + 1) is not None
-            and "clock" not in self.norms
+            and not {"clock", "o'clock"} & set(self.norms)
         ):
             end = at + 2 + (self.norms[at + 2] in ("sharp", "exactly"))
             if self.norms[end] in CLAUSE_ENDS | {"and"}:

@@ -142,7 +142,8 @@ class VerbChunker(RelatorChunker):
             told = [chunk.type for chunk in self.chunks[-3:]] == ["BE", "PART", "AND"]
             return Chunk("PART", at, at + 1, VerbGroup(form.lemma, form.kind, "participle")) if told else None
         spatial = form.form == "base" and form.kind in ("posture", "lean", "face", "point")
-        if last.value.modal is None or not spatial or (last.value.lemma == "be" and self.chunks[-2].type == "NP"):
+        placed = last.value.lemma == "be" and self.chunks[-2].type == "NP"  # 'it should be on the tray and rest'
+        if last.value.modal is None or not spatial or placed:
             return None
         return Chunk(
             "VERB", at, at + 1, VerbGroup(form.lemma, form.kind, "base", last.value.modal, last.value.positive)

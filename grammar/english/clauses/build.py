@@ -354,6 +354,10 @@ class Builder(Transformer[Any, Built]):
         if own and noun.phrase.head == "head" and relation == "on":  # 'the torch stands on its head'
             turned = Predicate("upside_down", (), span, positive=relator.positive)
             return (turned, *noun.phrase.predicates, *extra)
+        whole = noun.phrase.of if noun.phrase.of is not None else noun.phrase
+        if last_word(whole.head) in NEVER_PLACES:  # 'under the contract', 'at the bottom of its popularity'
+            misunderstood(span, f"'{whole.head}' is not a place")
+            return extra
         found = _positioned(relator, noun.phrase, span)
         if found is not None:
             main, rest = _with_argument(found, (*noun.phrase.predicates, *extra))
@@ -404,7 +408,7 @@ class Builder(Transformer[Any, Built]):
         manner = relation == "by" and noun.phrase.head in _MANNERS
         plain = noun.phrase.determiner in (None, "a", "an") and not noun.phrase.adjectives
         idle = last_word(noun.phrase.head) in NOT_PLACES and (plain or noun.phrase.determiner is None)
-        if idle or (plain and manner) or last_word(noun.phrase.head) in NEVER_PLACES:
+        if idle or (plain and manner):
             misunderstood(prep.span if noun.phrase.predicates else span, f"'{noun.phrase.head}' is not a place")
             return (*noun.phrase.predicates, *extra)
         if relation == "-":

@@ -11,9 +11,9 @@ from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.tables import word_set
 
 _LOOKING = word_set("look peek peep peer search check open lift")
-"""Verbs by which the reader is sent to a place."""
+"""Verbs of a sentence that sends the reader to a place."""
 _SEEING = word_set("see find notice discover spot")
-"""Verbs by which the reader is told what is there."""
+"""Verbs of a sentence that says what is there."""
 _NOT_THERE = word_set("facing pointing to at from through")
 """Relations of *look* that do not say where the thing is that one sees."""
 
@@ -32,8 +32,8 @@ def filled_in(chunks: list[Chunk]) -> list[Chunk]:
         Chunks with predicates repeated where a clause leaves them out, and without the words of clefts.
     """
     for rewrite in (
-        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions, _with_members_apart,
-        _with_contrasts_at_subjects,
+        _with_there_as_being, _with_repeated_predicates, _without_clefts, _with_places_looked_at, _with_exceptions,
+        _with_members_apart, _with_contrasts_at_subjects,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks

@@ -75,14 +75,13 @@ def rewritten(chunks: list[Chunk], text: str) -> list[Chunk]:
     """
     chunks = filled_in(_without_parentheses(chunks, text))
     for rewrite in (
-        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times, _without(_beneficiary),
-        _without(_bare_superlative), _without(_free_place), _without_asides, _without_resumed_subjects,
-        _with_existential_have, _with_verbs_of_one_person, _without(_search), _without(_infinitive),
-        _without(_place_taken),
-        _without(_count_apart), _with_parts_after_verbs, _with_relative_places, _with_measures_denied, _with_destinations,
-        _with_objects_after_verbs, _with_contact_clauses, _with_label_nouns, _with_place_labels,
-        _with_telegraphic_places,
-        _without(_stranded), _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
+        _without_vocatives, _without_adverbs_apart, _without_insertions, _with_counted_labels, _without_times,
+        _without(_beneficiary), _without(_bare_superlative), _without(_free_place), _without_asides,
+        _without_resumed_subjects, _with_existential_have, _with_verbs_of_one_person, _without(_search),
+        _without(_infinitive), _without(_place_taken), _without(_count_apart), _with_parts_after_verbs,
+        _with_relative_places, _with_measures_denied, _with_destinations, _with_objects_after_verbs,
+        _with_contact_clauses, _with_label_nouns, _with_place_labels, _with_telegraphic_places, _without(_stranded),
+        _with_labels_apart, _with_places_before_verbs, _with_pronouns_of_lists, _with_gaps, _with_aimed_parts,
     ):  # fmt: skip
         chunks = rewrite(chunks)
     return chunks
@@ -272,7 +271,9 @@ def _place_taken(chunks: list[Chunk], at: int) -> _Run | None:
     end = at + 2 + 2 * ([type_at(chunks, at + k) for k in (2, 3)] == ["OF", "NP"])
     if not place or type_at(chunks, end) not in ("PREP", "ADV"):
         return None
-    return end, Chunk("BE", chunk.start, chunk.end, replace(chunk.value, lemma="be", kind="be"), chunk.span)
+    denied = chunks[at + 1].value.determiner == "no"  # 'phones have no place on the stand'
+    group = replace(chunk.value, lemma="be", kind="be", positive=chunk.value.positive is not denied)
+    return end, Chunk("BE", chunk.start, chunk.end, group, chunk.span)
 
 
 def _count_apart(chunks: list[Chunk], at: int) -> _Run | None:

@@ -254,14 +254,6 @@ class Discourse(Statements):
         if order and clause.predicates:  # 'on the left comes a cup, followed by a jug': the place goes first
             subject = replace(subject, predicates=tuple(p for p in subject.predicates if p not in order))
             clause = replace(clause, predicates=(*clause.predicates, *order))
-        if not clause.predicates and not clause.choices and not clause.existential:
-            handled = self._introduce(subject)  # 'fold the napkin'
-            if handled is not None:
-                self.references.recent.insert(0, Focus(handled, [], None, sentence))
-            return
-        if clause.existential and not clause.predicates and subject.predicates:
-            clause = replace(clause, predicates=subject.predicates)
-            subject = replace(subject, predicates=())
         whole = self.text[self.references.start : self.end]
         unreal = REVOKED.search(self.text[clause.span[1] : self.end]) or UNREAL.search(whole)
         unreal = unreal or REPORTED.search(self.text, self.references.start, clause.span[1]) or SAID_AFTER.search(whole)
@@ -270,6 +262,14 @@ class Discourse(Statements):
             unreal = unreal or CONSEQUENCE.match(self.text[clause.span[1] : self.end])
         if (unreal and positive) or SELDOM.search(self.text[slice(*clause.span)]):
             self.how = replace(self.how, uncertain=True, optional=True, weight=0.5)
+        if not clause.predicates and not clause.choices and not clause.existential:
+            handled = self._introduce(subject)  # 'fold the napkin'
+            if handled is not None:
+                self.references.recent.insert(0, Focus(handled, [], None, sentence))
+            return
+        if clause.existential and not clause.predicates and subject.predicates:
+            clause = replace(clause, predicates=subject.predicates)
+            subject = replace(subject, predicates=())
         limit = LIMITED.search(self.text[slice(clause.span[0], self.end)]) or ELSEWHERE.match(
             self.text[self.references.start : self.end]
         )
@@ -298,7 +298,11 @@ class Discourse(Statements):
             and not (
                 (last_word(subject.head) in REMOVABLE or _is_moved(clause, subject))
                 and any(
-                    (p.arguments and not (subject.determiner is None and p.relation in ("facing", "pointing")))
+                    (
+                        p.arguments
+                        and not p.reversed
+                        and not (subject.determiner is None and p.relation in ("facing", "pointing"))
+                    )
                     or p.relation in PLACES
                     for p in predicates
                 )

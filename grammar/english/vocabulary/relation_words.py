@@ -18,13 +18,15 @@ NOT_PLACES = word_set(
     " consideration supervision observation control attack threat arrest pressure stress strike condition"
     " shape danger need debt love peace pain tears luck vain theory principle practice belief reach scope"
     " sight suspicion investigation way secret private writing effect force action motion progress later ease"
-    " error pretext heaven hour minute month week year season harmony"
+    " error pretext heaven hour minute month week year season harmony arrival departure entry delivery completion"
+    " reflection inspection"
 )
 """Nouns after which a preposition names no place, where they have no determiner: *on Monday*, *behind schedule*."""
 
 NEVER_PLACES = word_set(
     "contract law rule agreement pretence pretense impression influence auspices assumption supervision guidance"
-    " misapprehension spell treaty name circumstance principle nature rumour rumor honour honor behalf occasion"
+    " misapprehension spell popularity fame career power treaty"
+    " name circumstance principle nature rumour rumor honour honor behalf occasion"
 )
 """Nouns after which a preposition names no place, whatever stands before them: *under the contract*."""
 

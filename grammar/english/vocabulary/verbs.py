@@ -191,7 +191,8 @@ def verb_forms() -> dict[str, VerbForm]:
 
 
 _ONLY_PARTICIPLES = word_set(
-    "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string range coil slip lower fill stow plant heap spoon load"
+    "draw sink wind drive sling snap loop burn bundle dump paste plaster stencil deposit clip clamp ring tower string"
+    " range coil slip lower fill stow plant heap spoon load"
     " thread pack feed scoop dot ladle stretch swing"
 )
 """Verbs whose plain forms are nouns or adjectives more often."""

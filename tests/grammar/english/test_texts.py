@@ -10,8 +10,12 @@ from deixis.ontology.graph.claims import Claim
 
 TEXTS = Path(__file__).parent / "texts"
 MIN_FOUND, MIN_RIGHT = 0.8, 0.9
-MIN_FOUND_UNSEEN = 0.7
-"""Share of the facts of ``unseen.txt``, whose texts were written before the reader was changed for them."""
+FLOORS = {"unseen": (0.75, 0.9), "counters": (0.75, 0.9), "stations": (0.5, 0.75)}
+"""Smallest shares of found and of right facts of texts that are harder than the others.
+
+Their authors did not know the reader. It was changed for those of ``unseen.txt`` and ``counters.txt`` afterwards, and
+never for those of ``stations.txt``.
+"""
 
 
 @pytest.mark.parametrize(
@@ -21,8 +25,9 @@ def test_most_stated_facts_are_found_and_right(file: Path) -> None:
     score = Score()
     for text in written_texts(file):
         score.add(text)
-    assert score.found >= (MIN_FOUND_UNSEEN if file.stem == "unseen" else MIN_FOUND) * score.stated
-    assert score.right >= MIN_RIGHT * score.read_facts
+    min_found, min_right = FLOORS.get(file.stem, (MIN_FOUND, MIN_RIGHT))
+    assert score.found >= min_found * score.stated
+    assert score.right >= min_right * score.read_facts
 
 
 def test_no_trap_becomes_a_fact() -> None:
@@ -138,6 +143,67 @@ def asserted(text: str) -> list[str]:
         ("She kept the ring in a box until it was stolen. The jug is blue.", []),
         ("The mug barely missed landing on the box. The jug is blue.", []),
         ("The jug is blue. You would think the cup was behind it.", []),
+        ("The ruler is in the case, and so is the pen.", ["inside(ruler, case)", "inside(pen, case)"]),
+        ("The ruler goes in the case, as does the pen.", ["inside(ruler, case)", "inside(pen, case)"]),
+        ("The ruler isn't in the case, and neither is the pen.",
+         ["not inside(ruler, case)", "not inside(pen, case)"]),
+        ("It is the fork that lies on the left, not the knife.", ["part(fork, 'left')", "not part(knife, 'left')"]),
+        ("It is on the shelf, not the box, that you will find the pen.", ["on(pen)"]),
+        ("If you look behind the curtain, you'll see a box.", ["behind(box, curtain)"]),
+        ("All spoons are in the jar except the ladle, which is behind the pot.",
+         ["inside(spoons, jar)", "behind(ladle, pot)"]),
+        ("Three cups are on the box, one of which is behind the jug.",
+         ["on(cup_1, box)", "on(cup_2, box)", "on(cup_3, box)", "behind(cup_1, jug)"]),
+        ("Check that the bolt is in the tin and that the nut is under the plate.",
+         ["inside(bolt, tin)", "under(nut, plate)"]),
+        ("The vase was moved from the box to the shelf. The cup is behind the vase.",
+         ["on(vase)", "behind(cup, vase)"]),
+        ("The jug should be rinsed and stand behind the box.", ["state(jug, 'rinse')", "behind(jug, box)"]),
+        ("The mats lie on the box, each with a pen across it.", ["on(mats, box)", "across(pen, mats)"]),
+        ("The phone is on the box, and beneath the phone a card.", ["on(phone, box)", "under(card, phone)"]),
+        ("The pins, points to the left, lie behind the box.", ["behind(pins, box)", "pointing(pins, 'left')"]),
+        ("Soy, vinegar and oil I keep behind the jar.",
+         ["behind(soy, jar)", "behind(vinegar, jar)", "behind(oil, jar)"]),
+        ("Keep the cat off the box.", ["not on(cat, box)"]),
+        ("The pegs get lined up beside the box.", ["next_to(pegs, box)"]),
+        ("At no time are cups to be left on the box.", ["not on(cups, box)"]),
+        ("The copy is in the box in case the cup breaks.", ["inside(copy, box)"]),
+        ("Could you please put the cup on the box?", ["on(cup, box)"]),
+        ("The cup, no, the jug, is behind the box.", ["behind(jug, box)"]),
+        ("Neither cup is on the box; both stand behind the jug.",
+         ["not on(cup_1, box)", "not on(cup_2, box)", "behind(cup_1, jug)", "behind(cup_2, jug)"]),
+        ("One cup is on the box; the other lies under the jug.", ["on(cup_1, box)", "under(cup_2, jug)"]),
+        ("Top drawer: pens, scissors and tape.",
+         ["inside(pens, drawer)", "inside(scissors, drawer)", "inside(tape, drawer)"]),
+        ("Centre of the box: jug; left of it, two cups.",
+         ["middle(jug, box)", "left(cup_1, jug)", "left(cup_2, jug)"]),
+        ("Cups, saucers and spoons on the box, jug behind it.",
+         ["on(cups, box)", "on(saucers, box)", "on(spoons, box)", "behind(jug, box)"]),
+        ("Lay down the mat; on it, stand the jug.", ["on(jug, mat)"]),
+        ("The jug, in turn, stands behind the box.", ["behind(jug, box)"]),
+        ("The jug takes the place of honour on the box.", ["on(jug, box)"]),
+        ("The pegs have no place on the box.", ["not on(pegs, box)"]),
+        ("The cup lies nearest to you.", ["nearest(cup, 'viewer')"]),
+        ("The cups must not touch one another.", ["not touching_each_other(cups)"]),
+        ("Between the cup and the jug, but closer to the latter, lies a key.",
+         ["between(key, cup, jug)", "closer(key, jug)"]),
+        ("There hangs a lamp over the box.", ["above(lamp, box)"]),
+        ("Every place has a fork to the left of the plate and a knife to the right of it.",
+         ["left(fork, plate)", "right(knife, plate)"]),
+        ("The coat is draped over the back of the chair.", ["on(coat, chair)"]),
+        ("The boots are under the bench with their toes forward.",
+         ["under(boot_1, bench)", "under(boot_2, bench)", "pointing(boot_1, 'forward')",
+          "pointing(boot_2, 'forward')"]),
+        ("The pot is on the box, where the jug used to be.", ["on(pot, box)"]),
+        ("You might as well put the cup on the box. The jug is blue.", []),
+        ("It looks as if the cup is on the box. The jug is blue.", []),
+        ("The photo shows the cup on the box. The jug is blue.", []),
+        ("The cup isn't always on the box. The jug is blue.", []),
+        ("Few cups are on the box. The jug is blue.", []),
+        ("The theory puts the cup on the box. The jug is blue.", []),
+        ("The cup is supposedly on the box. The jug is blue.", []),
+        ("The boss wants the cup on the box. The jug is blue.", []),
+        ("The box on which the cup once stood is blue.", []),
     ],
 )  # fmt: skip
 def test_constructs_of_many_voices_give_their_facts(text: str, expected: list[str]) -> None:
