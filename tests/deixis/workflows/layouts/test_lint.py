@@ -165,8 +165,9 @@ def test_places_on_the_table_connect_objects() -> None:
     assert english_codes(text, "F004") == []
 
 
-def test_reading_counts_towards_the_time_limit(tmp_path: Path) -> None:
+@pytest.mark.parametrize("command", [["lint"], ["infer"], ["infer", "--verdict"], ["imagine"]], ids=" ".join)
+def test_reading_counts_towards_the_time_limit(command: list[str], tmp_path: Path) -> None:
     text = tmp_path / "long.txt"
     text.write_text("The fork is left of the plate. " * 20_000, encoding="utf-8")
-    code, out, err = run("lint", text, "--time-limit", 0.5)
+    code, out, err = run(*command, text, "--time-limit", 0.5)
     assert (code, out) == (3, "") and "time" in err
