@@ -278,6 +278,11 @@ class Blackboard(Closing):
         ------
         ReadOnlyMemoryError
             If it is.
+
+        Examples
+        --------
+        >>> with Blackboard.transient() as board:
+        ...     board.require_writable()
         """
         if isinstance(self._keys, DiskKeys):
             self._keys.require_writable()
