@@ -251,8 +251,12 @@ def clear_journal(folder: Path) -> None:
     folder
         The folder of the memory.
     """
-    for name in (JOURNAL, NEW_JOURNAL):
-        (folder / name).unlink(missing_ok=True)
+    for file in (folder / JOURNAL, folder / NEW_JOURNAL):
+        try:
+            file.unlink(missing_ok=True)
+        except OSError:  # a file system that is read-only refuses it also where there is no such file
+            if file.exists():
+                raise
 
 
 def has_committed(memory: Path, store: str, id: str) -> bool:

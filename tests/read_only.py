@@ -11,7 +11,7 @@ import pytest
 
 
 def make_read_only(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have every attempt to open a file under a folder for writing refused, as on a file system mounted read-only."""
+    """Have every write under a folder refused, as on a file system mounted read-only: also removing what is missing."""
     real = os.open
 
     def refusing(path: Any, flags: int, *rest: Any, **more: Any) -> int:
@@ -20,4 +20,16 @@ def make_read_only(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             raise OSError(errno.EROFS, os.strerror(errno.EROFS))
         return real(path, flags, *rest, **more)
 
+    def refuse(name: str) -> None:
+        before = getattr(os, name)
+
+        def refusing_or(path: Any, *rest: Any, **more: Any) -> Any:
+            if str(folder) in os.fspath(path):
+                raise OSError(errno.EROFS, os.strerror(errno.EROFS), os.fspath(path))
+            return before(path, *rest, **more)
+
+        monkeypatch.setattr(os, name, refusing_or)
+
     monkeypatch.setattr(os, "open", refusing)
+    for name in ("unlink", "rename", "replace"):
+        refuse(name)

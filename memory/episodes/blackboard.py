@@ -271,6 +271,22 @@ class Blackboard(Closing):
         """Sequence number of the last change; 0 if nothing was ever written."""
         return self._sequence
 
+    def require_writable(self) -> None:
+        """Check that the blackboard is not that of a memory that can only be read.
+
+        Raises
+        ------
+        ReadOnlyMemoryError
+            If it is.
+
+        Examples
+        --------
+        >>> with Blackboard.transient() as board:
+        ...     board.require_writable()
+        """
+        if isinstance(self._keys, DiskKeys):
+            self._keys.require_writable()
+
     def seconds(self, moment: datetime | None = None) -> float:
         """Return a moment as seconds since the origin.
 
@@ -486,8 +502,7 @@ class Blackboard(Closing):
         folder = self._keys.folder
         entry = read_journal(folder)
         if entry is None or not has_committed(folder.parent, EPISODES, entry.id):
-            clear_journal(folder)
-            self._undelivered = False
+            self._clear_journal()
             return
         changes = [change_of_list(json.loads(data or b"")) for _, data in entry.pairs]
         self._deliver(entry.id, changes, entry.pairs[0][0].decode() if entry.pairs else "")
@@ -498,7 +513,10 @@ class Blackboard(Closing):
         if self._keys.get(mark) != id.encode():
             self._restore()
             self._keep(self._made(changes, by, fitting=True), {mark: id.encode()})
-        if isinstance(self._keys, DiskKeys):
+        self._clear_journal()
+
+    def _clear_journal(self) -> None:
+        if isinstance(self._keys, DiskKeys) and not self._keys.is_copy:
             clear_journal(self._keys.folder)
         self._undelivered = False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 from deixis.grammar.english.tokens import Word
@@ -104,9 +105,10 @@ class NounFinder:
             return float(NUMBERS[norm])
         if norm[:1].isdigit():
             try:
-                return float(norm)
+                value = float(norm)
             except ValueError:
                 return None
+            return value if math.isfinite(value) else None
         return None
 
     def ordinal(self, at: int) -> int | None:

@@ -137,9 +137,19 @@ class DiskKeys(Keys):
             undo.pop_all()
             return store
 
+    @property
+    def is_copy(self) -> bool:
+        """True for the copy of a folder that cannot be written."""
+        return self._scratch is not None
+
     def protect(self) -> None:
         """Refuse all further writes if this is the copy of a folder that cannot be written."""
         self._protected = self._scratch is not None
+
+    def require_writable(self) -> None:
+        """Raise ReadOnlyMemoryError if writes are refused."""
+        if self._protected:
+            raise ReadOnlyMemoryError(self._read_only)
 
     def get(self, key: bytes) -> bytes | None:
         """Return the value of a key."""
@@ -179,8 +189,7 @@ class DiskKeys(Keys):
 
     def write(self, pairs: Mapping[bytes, bytes | None]) -> None:
         """Write keys with their values, and delete those without, all or nothing."""
-        if self._protected:
-            raise ReadOnlyMemoryError(self._read_only)
+        self.require_writable()
         db = self._database()
         number = _NUMBER.pack(self._writes + 1)
         try:

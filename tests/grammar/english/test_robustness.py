@@ -189,3 +189,8 @@ def test_other_languages_are_refused(text: str) -> None:
     assert sentence.fragment is None
     assert sentence.understood == 0
     assert "known as English" in sentence.misunderstood[0].reason
+
+
+@pytest.mark.parametrize("number", ["9" * 400, "9" * 5000, "1e999"])
+def test_a_number_without_end_is_not_a_count(number: str) -> None:
+    assert parse_english(f"{number} forks are left of the plate.")

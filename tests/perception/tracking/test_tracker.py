@@ -174,4 +174,4 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
 
 
 def test_image_of_a_single_place_has_no_optics() -> None:
-    assert optics_of(PointCloud(np.tile(np.float32([0, 0, 1]), (768, 1)), organised=(24, 32))) is None
+    assert optics_of(PointCloud(np.tile(np.array([0, 0, 1], np.float32), (768, 1)), organised=(24, 32))) is None

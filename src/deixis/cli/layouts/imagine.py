@@ -38,13 +38,14 @@ def imagine(
     as_json: AsJson = False,
 ) -> None:
     """Lay an example table that satisfies a script, or print which facts allow no table (exit 1)."""
+    from deixis.deadline import Deadline
     from deixis.grammar.read import read_script_file
     from deixis.report.layouts.imagine import imagination_lines, imagination_to_dict
     from deixis.workflows.layouts.imagine import imagine as run
 
     scenes, pictures = _numbered(out, count), _numbered(plot, count)
     _require_writable(script, scenes, pictures)
-    parsed = read_script_file(script)
+    parsed = read_script_file(script, deadline=Deadline.after(time_limit))
     tell_of_compiling()
     found = run(parsed, any_size=any_size, seed=seed, count=count, time_limit=time_limit)
     _write(found, scenes, pictures)

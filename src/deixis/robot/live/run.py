@@ -215,6 +215,7 @@ def live_robot(
         The robot.
     """
     with scratch_folder() as folder, Blackboard.open(memory, create=True) as board:
+        board.require_writable()
         _end_earlier(board)
         robot = LiveRobot(board, folder)
 

@@ -101,10 +101,9 @@ def span_of_day(day: str) -> tuple[datetime, datetime]:
     relative = {"today": 0, "yesterday": 1}
     try:
         found = date.today() - timedelta(relative[day]) if day in relative else date.fromisoformat(day)
-        after = found + timedelta(1)
-    except (ValueError, OverflowError) as error:
+        first, last = (datetime.combine(each, time()).astimezone() for each in (found, found + timedelta(1)))
+    except (ValueError, OverflowError) as error:  # also the first and the last day that dates have
         raise SettingError(f"a day must be a date such as 2026-11-23, today or yesterday, got {day!r}") from error
-    first, last = (datetime.combine(each, time()).astimezone() for each in (found, after))
     return first, last
 
 

@@ -250,12 +250,13 @@ def verdict_of(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> b
     bool or None
         The verdict, or None if the time limit left it open.
     """
+    deadline = Deadline.after(time_limit)
     try:
-        read = as_script(script)
+        read = as_script(script, deadline=deadline)
         graph = read.graph()
         found = facts_of_claims(read.claims, graph.nodes, graph.vocabulary)
         together = with_facts_of_claims(graph, found) if found else graph
-        return consistent(demands_of(together), Deadline.after(time_limit))
+        return consistent(demands_of(together), deadline)
     except OutOfTimeError:
         return None
 
@@ -268,7 +269,7 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     script
         The script, or its file.
     time_limit
-        Seconds for facts that leave a choice; the others need no search.
+        Seconds for reading the script and for facts that leave a choice; the others need no search.
 
     Returns
     -------
@@ -291,7 +292,9 @@ def infer(script: Script | str | Path, time_limit: float = TIME_LIMIT) -> Infere
     >>> deixis.infer(deixis.read_script(text="fork left of plate; plate left of fork")).consistent
     False
     """
-    return inference_of(as_script(script), time_limit)
+    deadline = Deadline.after(time_limit)
+    read = as_script(script, deadline=deadline)
+    return inference_of(read, deadline.left)
 
 
 def plain_fact(text: str, name: str) -> Fact:

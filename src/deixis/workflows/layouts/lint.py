@@ -103,7 +103,7 @@ def lint(
     ignore
         Codes, or their beginnings, of the warnings to leave out.
     time_limit
-        Seconds for the warnings that need inference.
+        Seconds for reading the script and for the warnings that need inference.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def lint(
     Raises
     ------
     DeixisError
-        If the script cannot be read, or no code begins as ``select`` or ``ignore`` says.
+        If the script cannot be read, or not in time, or no code begins as ``select`` or ``ignore`` says.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def lint(
         if not prefix or not any(code.startswith(prefix.upper()) for code in CODES):
             raise DeixisError(f"lint: no code begins with '{prefix}'; the codes are {', '.join(CODES)}")
     deadline = Deadline.after(time_limit)
-    read = as_script(script)
+    read = as_script(script, deadline=deadline)
     from_facts, complete = _inferred_findings(read, deadline)
     found = [*_name_findings(read), *_fact_findings(read), *from_facts]
     if read.reading is not None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from commands import deixis
+from read_only import make_read_only
 
 
 @pytest.fixture
@@ -32,3 +33,13 @@ def test_a_story_that_cannot_be_written_is_refused_at_first(folder: Path, tmp_pa
     code, out, err = deixis("robot", "run", "--from", folder, "--memory", tmp_path / "m", "--story", tmp_path / "out")
     assert (code, out) == (2, "") and "story.png: the folder of the picture cannot be made" in err
     assert not (tmp_path / "m").exists()
+
+
+def test_a_memory_that_can_only_be_read_is_refused(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    memory = tmp_path / "m"
+    assert deixis("episodes", "add", "cup", "shines", "--start", 1, "--memory", memory)[0] == 0
+    make_read_only(memory, monkeypatch)
+    code, out, err = deixis("robot", "run", "--from", folder, "--memory", memory)
+    assert (code, out) == (2, "") and "cannot be opened for writing" in err

@@ -345,3 +345,9 @@ def test_kill_at_the_commit_leaves_all_memories_in_step(
             ({"f1"}, seen) if killed == "before" else (set(), False)
         )
     assert verify(tmp_path).findings == ()
+
+
+@pytest.mark.parametrize("day", ["0001-01-01", "9999-12-31", "2026-99-99", "nan"])
+def test_a_day_beyond_the_calendar_is_an_error(day: str) -> None:
+    with pytest.raises(SettingError, match="a day must be a date"):
+        span_of_day(day)

@@ -163,3 +163,11 @@ def test_a_group_of_unknown_size_is_a_warning() -> None:
 def test_places_on_the_table_connect_objects() -> None:
     text = "The lamp is in the far left corner. The cup is in the middle. The jug is left of the cup."
     assert english_codes(text, "F004") == []
+
+
+@pytest.mark.parametrize("command", [["lint"], ["infer"], ["infer", "--verdict"], ["imagine"]], ids=" ".join)
+def test_reading_counts_towards_the_time_limit(command: list[str], tmp_path: Path) -> None:
+    text = tmp_path / "long.txt"
+    text.write_text("The fork is left of the plate. " * 20_000, encoding="utf-8")
+    code, out, err = run(*command, text, "--time-limit", 0.5)
+    assert (code, out) == (3, "") and "time" in err

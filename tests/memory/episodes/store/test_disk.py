@@ -11,10 +11,17 @@ from pathlib import Path
 import pytest
 from episodic_fluents import on
 from killing import forks_of
+from read_only import make_read_only
 
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add, Finish
-from deixis.memory.errors import DamagedMemoryError, EpisodeError, MemoryBusyError, MemoryFormatError
+from deixis.memory.errors import (
+    DamagedMemoryError,
+    EpisodeError,
+    MemoryBusyError,
+    MemoryFormatError,
+    ReadOnlyMemoryError,
+)
 from deixis.memory.verify import verify
 from deixis.reasoning.temporal.fluent import Pattern
 
@@ -164,3 +171,15 @@ def test_forked_child_is_refused(tmp_path: Path) -> None:
     )
     run = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, timeout=60)
     assert run.stdout.splitlines() == [MemoryBusyError.__name__, "t1"], run.stderr
+
+
+def test_episodes_that_cannot_be_written_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with Blackboard.open(tmp_path, create=True) as board:
+        board.write(Add(on("f1")), by="test")
+    make_read_only(tmp_path, monkeypatch)
+    with Blackboard.open(tmp_path) as board:
+        assert [each.id for each in board.now()] == ["f1"]
+        with pytest.raises(ReadOnlyMemoryError):
+            board.require_writable()
+        with pytest.raises(ReadOnlyMemoryError):
+            board.write(Add(on("f2")), by="test")
