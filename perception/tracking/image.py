@@ -102,6 +102,23 @@ class FrameImage:
     colour: NDArray[np.float32]
     optics: Optics
 
+    def places(self, pixels: NDArray[np.intp], back: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the points that pixels show, in another frame.
+
+        Parameters
+        ----------
+        pixels
+            Flat indices of shape (k,).
+        back
+            Transform (4, 4) from the frame of the cloud to the other one.
+
+        Returns
+        -------
+        ndarray
+            Points of shape (k, 3), in metres.
+        """
+        return self.points.reshape(-1, 3)[pixels].astype(np.float64) @ back[:3, :3].T + back[:3, 3]
+
 
 def image_of(cloud: PointCloud, optics: Optics, stride: int) -> FrameImage:
     """Return every ``stride``-th row and column of an organised cloud.

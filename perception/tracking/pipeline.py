@@ -35,6 +35,9 @@ colour, which changes with the light on a turned surface, and across that direct
 COLOURS = 8
 """Number of colours of a thing with which changed pixels are compared."""
 
+LEAST_INSIDE = 0.08
+"""Least share of the points of a thing that are within the image, for it to be seen well."""
+
 MIN_POINTS_BEYOND = 5
 """Number of points outside its box from which the box of a thing is extended."""
 
@@ -95,7 +98,7 @@ class Pipeline:
     agreement: float = field(default=1.0, init=False)
     """Share of its visible points that agree with the last frame."""
     visible: float = field(default=1.0, init=False)
-    """Share of its points that the last frame in which it moved showed."""
+    """Share of its points within the image that the last frame in which it moved showed."""
     beneath: Beneath | None = field(default=None, init=False)
     settled_at: float = field(default=-np.inf, init=False)
     """Time in seconds when it last came to rest."""
@@ -111,6 +114,7 @@ class Pipeline:
         self._choose_points()
         self._filter = ParticleFilter(self.pose, self.settings.particles, self.settings.seed + self.slot)
         self._places: deque[tuple[float, NDArray[np.float64]]] = deque()
+        self._carried: list[NDArray[np.float64]] = []
         self._rest = self.pose
         self._velocity = np.zeros(3)
 
@@ -125,25 +129,58 @@ class Pipeline:
         self._colours = np.zeros_like(self._points) if colours is None else colours[chosen].astype(np.float64)
 
     @property
+    def first_rest(self) -> bool:
+        """True if it has not moved since it was first seen."""
+        return not self.active and self.settled_at < self.at
+
+    @property
     def last_rest(self) -> NDArray[np.float64]:
         """Pose (4, 4) in which it was last at rest."""
         return self._rest
 
-    def expected(self, seconds: float) -> NDArray[np.float64]:
-        """Return where the thing is expected in the next frame, by its velocity.
+    @property
+    def in_hand(self) -> bool:
+        """True if a hand has carried it since it was last seen."""
+        return bool(self._carried)
+
+    @property
+    def reach(self) -> float:
+        """Distance in metres from its middle to its farthest side."""
+        return max(self.oriented.extents) / 2
+
+    def carry(self, step: NDArray[np.float64]) -> None:
+        """Move the thing with the hand that hides it.
 
         Parameters
         ----------
+        step
+            Movement of the hand, shape (3,), in metres.
+        """
+        self._carried = self._carried or [self.pose[:3, 3]]
+        self.pose = self.pose.copy()
+        self.pose[:3, 3] += step
+        self._carried.append(self.pose[:3, 3])
+        self._filter.reset(self.pose)
+
+    def way_from_expected(self, place: NDArray[np.float64], seconds: float) -> float:
+        """Return how far a place is from where the thing is expected.
+
+        That is where its velocity leads it, or any place where the hand that carried it may have set it down.
+
+        Parameters
+        ----------
+        place
+            Place of shape (3,) in the table's frame, in metres.
         seconds
             Time since the last frame.
 
         Returns
         -------
-        ndarray
-            Position of shape (3,) in the table's frame, in metres.
+        float
+            Distance in metres.
         """
-        place: NDArray[np.float64] = self.pose[:3, 3] + self._velocity * seconds
-        return place
+        expected = self._carried or [self.pose[:3, 3] + self._velocity * seconds]
+        return float(np.linalg.norm(np.array(expected) - place, axis=1).min())
 
     def contains(
         self, points: NDArray[np.float64], margin: float, pose: NDArray[np.float64] | None = None
@@ -201,7 +238,8 @@ class Pipeline:
         Returns
         -------
         tuple
-            The estimate; the mean agreement of the points that are not hidden; and the share of points that are seen.
+            The estimate; the mean agreement of the points that are not hidden; and the share of points that are seen,
+            of those within the image.
         """
 
         def weigh(places: NDArray[np.float64], turns: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -211,7 +249,7 @@ class Pipeline:
             return found
 
         ahead = self._filter.expected(seconds)
-        drawn = np.cumsum(self._likeness(tints))
+        drawn = np.cumsum(self.likeness(tints))
         likely = len(drawn) > 0 and drawn[-1] > 0
 
         def guide(turns: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
@@ -226,20 +264,23 @@ class Pipeline:
         self._velocity = self._filter.velocity.copy()
         found = self._filter.step(weigh, guide if likely else None, seconds, lost=not self.found)
         self.particles = found.particles
-        inliers, exposed = self._seen(found.place, found.turn, image, view, taken, noise)
-        return found, inliers / max(exposed, 1.0), inliers / len(self._points)
+        inliers, exposed, inside = self._seen(found.place, found.turn, image, view, taken, noise)
+        return found, inliers / max(exposed, 1.0), inliers / max(inside, LEAST_INSIDE * len(self._points))
 
-    def _likeness(self, tints: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return how well each of some colours (k, 3) agrees with the nearest of a few of the thing's, as (k,)."""
-        least = np.full(len(tints), np.inf)
-        other = (tints**2).sum(axis=1)
-        for colour in self._colours[:: max(1, len(self._colours) // COLOURS)]:
-            own = float(colour @ colour)
-            across = other - (tints @ colour) ** 2 / max(own, 1.0)
-            along = (np.sqrt(other) - np.sqrt(own)) ** 2
-            least = np.minimum(least, along / SHADE_SPREAD**2 + across / COLOUR_SPREAD**2)
-        likeness: NDArray[np.float64] = np.exp(-0.5 * least)
-        return likeness
+    def likeness(self, tints: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how well colours agree with those of the thing.
+
+        Parameters
+        ----------
+        tints
+            Colours of shape (k, 3).
+
+        Returns
+        -------
+        ndarray
+            Likeness in [0, 1] to the nearest of a few colours of the thing, shape (k,).
+        """
+        return likeness(tints, self._colours[:: max(1, len(self._colours) // COLOURS)])
 
     def seen_at_place(
         self, image: FrameImage, view: TableView, taken: NDArray[np.bool_], noise: float
@@ -260,7 +301,7 @@ class Pipeline:
         tuple
             Share of the points that agree, of those that nothing hides; and the share of points that nothing hides.
         """
-        inliers, exposed = self._seen(self.pose[:3, 3], _quaternion(self.pose), image, view, taken, noise)
+        inliers, exposed, _ = self._seen(self.pose[:3, 3], _quaternion(self.pose), image, view, taken, noise)
         return inliers / max(exposed, 1.0), exposed / len(self._points)
 
     def _seen(
@@ -271,10 +312,10 @@ class Pipeline:
         view: TableView,
         taken: NDArray[np.bool_],
         noise: float,
-    ) -> tuple[float, float]:
-        """Return the number of points that agree with a frame, and of those that nothing hides."""
+    ) -> tuple[float, float, float]:
+        """Return the numbers of points that agree with a frame, that nothing hides, and that are within the image."""
         _, seen = self._scores(place[None], turn[None], image, view, taken, noise)
-        return float(seen[0, 0]), float(seen[0, 1])
+        return float(seen[0, 0]), float(seen[0, 1]), float(seen[0, 2])
 
     def _scores(
         self,
@@ -285,7 +326,7 @@ class Pipeline:
         taken: NDArray[np.bool_],
         noise: float,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the scores (n,) of poses in a frame, and how many points agree and how many nothing hides (n, 2)."""
+        """Return the scores (n,) of poses in a frame, and the numbers (n, 3) of points that are seen, as `scores`."""
         from deixis.perception.tracking.kernels import scores
 
         found: tuple[NDArray[np.float64], NDArray[np.float64]] = scores(
@@ -345,6 +386,7 @@ class Pipeline:
         """
         self.pose, self.seen_at, self.state, self.found = pose, at, "seen", True
         self.agreement = agreement
+        self._carried = []
         self._places.append((at, pose[:3, 3].copy()))
         while self._places[0][0] < at - self.settings.still_for - 1e-6:
             self._places.popleft()
@@ -373,6 +415,7 @@ class Pipeline:
             Share of its visible pixels that agree with the reference.
         """
         self.state, self.seen_at, self.found, self.agreement = "seen", at, True, agreement
+        self._carried = []
 
     def is_still(self, at: float) -> bool:
         """Return True if the thing has not moved for a while.
@@ -460,6 +503,32 @@ class Pipeline:
             state=self.state,
             moving=self.active and self.found,
         )
+
+
+def likeness(tints: NDArray[np.float64], colours: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return how well colours agree with the nearest of some others, in the light of any side of a thing.
+
+    Parameters
+    ----------
+    tints
+        Colours of shape (k, 3), from 0 to 255.
+    colours
+        Colours of shape (m, 3) that they may be.
+
+    Returns
+    -------
+    ndarray
+        Likeness in [0, 1], shape (k,).
+    """
+    least = np.full(len(tints), np.inf)
+    other = (tints**2).sum(axis=1)
+    for colour in colours:
+        own = float(colour @ colour)
+        across = other - (tints @ colour) ** 2 / max(own, 1.0)
+        along = (np.sqrt(other) - np.sqrt(own)) ** 2
+        least = np.minimum(least, along / SHADE_SPREAD**2 + across / COLOUR_SPREAD**2)
+    found: NDArray[np.float64] = np.exp(-0.5 * least)
+    return found
 
 
 def _quaternion(pose: NDArray[np.float64]) -> NDArray[np.float64]:

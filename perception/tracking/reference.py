@@ -27,6 +27,13 @@ class Changes:
     state: NDArray[np.uint8]
     counts: NDArray[np.int64]
 
+    @property
+    def same(self) -> NDArray[np.bool_]:
+        """Mask (r, c) of the pixels that are as in the reference."""
+        from deixis.perception.tracking.kernels import SAME
+
+        return np.asarray(self.state == SAME)
+
 
 class Reference:
     """Depth (r, c), colour (r, c, 3) and owner (r, c) of every pixel of a table at rest.
@@ -139,6 +146,27 @@ class Reference:
             changes.state, image.depth, image.colour, self.depth, self.colour, self._offset, self._last, self._aside,
             self.since, at, tolerance, noise, np.float32(LEARNING_RATE),
         )  # fmt: skip
+
+    def points(self, pixels: NDArray[np.intp], view: TableView) -> NDArray[np.float64]:
+        """Return the points that pixels show.
+
+        Parameters
+        ----------
+        pixels
+            Flat indices of shape (k,).
+        view
+            View of the table in which the reference is.
+
+        Returns
+        -------
+        ndarray
+            Points of shape (k, 3) in the table's frame, in metres.
+        """
+        row, column = np.divmod(pixels, self.owner.shape[1])
+        middles = np.stack([column, row], axis=1) + self._offset.reshape(-1, 2)[pixels]
+        rays = np.column_stack([middles, np.ones(len(pixels))]) * self.depth.ravel()[pixels, None]
+        places: NDArray[np.float64] = (rays - view.offset) @ np.linalg.inv(view.matrix).T
+        return places
 
     def give(self, pixels: NDArray[np.intp], owner: int, image: FrameImage) -> Beneath:
         """Give pixels to an owner, with the measurements of a frame, and return what was there before.

@@ -88,8 +88,8 @@ class TrackingSettings:
         A resting thing is looked for elsewhere if less than the first share of its pixels is unchanged, and has moved
         if the table is seen behind more than the second share of those that are not hidden.
     fit, visible
-        Least mean score of the points of a moving thing that are not hidden, and least share of its points that are
-        seen, for its place to be certain.
+        Least mean score of the points of a moving thing that are not hidden, and least share of its points within the
+        image that are seen, for its place to be certain.
     jump
         Distance in metres from the predicted place beyond which a moving thing must be seen well to be found.
     still, still_for

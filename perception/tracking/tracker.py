@@ -18,16 +18,22 @@ from numpy.typing import NDArray
 
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.detection.detect import Detection, detect, detect_above
+from deixis.perception.detection.outline import oriented_box
+from deixis.perception.detection.settings import OutlineSettings
 from deixis.perception.detection.table.plane import Plane
 from deixis.perception.detection.table.viewpoint import moved
 from deixis.perception.errors import CloudError
 from deixis.perception.scene import OrientedBox, Scene
 from deixis.perception.tracking.camera_motion import STANDING, CameraMotion, moved_by
+from deixis.perception.tracking.completion import FlatThing, revealed_part
+from deixis.perception.tracking.fitting import Fit, fits
 from deixis.perception.tracking.image import FrameImage, Optics, TableView, image_of, optics_of, table_view
+from deixis.perception.tracking.outside import GAP, Hands, Outline
 from deixis.perception.tracking.particles import Estimate
 from deixis.perception.tracking.pipeline import Pipeline
 from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Changes, Reference
 from deixis.perception.tracking.registration import levels_of
+from deixis.perception.tracking.revolution import circle_around
 from deixis.perception.tracking.settings import TrackingSettings
 from deixis.perception.tracking.thing import Situation
 
@@ -37,23 +43,11 @@ MIN_FINITE_SHARE = 0.02
 MIN_OWN_PIXELS = 6
 """Least number of measured pixels of a thing that decide whether it rests."""
 
-GAP = 0.025
-"""Difference of depths in metres at which neighbouring pixels belong to different surfaces."""
-
-HULL_SLACK = 0.03
-"""Distance in metres beyond the outline of the table from which a point is not above it."""
-
-MIN_OUTSIDE_PIXELS = 12
-"""Number of pixels at the border of the image or beyond the table from which a surface comes from outside."""
-
 MIN_WAY = 0.012
 """Distance in metres from which a thing whose place is hidden has moved."""
 
 MAX_SPEED = 0.8
 """Speed in metres per second at which a thing may move while it is not found."""
-
-HAND_MARGIN = 4
-"""Distance in pixels from a hand within which surfaces are taken for parts of the hand."""
 
 MIN_MOVING_PIXELS = 80
 """Least number of pixels of something that moves and is not a thing, such as a part of a hand."""
@@ -72,24 +66,6 @@ EXPOSED = 0.3
 
 ABSENT = 0.2
 """Largest share of agreeing points, of those that nothing hides, at which the place of a thing is empty."""
-
-COMPLETED_MARGIN = 40
-"""Distance in pixels from a thing within which its missing parts are looked for."""
-
-MIN_TABLE_PIXELS = 50
-"""Least number of pixels of the table around a thing, for its missing parts to be looked for."""
-
-REMAINING_NOISE = 0.45
-"""Standard deviation of the reference after ten frames, as a share of that of one frame."""
-
-MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
-"""Least heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
-
-FLAT = 0.03
-"""Height in metres below which a thing may have parts that are lost in the noise of the table."""
-
-MIN_PART = 12
-"""Least number of pixels of a missing part."""
 
 RETRY_AFTER = 1.0
 """Time in seconds after which changed pixels that gave no thing are by themselves a reason to segment again."""
@@ -134,8 +110,7 @@ class Tracker:
         self._number = 0
         self._at: float | None = None
         self._frame: NDArray[np.float64] | None = None
-        self._outline = np.zeros((0, 2))
-        self._hull = np.zeros((0, 3))
+        self._outline, self._hands = Outline(), Hands()
         self._motion: CameraMotion | None = None
         self._moved_at = -np.inf
         self._rests = itertools.count(1)
@@ -191,7 +166,7 @@ class Tracker:
             self._reference, self._things = None, []
             return replace(self._begin(cloud, at, number), notes=("the camera moved: the table is looked for again",))
         self._reference.remember(image, changes, at, self.settings.tolerance, self._deviation)
-        hand = self._hand(image, changes)
+        hand = self._hands.see(image, ~changes.same, self._outline, self._back)
         by_hand = bool(hand.any()) or at - self._hand_at < HAND_MEMORY
         if (not by_hand or at - before > BLINK) and self._is_laid_anew(changes):
             return self._begin_anew(cloud, image, changes, at, number)
@@ -202,8 +177,8 @@ class Tracker:
         self._follow(image, changes, at, at - before)
         went = self._let_go(at)
         came = self._look_for_new(cloud, image, changes, hand, at)
-        self._complete(image, at)
-        return replace(self._situation(at, number, came, went), busy=self._hand_at == at)
+        merged = tuple(thing.report(at) for thing in self._complete(image, at))
+        return replace(self._situation(at, number, came, went), merged=merged, busy=self._hand_at == at)
 
     @property
     def particles(self) -> int:
@@ -275,8 +250,8 @@ class Tracker:
         self._view = table_view(image.optics, found.frame, image.depth.shape)
         heights = image.points.reshape(-1, 3) @ found.frame[2, :3] + found.frame[2, 3]
         on = np.abs(heights) < 0.01
-        self._outline = np.zeros((0, 2))
-        self._extend_outline(image, on)
+        self._outline, self._hands = Outline(), Hands()
+        self._outline.extend(image.places(np.flatnonzero(on), found.frame)[:, :2])
         self._noise = _noise(image.depth.ravel()[on], self._view.level.ravel()[on])
         return self._situation(at, number, self._lay_out(found, cloud, image, at, {}))
 
@@ -292,14 +267,14 @@ class Tracker:
             self.settings.tolerance, self._deviation * image.depth**2
         )
         plan = moved(image.points.reshape(-1, 3), self._view.back)
-        beyond = self._beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
+        beyond = self._outline.beyond(plan[:, :2]).reshape(of.shape) & (image.depth > 0)
         self._reference.give(np.flatnonzero((of < 0) & (near | beyond)), TABLE, image)
         came = []
         for k in range(len(found.boxes)):
             own = np.flatnonzero(of == k)
             if k in kept:
                 self._reference.give(own, kept[k].slot, image)
-            elif not self._comes_from_outside(own, image):
+            elif not self._outline.is_crossed_by(image.places(own, self._back)):
                 came.append(self._enter(found, cloud, np.flatnonzero(found.labels == k), k, at))
                 self._reference.give(own, self._things[-1].slot, image)
         rests = {thing.slot: thing.rest for thing in self._things}
@@ -326,7 +301,7 @@ class Tracker:
     ) -> Pipeline:
         assert self._frame is not None
         change = self._frame @ np.linalg.inv(found.frame)  # from the detection's frame to that of the first frame
-        own, half, oriented, pose = _model(found, cloud, points, k, change)
+        own, half, oriented, pose = _model(found, cloud, points, k, change, self.settings.detection.outlines)
         made = Pipeline(id, slot, own, half, oriented, pose, at, self.settings)
         made.rest = next(self._rests)
         return made
@@ -414,7 +389,7 @@ class Tracker:
                 thing = matches[k]
                 if thing.active or _shared(reference.owner == thing.slot, of == k) < SAME_MODEL:
                     thing = self._remodelled(thing, self._modelled(whole, cloud, points, k, thing.id, thing.slot, at))
-            elif self._comes_from_outside(pixels, image):
+            elif self._outline.is_crossed_by(image.places(pixels, self._back)):
                 continue
             else:
                 came.append(self._enter(whole, cloud, points, k, at))
@@ -434,7 +409,7 @@ class Tracker:
         assert self._reference is not None
         shared = np.zeros((count, len(things)))
         above = np.flatnonzero(of >= 0)
-        points = moved(image.points.reshape(-1, 3)[above].astype(np.float64), self._back)
+        points = image.places(above, self._back)
         for column, thing in enumerate(things):
             own = np.zeros(of.shape, np.bool_)
             if not thing.active:
@@ -457,8 +432,6 @@ class Tracker:
 
     def _seen_from_here(self, image: FrameImage, at: float) -> Changes:
         """Find where the camera is now, carry the reference to its view, and compare the frame with it."""
-        from deixis.perception.tracking.kernels import SAME
-
         assert self._motion is not None and self._reference is not None and self._view is not None
         rests = {thing.slot: thing.rest for thing in self._things if not thing.active}
         found, levels = self._motion.follow(image, at, rests, self._noise)
@@ -474,9 +447,12 @@ class Tracker:
                     thing.beneath = None
         changes = self._compare(image, at)
         if new:
-            still = np.where(changes.state == SAME, self._reference.owner, np.int16(UNKNOWN_OWNER))
+            still = np.where(changes.same, self._reference.owner, np.int16(UNKNOWN_OWNER))
             self._motion.add_keyframe(image, levels, still, self._view, rests)
-            self._extend_outline(image, ((changes.state == SAME) & (self._reference.owner == TABLE)).ravel())
+            on = np.flatnonzero(changes.same & (self._reference.owner == TABLE))
+            self._outline.extend(image.places(on, self._back)[:, :2])
+            for thing in self._things:
+                thing.completed = False  # another side of it may be in view
         return changes
 
     def _compare(self, image: FrameImage, at: float) -> Changes:
@@ -538,8 +514,6 @@ class Tracker:
 
     def _follow(self, image: FrameImage, changes: Changes, at: float, seconds: float) -> None:
         """Look for the things that move, and for those whose places are mostly hidden."""
-        from deixis.perception.tracking.kernels import SAME
-
         assert self._reference is not None and self._view is not None
         moving = [thing for thing in self._things if thing.active]
         doubtful = [
@@ -550,9 +524,9 @@ class Tracker:
         if not moving and not doubtful:
             return
         view, reference, limits = self._view, self._reference, self.settings
-        same = changes.state == SAME
+        same = changes.same
         free = np.flatnonzero(~same & (image.depth > 0))
-        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), view.back)
+        points = image.places(free, view.back)
         above = points[:, 2] > 0.002
         free, points = free[above], points[above]
         tints = image.colour.reshape(-1, 3)[free].astype(np.float64)
@@ -562,8 +536,13 @@ class Tracker:
             return thing, *thing.follow(image, view, taken, points, tints, seconds, self._noise)
 
         others = np.zeros(same.shape, np.bool_)
+        for thing in moving:
+            if not thing.found:
+                self._carry(thing)
         for thing, found, fit, visible in self._each(follow, moving):
             if not self._is_certain(thing, found, fit, visible, at, seconds):
+                if thing.found:
+                    self._carry(thing)
                 thing.lost()
                 continue
             thing.moved_to(found.pose, at, fit)
@@ -592,9 +571,15 @@ class Tracker:
         limits = self.settings
         if fit <= limits.fit or visible <= limits.visible:
             return False
-        way = float(np.linalg.norm(found.place - thing.expected(seconds)))
-        lost = at - thing.seen_at - seconds if thing.active else 0.0
+        way = thing.way_from_expected(found.place, seconds)
+        lost = at - thing.seen_at - seconds if thing.active and not thing.in_hand else 0.0
         return way < limits.jump + MAX_SPEED * max(lost, 0.0) or (fit > 0.7 and visible > 0.5)
+
+    def _carry(self, thing: Pipeline) -> None:
+        """Move a thing that left its place and is not seen with the hand that may hold it."""
+        step = self._hands.carried(thing.pose[:3, 3], thing.reach)
+        if step is not None:
+            thing.carry(step)
 
     def _each(self, job, things: list[Pipeline]) -> Iterator:  # type: ignore[no-untyped-def, type-arg]
         """Run a job for each thing, in the threads that all pipelines share."""
@@ -613,8 +598,8 @@ class Tracker:
         from deixis.perception.tracking.kernels import SAME
 
         assert self._reference is not None and self._view is not None
-        free = np.flatnonzero((changes.state != SAME) & (image.depth > 0))
-        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), self._view.back)
+        free = np.flatnonzero(~changes.same & (image.depth > 0))
+        points = image.places(free, self._view.back)
         own = free[thing.contains(points, self.settings.margin) & (points[:, 2] > 0.001)]
         thing.beneath = self._reference.give(own, thing.slot, image)
         changes.state.ravel()[own] = SAME
@@ -632,15 +617,8 @@ class Tracker:
         self._things = [thing for thing in self._things if thing not in gone]
         return tuple(gone)
 
-    def _complete(self, image: FrameImage, at: float) -> None:
-        """Add to a flat thing that has rested for a while the thin parts that one frame hides in its noise.
-
-        The reference is a mean over many frames. Pixels of the table beside the thing that are higher than the rest of
-        its noise, or of another colour than the table, are the thing's if they are connected with it and higher than
-        the table on average.
-        """
-        from scipy.ndimage import binary_dilation, binary_propagation
-
+    def _complete(self, image: FrameImage, at: float) -> tuple[Pipeline, ...]:
+        """Add the missing parts to one of the things that have rested for a while; return what was merged."""
         assert self._reference is not None and self._view is not None
         limits, reference, view = self.settings, self._reference, self._view
         ready = (
@@ -648,78 +626,26 @@ class Tracker:
             for thing in self._things
             if not thing.active and not thing.completed and thing.seen_at == at and self._hand_at < at
             and at - max(thing.at, thing.settled_at) >= limits.complete_after
-            and thing.oriented.extents[2] < FLAT
         )  # fmt: skip
         thing = next(ready, None)
         if thing is None:
-            return
+            return ()
         thing.completed = True
-        own = reference.owner == thing.slot
-        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
-        if not len(rows):
-            return
-        margin = COMPLETED_MARGIN
-        window = np.s_[
-            max(rows[0] - margin, 0) : rows[-1] + margin + 1, max(columns[0] - margin, 0) : columns[-1] + margin + 1
-        ]
-        owner, depth, level = reference.owner[window], reference.depth[window], view.level[window]
-        shade = reference.colour[window]
-        table = (owner == TABLE) & (depth > 0) & np.isfinite(level)
-        seed = own[window]
-        bare = table & ~binary_dilation(seed, iterations=3)
-        if bare.sum() < MIN_TABLE_PIXELS:
-            return
         eye = float(view.back[2, :3] @ image.optics.eye + view.back[2, 3])
-        with np.errstate(invalid="ignore", divide="ignore"):
-            height = np.where(table, eye * (1 - depth / level), 0.0)
-            noise = REMAINING_NOISE * self._noise * depth**2 * eye / level
-        tinted = np.linalg.norm(shade - np.median(shade[bare], axis=0), axis=-1) > limits.colour
-        candidate = table & ((height > np.maximum(4 * noise, MIN_HEIGHT)) | tinted)
-        candidate &= height > -4 * noise
-        part = binary_propagation(seed, mask=seed | candidate, structure=np.ones((3, 3))) & ~seed
-        count = int(part.sum())
-        others = (owner != TABLE) & (owner != UNKNOWN_OWNER) & ~seed
-        if (others & binary_dilation(part, iterations=2)).any():
-            return
-        if not MIN_PART <= count <= max(2 * int(seed.sum()), 4 * MIN_PART):
-            return
-        if height[part].mean() < max(MIN_MEAN_HEIGHT, 3 * float(noise[part].mean()) / np.sqrt(count)):
-            return
-        whole = np.zeros(own.shape, np.bool_)
-        whole[window] = part
-        pixels = np.flatnonzero(whole)
-        reference.owner.ravel()[pixels] = thing.slot
-        row, column = np.divmod(pixels, own.shape[1])
-        rays = np.stack([column, row, np.ones(len(pixels))], axis=1) * reference.depth.ravel()[pixels, None]
-        points = (rays - view.offset) @ np.linalg.inv(view.matrix).T
-        thing.extend(points, reference.colour.reshape(-1, 3)[pixels], limits.detection.outlines)
+        flat = FlatThing(thing, reference, view, eye, self._noise, limits.colour)
+        merged = flat.pieces(other for other in self._things if other is not thing)
+        parts = np.isin(reference.owner, [piece.slot for piece in merged])
+        new = np.union1d(flat.missing_part(), np.flatnonzero(parts))
+        reference.owner.ravel()[new] = thing.slot
+        new = np.union1d(new, revealed_part(thing, reference, view))
+        if len(new):
+            each = np.repeat(new, limits.stride**2)  # as dense as the thing's own points, of all rows and columns
+            colours = reference.colour.reshape(-1, 3)[each]
+            thing.extend(reference.points(each, view), colours, limits.detection.outlines)
+        self._things = [other for other in self._things if other not in merged]
+        return tuple(merged)
 
     # What is new
-
-    def _hand(self, image: FrameImage, changes: Changes) -> NDArray[np.bool_]:
-        """Return a mask of the changed pixels of surfaces that come from outside the table: a hand with its arm."""
-        from scipy.ndimage import binary_dilation
-
-        from deixis.perception.tracking.kernels import SAME, connected
-
-        changed = (changes.state != SAME) & (image.depth > 0)
-        of, count = connected(changed, image.depth, np.float32(GAP))
-        if not count:
-            return np.zeros(of.shape, np.bool_)
-        place = np.flatnonzero(of)
-        points = moved(image.points.reshape(-1, 3)[place].astype(np.float64), self._back)
-        rows, columns = np.divmod(place, of.shape[1])
-        border = (rows < 2) | (columns < 2) | (rows >= of.shape[0] - 2) | (columns >= of.shape[1] - 2)
-        outside = np.bincount(of.ravel()[place], border | self._beyond(points[:, :2]), minlength=count + 1)
-        from_outside: NDArray[np.bool_] = outside >= MIN_OUTSIDE_PIXELS
-        from_outside[0] = False
-        if not from_outside.any():
-            return np.zeros(of.shape, np.bool_)
-        around = binary_dilation(from_outside[of], np.ones((3, 3)), iterations=HAND_MARGIN)
-        near: NDArray[np.bool_] = np.bincount(of[around], minlength=count + 1) > 0
-        near[0] = False
-        found: NDArray[np.bool_] = near[of]
-        return found
 
     def _is_busy(self, image: FrameImage, changes: Changes, at: float) -> bool:
         """Return True if something moves that is not one of the things."""
@@ -730,7 +656,7 @@ class Tracker:
         place = np.flatnonzero(moves & (image.depth > 0))
         if len(place) < MIN_MOVING_PIXELS:
             return False
-        points = moved(image.points.reshape(-1, 3)[place].astype(np.float64), self._back)
+        points = image.places(place, self._back)
         strange = points[:, 2] > 0.01
         for thing in self._things:
             strange &= ~thing.contains(points, self.settings.margin)
@@ -741,38 +667,18 @@ class Tracker:
         assert self._view is not None
         return self._view.back
 
-    def _extend_outline(self, image: FrameImage, on: NDArray[np.bool_]) -> None:
-        """Extend the outline of the table by points that lie on it, given by a flat mask of the pixels."""
-        assert self._frame is not None
-        plan = moved(image.points.reshape(-1, 3)[on].astype(np.float64), self._frame)[:, :2]
-        self._outline, self._hull = _hull(np.concatenate([self._outline, plan[:: max(1, len(plan) // 5000)]]))
-
-    def _beyond(self, plan: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return True for each place (n, 2) that is not above the table."""
-        if not len(self._hull):
-            return np.zeros(len(plan), np.bool_)
-        with np.errstate(invalid="ignore"):
-            outside = (plan @ self._hull[:, :2].T + self._hull[:, 2]).max(axis=1)
-        return np.asarray(outside > HULL_SLACK)
-
-    def _comes_from_outside(self, pixels: NDArray[np.intp], image: FrameImage) -> bool:
-        points = moved(image.points.reshape(-1, 3)[pixels].astype(np.float64), self._back)
-        return bool(self._beyond(points[:, :2]).sum() > max(MIN_OUTSIDE_PIXELS, 0.2 * len(pixels)))
-
     def _look_for_new(
         self, cloud: PointCloud, image: FrameImage, changes: Changes, hand: NDArray[np.bool_], at: float
     ) -> tuple[str, ...]:
         """Segment what changed and stays as it is; return the ids of new things."""
-        from deixis.perception.tracking.kernels import SAME
-
         reference, limits = self._reference, self.settings
         assert reference is not None
         steady = at - reference.since >= limits.steady
-        free = np.flatnonzero((changes.state != SAME) & (image.depth > 0) & steady & ~hand)
+        free = np.flatnonzero(~changes.same & (image.depth > 0) & steady & ~hand)
         if not len(free):
             return ()
-        points = moved(image.points.reshape(-1, 3)[free].astype(np.float64), self._back)
-        flat = (np.abs(points[:, 2]) < 0.002) | self._beyond(points[:, :2])
+        points = image.places(free, self._back)
+        flat = (np.abs(points[:, 2]) < 0.002) | self._outline.beyond(points[:, :2])
         reference.give(free[flat], TABLE, image)
         free, points = free[~flat], points[~flat]
         owner, edge = reference.owner.ravel()[free], self._edges(free, at)
@@ -808,13 +714,11 @@ class Tracker:
         """Detect objects among the free pixels, which lost things and new ones then have."""
         from scipy.ndimage import binary_dilation
 
-        from deixis.perception.tracking.kernels import SAME
-
         reference = self._reference
         assert reference is not None and self._frame is not None and cloud.organised is not None
         mask = np.zeros(image.depth.shape, np.bool_)
         mask.ravel()[free] = True
-        shown = mask | ((reference.owner == TABLE) & (changes.state == SAME))
+        shown = mask | ((reference.owner == TABLE) & changes.same)
         stride = self.settings.stride
         everywhere = _enlarged(binary_dilation(shown), stride, cloud.organised).ravel()
         candidates = _enlarged(mask, stride, cloud.organised).ravel()
@@ -831,7 +735,7 @@ class Tracker:
                 own = np.flatnonzero(found.labels == k)
                 pixels = free[of == k]
                 enough = len(pixels) >= self.settings.least_pixels and candidates[own].mean() > 0.5
-                if not enough or self._comes_from_outside(pixels, image):
+                if not enough or self._outline.is_crossed_by(image.places(pixels, self._back)):
                     continue
                 taken |= of == k
                 again = self._recognised(image, changes, pixels, at)
@@ -845,41 +749,25 @@ class Tracker:
 
     def _recognised(self, image: FrameImage, changes: Changes, pixels: NDArray[np.intp], at: float) -> Pipeline | None:
         """Return the lost thing that pixels show, put there; None if they show a new thing."""
-        from deixis.perception.tracking.kernels import SAME
-
         assert self._reference is not None and self._view is not None
         lost = [thing for thing in self._things if thing.active]
         if not lost:
             return None
-        points = moved(image.points.reshape(-1, 3)[pixels].astype(np.float64), self._back)
-        tints = image.colour.reshape(-1, 3)[pixels].astype(np.float64)
         taken = np.ones(image.depth.shape, np.bool_)
         taken.ravel()[pixels] = False
-        taken &= changes.state == SAME
-        best: tuple[float, Pipeline, NDArray[np.float64]] | None = None
+        taken &= changes.same
+        best: tuple[Fit, Pipeline] | None = None
         for thing in lost:
             elsewhere = thing.agreement * thing.visible if thing.found else 0.0
-            before = thing.pose
-            start = thing.last_rest.copy()
-            start[:3, 3] = (points.min(axis=0) + points.max(axis=0)) / 2
-            along = _axis(points[:, :2]) - _axis((thing.cloud.points @ start[:3, :3].T.astype(np.float32))[:, :2])
-            for angle in (*(along + np.array([0, np.pi])), *(np.arange(8) * np.pi / 4)):
-                cosine, sine = np.cos(angle), np.sin(angle)
-                pose = start.copy()
-                pose[:3, :3] = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ start[:3, :3]
-                thing.put(pose)
-                found, fit, visible = thing.follow(image, self._view, taken, points, tints, 0.0, self._noise)
-                explained = float(thing.contains(points, self.settings.margin, found.pose).mean())
-                score = fit * explained
-                good = fit > self.settings.fit and visible > 0.3 and explained > 0.7
-                if good and score * visible > elsewhere and (best is None or score > best[0]):
-                    best = score, thing, found.pose
-            thing.put(before)
+            for fit in fits(thing, image, self._view, pixels, taken, self._noise):
+                good = fit.agreement > self.settings.fit and fit.visible > 0.3 and fit.explained > 0.7
+                if good and fit.score * fit.visible > elsewhere and (best is None or fit.score > best[0].score):
+                    best = fit, thing
         if best is None:
             return None
-        _, thing, pose = best
-        thing.put(pose)
-        thing.moved_to(pose, at, best[0])
+        fit, thing = best
+        thing.put(fit.pose)
+        thing.moved_to(fit.pose, at, fit.score)
         self._settle(thing)
         thing.beneath = self._reference.give(pixels, thing.slot, image)
         return thing
@@ -918,20 +806,6 @@ def _noise(depth: NDArray[np.float32], level: NDArray[np.float32]) -> float:
     return max(float(1.4826 * np.median(np.abs(off - np.median(off)))) if len(off) else 0.0, 0.0003)
 
 
-def _hull(plan: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the corners (h, 2) of the convex hull of places (n, 2), and its half planes (h, 3)."""
-    from deixis.perception.detection.outline import hull_of
-
-    hull = hull_of(plan) if len(plan) >= 3 else None
-    return (plan, np.zeros((0, 3))) if hull is None else (plan[hull.vertices], np.asarray(hull.equations))
-
-
-def _axis(plan: NDArray[np.floating]) -> float:
-    """Return the angle of the longest axis of places (n, 2) in radians."""
-    along = np.linalg.eigh(np.cov(plan.T) + 1e-12 * np.eye(2))[1][:, 1]
-    return float(np.arctan2(along[1], along[0]))
-
-
 def _enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> NDArray[np.bool_]:
     """Return a mask of every ``stride``-th pixel as one of all pixels."""
     large = np.repeat(np.repeat(mask, stride, axis=0), stride, axis=1)
@@ -942,7 +816,12 @@ def _enlarged(mask: NDArray[np.bool_], stride: int, shape: tuple[int, int]) -> N
 
 
 def _model(
-    found: Detection, cloud: PointCloud, points: NDArray[np.intp], k: int, change: NDArray[np.float64]
+    found: Detection,
+    cloud: PointCloud,
+    points: NDArray[np.intp],
+    k: int,
+    change: NDArray[np.float64],
+    outlines: OutlineSettings,
 ) -> tuple[PointCloud, NDArray[np.float64], OrientedBox, NDArray[np.float64]]:
     """Return the cloud in a thing's own frame, half its sides, its turned box, and its pose in the tracker's frame."""
     own = moved(moved(cloud.points[points].astype(np.float64), found.frame), change)
@@ -954,8 +833,16 @@ def _model(
     if abs(turn) > np.deg2rad(3.0):
         cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
         half = np.array([cosine * half[0] + sine * half[1], sine * half[0] + cosine * half[1], half[2]])
+    around = OrientedBox(tuple(centre.tolist()), box.yaw + turn, box.extents)
+    circle = circle_around(own)
+    if circle is not None:  # its back is hidden
+        corners = np.stack([middle - half, middle + half])
+        corners[0, :2] = np.minimum(corners[0, :2], circle.centre - circle.radius)
+        corners[1, :2] = np.maximum(corners[1, :2], circle.centre + circle.radius)
+        middle, half = corners.mean(axis=0), np.ptp(corners, axis=0) / 2
+        around = oriented_box(own, outlines, circle)
     pose = np.eye(4)
     pose[:3, 3] = middle
-    oriented = OrientedBox(tuple((centre - middle).tolist()), box.yaw + turn, box.extents)
+    oriented = OrientedBox(tuple((np.array(around.centre) - middle).tolist()), around.yaw, around.extents)
     colours = None if cloud.colours is None else cloud.colours[points]
     return PointCloud((own - middle).astype(np.float32), colours), half, oriented, pose

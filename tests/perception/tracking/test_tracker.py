@@ -175,3 +175,42 @@ def test_work_grows_with_what_moves_and_ends_with_it() -> None:
 
 def test_image_of_a_single_place_has_no_optics() -> None:
     assert optics_of(PointCloud(np.tile(np.array([0, 0, 1], np.float32), (768, 1)), organised=(24, 32))) is None
+
+
+MANY = [Placement(f"mug_{k}", "mug", 0.25 * (k % 4) - 0.375, 0.3 * (k // 4) - 0.15, seed=2) for k in range(8)]
+"""Things of which the inner four can be missing without a change of the table or the camera."""
+
+
+@cache
+def table_without(count: int) -> PointCloud:
+    inner = [MANY[k] for k in (1, 2, 5, 6)]
+    kept = [thing for thing in MANY if thing not in inner[:count]]
+    camera = film(MANY, [Rest(0.1)]).camera
+    return next(iter(film(kept, [Rest(0.1)], camera=camera).frames(scale=0.35))).cloud
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3])
+def test_work_is_linear_in_what_left_and_ends_with_each(count: int) -> None:
+    with Tracker(HALF) as tracker:
+        assert len(tracker.update(table_without(0), 0.0).things) == len(MANY)
+        kept = {thing.id: weakref.ref(thing) for thing in tracker._things}
+        tracker.update(table_without(count), 0.2)
+        each = [thing.particles for thing in tracker._things if thing.active]
+        assert len(each) == count and tracker.particles == sum(each)
+        assert all(150 <= particles <= 1200 for particles in each), "the work for each does not depend on the others"
+        went = [thing.id for at in (0.6, 1.1) for thing in tracker.update(table_without(count), at).went]
+        assert len(went) == count and tracker.particles == 0
+        gc.collect()
+        assert {name for name, thing in kept.items() if thing() is None} == set(went)
+        assert len(np.unique(tracker.owners())) == 1 + len(MANY) - count, "their pixels are free"
+
+
+def test_thing_hidden_in_a_hand_moves_with_it() -> None:
+    cup = Placement("cup", "espresso cup", 0.15, 0.1, seed=3)
+    story = film([PLATE, cup], [Rest(0.3), Move("cup", 0.1, -0.2), Rest(0.6)])
+    with Tracker(HALF) as tracker:
+        seen = [(frame, tracker.update(frame.cloud, frame.at)) for frame in story.frames(10, scale=0.4)]
+    away = [float(np.linalg.norm(centres(now, frame)["t2"] - frame.things[1].centre)) for frame, now in seen]
+    hidden = [frame.things[1].held and now.things[1].state == "hidden" for frame, now in seen]
+    assert sum(hidden) >= 6, "the hand hides the cup on its way"
+    assert np.array(away)[hidden].max() < 0.04 and away[-1] < 0.02

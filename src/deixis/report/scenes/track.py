@@ -16,6 +16,7 @@ WORDS = {
     "hidden": "is hidden",
     "seen": "is seen again",
     "gone": "is gone",
+    "merged": "is a part of another thing",
 }
 
 

@@ -347,6 +347,7 @@ class _Writer:
         self._undone = None
         seen = Source(Origin.SEEN, "tracker", f"frame {next(self._frames)}")
         self._outbox.add(*(self._left(thing, thing.seen_at) for thing in situation.went if thing.id in self._places))
+        self._drop_merged(situation)
         self._outbox.add(*self._places_of(situation, seen))
         for note in situation.notes:
             self._note("camera", note)
@@ -441,8 +442,7 @@ class _Writer:
         self._name(situation)
         self._undone = None
         assert found.detection is not None
-        parts = [self._places.pop(thing.id, None) for thing in situation.merged]
-        self._outbox.add(*(Delete(part[0]) for part in parts if part is not None))
+        self._drop_merged(situation)
         self._outbox.add(*self._places_of(situation, Source(Origin.SEEN, "tracker", "look at the whole table")))
         self._take(situation)
         things = [replace(thing, id=self._id(ids[thing.id])) for thing in found.objects if thing.id in ids]
@@ -453,6 +453,11 @@ class _Writer:
             if thing.id not in ids.values() and thing.state == "hidden" and not thing.moving
         ]
         self._write_table(replace(found, objects=tuple(things), detection=None), file)
+
+    def _drop_merged(self, situation: Situation) -> None:
+        """Delete the places of things that turned out to be parts of others."""
+        parts = [self._places.pop(thing.id, None) for thing in situation.merged]
+        self._outbox.add(*(Delete(part[0]) for part in parts if part is not None))
 
     def _write_table(self, scene: Scene, file: Path) -> None:
         """Write the present table as a scene."""

@@ -15,7 +15,7 @@ from deixis.perception.tracking.stream import CloudSource, FileSource, FolderSou
 from deixis.perception.tracking.thing import Situation, TrackedThing
 from deixis.perception.tracking.tracker import Tracker
 
-Change = Literal["new", "moves", "rests", "hidden", "seen", "gone"]
+Change = Literal["new", "moves", "rests", "hidden", "seen", "gone", "merged"]
 
 MAX_NOTES = 100
 """Largest number of notes that are kept."""
@@ -82,6 +82,8 @@ class _Log:
         for thing in now.went:
             self.gone.append(thing)
             self._note(now.at, thing, "gone")
+        for thing in now.merged:
+            self._note(now.at, thing, "merged")
         self.before = {thing.id: thing for thing in now.things}
 
     def _note(self, at: float, thing: TrackedThing, change: Change) -> None:

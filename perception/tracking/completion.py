@@ -1,0 +1,229 @@
+"""Find the parts of a thing at rest that its model lacks.
+
+The noise of one frame, or a thing that stood before it, cut them off, or they were on its other side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deixis.perception.scene import turned_axes
+from deixis.perception.tracking.image import TableView
+from deixis.perception.tracking.pipeline import Pipeline, likeness
+from deixis.perception.tracking.reference import TABLE, UNKNOWN_OWNER, Reference
+
+FLAT = 0.03
+"""Height in metres below which a thing may have parts that are lost in the noise of the table."""
+
+MARGIN = 40
+"""Distance in pixels from a thing within which its missing parts are looked for."""
+
+MIN_TABLE_PIXELS = 50
+"""Least number of pixels of the table around a thing, for its missing parts to be looked for."""
+
+REMAINING_NOISE = 0.45
+"""Standard deviation of the reference after ten frames, as a share of that of one frame."""
+
+MIN_HEIGHT, MIN_MEAN_HEIGHT = 0.0015, 0.0005
+"""Least heights in metres above the table: of a pixel of a missing part without its colour, and of the whole part."""
+
+MIN_PART, MIN_APART = 12, 4
+"""Least numbers of pixels of a part: all, and those that do not touch what is known of the thing."""
+
+MIN_FAR_PART = 3
+"""Least number of pixels of a part on the other side of something that stands before the thing."""
+
+MIN_LIKENESS = 0.05
+"""Least likeness of the colour of a pixel to those of the thing, for it to be a part."""
+
+MIN_SLENDERNESS = 2.0
+"""Least ratio of the length to the width of a thing that is continued behind others."""
+
+STRIP_MARGIN = 0.006
+"""Distance in metres by which the continuation of a thing may be wider than the thing, on either side."""
+
+MIN_IN_LINE = 0.6
+"""Least share of the pixels of a piece that lie in the line of a thing and have its colour."""
+
+MAX_PIECE, MAX_LENGTH = 0.8, 0.28
+"""Largest number of pixels of a piece, as a share of those of the thing, and length in metres of both together."""
+
+BEYOND = 0.005
+"""Distance in metres from the box of a thing beyond which a point shows a part of it that was not seen before."""
+
+Mask = NDArray[np.bool_]
+
+AROUND = np.ones((3, 3), np.bool_)
+"""Neighbourhood of a pixel."""
+
+
+def revealed_part(thing: Pipeline, reference: Reference, view: TableView) -> NDArray[np.intp]:
+    """Return the pixels of a thing at rest that show what its model lacks, such as the handle of a turned mug.
+
+    Parameters
+    ----------
+    thing
+        The thing.
+    reference
+        The table at rest.
+    view
+        View of the table in which the reference is.
+
+    Returns
+    -------
+    ndarray
+        Flat indices of shape (k,), empty if all that is seen is within its box.
+    """
+    own = np.flatnonzero(reference.owner == thing.slot)
+    new = own[~thing.contains(reference.points(own, view), BEYOND)]
+    return new if len(new) >= MIN_PART else new[:0]
+
+
+class FlatThing:
+    """Flat thing at rest, with the table and the other things around it.
+
+    Parameters
+    ----------
+    thing
+        The thing.
+    reference
+        The table at rest: a mean over many frames.
+    view
+        View of the table in which the reference is.
+    eye
+        Height of the camera above the table in metres.
+    noise
+        Standard deviation of the depths of one frame at one metre.
+    colour
+        Distance of two colours in RGB from which they differ.
+    """
+
+    def __init__(
+        self, thing: Pipeline, reference: Reference, view: TableView, eye: float, noise: float, colour: float
+    ) -> None:
+        from scipy.ndimage import binary_dilation
+
+        self._thing, self._shape = thing, reference.owner.shape
+        own = reference.owner == thing.slot
+        rows, columns = (np.flatnonzero(own.any(axis=axis)) for axis in (1, 0))
+        self.is_seen = thing.oriented.extents[2] < FLAT and len(rows) > 0
+        """False for a thing that is high, or of which no pixel is known: nothing is found around it."""
+        if not self.is_seen:
+            return
+        self._corner = max(int(rows[0]) - MARGIN, 0), max(int(columns[0]) - MARGIN, 0)
+        self._window = np.s_[
+            self._corner[0] : int(rows[-1]) + MARGIN + 1, self._corner[1] : int(columns[-1]) + MARGIN + 1
+        ]
+        self._seed, self._owner = own[self._window], reference.owner[self._window]
+        depth, level = reference.depth[self._window], view.level[self._window]
+        shade = reference.colour[self._window].astype(np.float64)
+        table = (self._owner == TABLE) & (depth > 0) & np.isfinite(level)
+        bare = table & ~binary_dilation(self._seed, iterations=3)
+        if bare.sum() < MIN_TABLE_PIXELS:
+            self.is_seen = False
+            return
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self._height = np.where(table, eye * (1 - depth / level), 0.0)
+            self._noise = np.where(table, REMAINING_NOISE * noise * depth**2 * eye / level, 0.0)
+        ground = np.median(shade[bare], axis=0)
+        tinted = np.linalg.norm(shade - ground, axis=-1) > colour
+        every = shade.reshape(-1, 3)
+        like = thing.likeness(every)
+        alike = (like > MIN_LIKENESS) & (like > likeness(every, ground[None]))
+        self._alike = tinted & alike.reshape(tinted.shape)
+        high = self._height > np.maximum(4 * self._noise, MIN_HEIGHT)
+        self._candidate = table & (high | tinted) & (self._height > -4 * self._noise)
+        self._others = (self._owner != TABLE) & (self._owner != UNKNOWN_OWNER) & ~self._seed
+        self._line = self._line_in(view, eye, level)
+        self._hiding = self._line & ((self._others & (depth < level)) | (self._owner == UNKNOWN_OWNER))
+
+    def missing_part(self) -> NDArray[np.intp]:
+        """Return the pixels of the table that are parts of the thing.
+
+        Pixels that are higher than the rest of the noise, or of another colour than the table, are the thing's if they
+        are connected with it and are, as a whole, higher than the table or of the thing's colour. A long thing goes on
+        behind things that stand before it: pixels of its colour on their other side are its own if they lie in its
+        line.
+
+        Returns
+        -------
+        ndarray
+            Flat indices of shape (k,), empty if nothing is missing.
+        """
+        whole = np.zeros(self._shape, np.bool_)
+        if self.is_seen:
+            near = self._near_part()
+            whole[self._window] = near | self._far_part(self._seed | near)
+        return np.flatnonzero(whole)
+
+    def _near_part(self) -> Mask:
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        seed = self._seed
+        part: Mask = binary_propagation(seed, AROUND, seed | self._candidate) & ~seed
+        count = int(part.sum())
+        fits = MIN_PART <= count <= max(2 * int(seed.sum()), 4 * MIN_PART)
+        if not fits or (self._others & binary_dilation(part, iterations=2)).any():
+            return np.zeros_like(seed)
+        least = max(MIN_MEAN_HEIGHT, 3 * float(self._noise[part].mean()) / np.sqrt(count))
+        apart = part & ~binary_dilation(seed, AROUND)
+        is_alike = apart.sum() >= MIN_APART and self._alike[apart].mean() > 0.5
+        return part if self._height[part].mean() >= least or is_alike else np.zeros_like(seed)
+
+    def _far_part(self, known: Mask) -> Mask:
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        beyond = self._line & self._candidate & self._alike
+        far: Mask = binary_propagation(known, AROUND, known | self._hiding | beyond) & beyond
+        far &= ~binary_dilation(known, AROUND, iterations=2)
+        return far if far.sum() >= MIN_FAR_PART else np.zeros_like(known)
+
+    def pieces(self, things: Iterable[Pipeline]) -> list[Pipeline]:
+        """Return the things that are pieces of this one, from which noise or a thing before it separates them.
+
+        Parameters
+        ----------
+        things
+            Things at rest.
+
+        Returns
+        -------
+        list of Pipeline
+            Smaller flat things in its line and of its colour, which came with it and have not moved since.
+        """
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        if not self.is_seen:
+            return []
+        reached = binary_propagation(self._seed, AROUND, self._seed | self._hiding | (self._line & self._others))
+        reached = binary_dilation(reached & (self._seed | self._hiding), AROUND, iterations=2)
+        found = []
+        for thing in things:
+            own = self._owner == thing.slot
+            together = thing.at == self._thing.at and thing.first_rest and self._thing.first_rest
+            fits = together and 0 < own.sum() <= MAX_PIECE * self._seed.sum() and thing.oriented.extents[2] < FLAT
+            if not fits or not (reached & own).any() or (self._line & self._alike)[own].mean() < MIN_IN_LINE:
+                continue
+            both = np.array(self._thing.oriented.centre) + self._thing.pose[:3, 3]
+            other = np.array(thing.oriented.centre) + thing.pose[:3, 3]
+            length = (thing.oriented.extents[0] + self._thing.oriented.extents[0]) / 2
+            if float(np.linalg.norm(both - other)) + length <= MAX_LENGTH:
+                found.append(thing)
+        return found
+
+    def _line_in(self, view: TableView, eye: float, level: NDArray[np.float32]) -> Mask:
+        """Return a mask of the pixels at which the thing would be seen if it were longer."""
+        length, width, height = self._thing.oriented.extents
+        if length < MIN_SLENDERNESS * width:
+            return np.zeros(level.shape, np.bool_)
+        rows, columns = np.indices(level.shape) + np.array(self._corner)[:, None, None]
+        depth = np.where(np.isfinite(level), level, 0.0) * (1 - height / 2 / eye)
+        rays = np.stack([columns, rows, np.ones(rows.shape)], axis=-1) * depth[..., None]
+        places = (rays - view.offset) @ np.linalg.inv(view.matrix).T
+        pose, box = self._thing.pose, self._thing.oriented
+        across = ((places - pose[:3, 3]) @ pose[:3, :3] - np.array(box.centre)) @ turned_axes(box.yaw)[1]
+        line: Mask = (depth > 0) & (np.abs(across) < width / 2 + STRIP_MARGIN)
+        return line

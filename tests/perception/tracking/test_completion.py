@@ -1,0 +1,141 @@
+"""Completion of things: parts behind others, pieces of one thing, thin ends, and sides that come into view."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from deixis.perception.clouds.cloud import PointCloud
+from deixis.perception.scene import OrientedBox
+from deixis.perception.tracking.completion import FlatThing, revealed_part
+from deixis.perception.tracking.image import FrameImage, Optics, TableView, table_view
+from deixis.perception.tracking.pipeline import Pipeline
+from deixis.perception.tracking.reference import TABLE, Reference
+from deixis.perception.tracking.settings import TrackingSettings
+
+SHAPE = 60, 120
+OPTICS = Optics(np.array([[200.0, 0, 59.5], [0, 200.0, 29.5], [0, 0, 1]]), np.zeros(3))
+BACK = np.diag([1.0, -1.0, -1.0, 1.0])
+BACK[2, 3] = 1.0  # the camera is one metre above the table and looks down: a pixel is 5 mm
+WOOD, STEEL, BLUE = (140, 105, 73), (190, 190, 195), (40, 60, 160)
+KNIFE = np.s_[29:32, 20:80]
+"""Pixels of a knife of 30 cm that lies along a row."""
+
+
+@dataclass
+class Table:
+    """Table from above, on which flat patches lie; their owners are numbers from 1."""
+
+    owner: np.ndarray
+    depth: np.ndarray
+    colour: np.ndarray
+
+    @property
+    def reference(self) -> Reference:
+        points = np.zeros((*SHAPE, 3), np.float32)
+        return Reference(FrameImage(points, self.depth, self.colour, OPTICS), self.owner.copy(), 0.0)
+
+
+def table() -> Table:
+    return Table(
+        np.zeros(SHAPE, np.int16), np.ones(SHAPE, np.float32), np.broadcast_to(WOOD, (*SHAPE, 3)).astype(np.float32)
+    )
+
+
+def lay(on: Table, pixels: tuple[slice, slice], colour: tuple[int, int, int], owner: int, height: float = 0.0) -> None:
+    on.owner[pixels], on.depth[pixels], on.colour[pixels] = owner, 1.0 - height, colour
+
+
+def view() -> TableView:
+    return table_view(OPTICS, BACK, SHAPE)
+
+
+def thing_at(pixels: tuple[slice, slice], slot: int, colour: tuple[int, int, int] = STEEL) -> Pipeline:
+    """Return a thing of 1 cm height that covers some pixels."""
+    rows, columns = np.mgrid[pixels]
+    plan = np.stack([(columns - 59.5) / 200, -(rows - 29.5) / 200], axis=-1).reshape(-1, 2)
+    low, high = plan.min(axis=0) - 0.0025, plan.max(axis=0) + 0.0025
+    middle = np.append((low + high) / 2, 0.005)
+    points = np.column_stack([plan, np.full(len(plan), 0.005)]) - middle
+    pose = np.eye(4)
+    pose[:3, 3] = middle
+    length, width = (high - low).tolist()
+    cloud = PointCloud(points.astype(np.float32), np.tile(np.array(colour, np.uint8), (len(points), 1)))
+    box = OrientedBox((0.0, 0.0, 0.0), 0.0, (length, width, 0.01))
+    return Pipeline(f"t{slot}", slot, cloud, np.array([length, width, 0.01]) / 2, box, pose, 0.0, TrackingSettings())
+
+
+def flat(thing: Pipeline, on: Table) -> FlatThing:
+    return FlatThing(thing, on.reference, view(), 1.0, 0.0015, 40.0)
+
+
+def half_hidden_knife(end: tuple[int, int, int], row: int = 29) -> tuple[Table, Pipeline]:
+    """Return a knife whose middle a high thing hides, and whose other end has a colour and begins in a row."""
+    on = table()
+    lay(on, np.s_[29:32, 20:50], STEEL, 1)
+    lay(on, np.s_[15:45, 50:75], BLUE, 2, 0.15)
+    lay(on, np.s_[row : row + 3, 75:80], end, TABLE)
+    return on, thing_at(np.s_[29:32, 20:50], 1)
+
+
+def test_long_thing_goes_on_behind_what_stands_before_it() -> None:
+    on, knife = half_hidden_knife(STEEL)
+    columns = flat(knife, on).missing_part() % SHAPE[1]
+    assert set(columns.tolist()) == {75, 76, 77, 78, 79}
+
+
+@pytest.mark.parametrize(("end", "row"), [(BLUE, 29), (STEEL, 40), (WOOD, 29)])
+def test_other_colours_and_places_do_not_continue_a_thing(end: tuple[int, int, int], row: int) -> None:
+    on, knife = half_hidden_knife(end, row)
+    assert not len(flat(knife, on).missing_part())
+
+
+def test_end_of_its_colour_is_added_without_any_height() -> None:
+    on = table()
+    lay(on, KNIFE, STEEL, TABLE)
+    lay(on, np.s_[29:32, 20:70], STEEL, 1)
+    added = flat(thing_at(np.s_[29:32, 20:70], 1), on).missing_part()
+    assert len(added) == 30 and (added % SHAPE[1]).min() == 70
+
+
+def test_flat_patch_of_another_colour_is_not_a_part() -> None:
+    on = table()
+    lay(on, KNIFE, (100, 75, 52), TABLE)  # a shadow
+    lay(on, np.s_[29:32, 20:70], STEEL, 1)
+    assert not len(flat(thing_at(np.s_[29:32, 20:70], 1), on).missing_part())
+
+
+@pytest.mark.parametrize("is_hidden", [True, False])
+def test_pieces_of_one_thing_are_found(is_hidden: bool) -> None:
+    on, gap = table(), 10 if is_hidden else 0
+    lay(on, np.s_[29:32, 30:50], STEEL, 1)
+    lay(on, np.s_[15:45, 50 : 50 + gap], BLUE, 3, 0.15)
+    end = np.s_[29:32, 50 + gap : 60 + gap]
+    lay(on, end, STEEL, 2)
+    handle, tines, later = thing_at(np.s_[29:32, 30:50], 1), thing_at(end, 2), thing_at(end, 2)
+    later.at = 3.0
+    assert flat(handle, on).pieces([tines]) == [tines]
+    assert flat(handle, on).pieces([later]) == [], "it was set down later"
+    assert flat(tines, on).pieces([handle]) == [], "the larger piece is the thing"
+
+
+def test_cutlery_side_by_side_is_not_in_pieces() -> None:
+    on = table()
+    lay(on, np.s_[29:32, 30:60], STEEL, 1)
+    lay(on, np.s_[33:36, 30:50], STEEL, 2)
+    fork, spoon = thing_at(np.s_[29:32, 30:60], 1), thing_at(np.s_[33:36, 30:50], 2)
+    assert flat(fork, on).pieces([spoon]) == []
+
+
+def test_side_that_comes_into_view_extends_the_thing() -> None:
+    on = table()
+    lay(on, np.s_[25:40, 30:45], BLUE, 1, 0.01)
+    mug = thing_at(np.s_[25:40, 30:45], 1, BLUE)
+    assert not len(revealed_part(mug, on.reference, view()))
+    lay(on, np.s_[30:34, 45:50], BLUE, 1, 0.01)
+    handle = revealed_part(mug, on.reference, view())
+    assert len(handle) >= 12 and (handle % SHAPE[1]).min() >= 45
+    before = mug.pose[:3, 3].copy()
+    points = on.reference.points(handle, view())
+    mug.extend(points, np.tile(BLUE, (len(points), 1)).astype(np.float32), TrackingSettings().detection.outlines)
+    assert mug.pose[0, 3] - before[0] == pytest.approx(0.0125, abs=0.003)
