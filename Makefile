@@ -16,9 +16,9 @@ demo: $(STAMP)
 	@$(BIN)/deixis demo
 
 test: $(STAMP)
-	@$(BIN)/python -m pytest -n auto --dist loadfile -m "not kills"
+	@$(BIN)/python -m pytest -n auto --dist loadfile -m "not kills and not long"
 
-# All tests, those that kill processes too, with coverage by line and branch; fails below the floor in pyproject.toml.
+# All tests, the long ones and those that kill processes too, with coverage by line and branch; fails below the floor in pyproject.toml.
 coverage: $(STAMP)
 	@$(BIN)/python -m pytest -n auto --dist loadfile --cov --cov-report=term:skip-covered
 

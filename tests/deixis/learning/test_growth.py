@@ -85,6 +85,7 @@ def right(memory: SemanticMemory) -> bool:
 NUMBERS = count()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.integers(0, 5), min_size=2, max_size=7))

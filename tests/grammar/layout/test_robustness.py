@@ -20,6 +20,7 @@ def problems(text: str) -> ScriptError:
     return caught.value
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_hundred_thousand_lines() -> None:
     with processor_time_below(60):  # takes about 6 s

@@ -360,8 +360,8 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
 
     Examples
     --------
-    >>> from deixis.workflows.layouts.read import as_script
-    >>> story = laying_story(as_script("plate left of cup"))
+    >>> from deixis.grammar.layout.parser import parse_script
+    >>> story = laying_story(parse_script("plate left of cup"))
     >>> [words.text for words in story.words]
     ['First the plate.', 'Finally the cup.']
     """

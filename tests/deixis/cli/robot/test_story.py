@@ -29,6 +29,7 @@ CHAPTERS = [
 ]
 
 
+@pytest.mark.long
 def test_the_whole_story(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     tell(tmp_path / "out")

@@ -229,9 +229,8 @@ def test_the_answers_are_those_of_the_store_itself(
         select = "SELECT ?s ?p ?o ?none (TRIPLE(?s, ?p, ?o) AS ?t) {{ {} }}"
         rows = memory.store.query(select.format("?s ?p ?o"), default_graph=graph)
         assert isinstance(rows, ox.QuerySolutions)
-        assert sorted(memory.query(select.format("GRAPH dxg:asserted { ?s ?p ?o }")).rows, key=str) == sorted(
-            map(tuple, rows), key=str
-        )
+        answered = memory.query(select.format("GRAPH dxg:asserted { ?s ?p ?o }")).rows
+        assert sorted(map(tuple, answered), key=str) == sorted(map(tuple, rows), key=str)
         triples = memory.store.query("CONSTRUCT WHERE { ?s ?p ?o }", default_graph=graph)
         assert isinstance(triples, ox.QueryTriples)
         asserted = "CONSTRUCT { ?s ?p ?o } WHERE { GRAPH dxg:asserted { ?s ?p ?o } }"

@@ -97,5 +97,5 @@ def test_the_number_of_ranges_is_limited_by_64_bits() -> None:
     names = tuple(f"r{i}" for i in range(8))
     seven = direction_distance_calculus(Ranges(names[:7], tuple(float(2**i) for i in range(6))))
     assert (len(seven.atoms), seven.universal.bit_length()) == (57, 57)
-    with pytest.raises(SettingError, match="at most 7 ranges, not 8"):
+    with pytest.raises(SettingError, match="at most 7 ranges, got 8"):
         direction_distance_calculus(Ranges(names, tuple(float(2**i) for i in range(7))))
