@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from deixis.answers import count
 from deixis.deadline import Deadline
 from deixis.grammar.english.chunking.chunk import JOINT_TYPES, Chunk, VerbGroup
 from deixis.grammar.english.chunking.chunker import Chunker
@@ -84,12 +85,12 @@ def parse_english(
         if raw.step is None:
             lead = ()
         if deadline.passed:
-            raise ScriptTimeError(f"time limit reached after {len(found)} sentences were read")
+            raise ScriptTimeError(f"time limit reached after {count(len(found), 'sentence')}")
         words = words_of(text, (raw.start, raw.end))
         first = 0
         while first < len(words):
             if deadline.passed:
-                raise ScriptTimeError(f"time limit reached after {len(found)} sentences were read")
+                raise ScriptTimeError(f"time limit reached after {count(len(found), 'sentence')}")
             last = min(len(words), first + MAX_SENTENCE_WORDS)
             while last < len(words) and words[last].start < words[last - 1].end:
                 last -= 1  # keep the parts of a contraction together
@@ -236,35 +237,35 @@ def _is_verb(chunk: Chunk) -> bool:
 def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:
     """Return the clause that begins at a place, and its end; None if none begins there."""
     lark = _parser()
-    whole, end = _feed(lark, chunks, at, len(chunks))
+    whole, ends = _feed(lark, chunks, at, len(chunks))
     if whole is not None:
         return whole, len(chunks)
-    while end > at:
-        count = len(notes.get())
-        built, reached = _feed(lark, chunks, at, end)
+    for end in reversed(ends):
+        before = len(notes.get())
+        built, _ = _feed(lark, chunks, at, end)
         if built is not None:
             return built, end
-        del notes.get()[count:]
-        end = min(reached, end - 1)
+        del notes.get()[before:]
     return None, at
 
 
-def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | None, int]:
-    """Feed chunks to the parser; return the clause, or None and the place of the first chunk that does not fit."""
+def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | None, list[int]]:
+    """Feed chunks to the parser; return the clause, or None and the places before ``end`` at which one may end."""
     from lark import Token
     from lark.exceptions import UnexpectedToken
 
     state: Any = lark.parse_interactive().parser_state
-    count = len(notes.get())
-    i = at
+    before = len(notes.get())
+    ends: list[int] = []
     try:
         for i in range(at, end):
+            if i > at and "$END" in state.parse_conf.states[state.position]:
+                ends.append(i)
             state.feed_token(chunks[i])
-        i = end
-        return state.feed_token(Token("$END", ""), True), end
+        return state.feed_token(Token("$END", ""), True), ends
     except UnexpectedToken:
-        del notes.get()[count:]
-        return None, i
+        del notes.get()[before:]
+        return None, ends
 
 
 @cache
