@@ -192,8 +192,9 @@ def watched(layout: str, seed: int, camera: str) -> Watched:
         tempfile.TemporaryDirectory() as folder,
         live_robot(Path(folder) / "memory", settings, lambda line: None) as robot,
     ):
+        robot.record("table")
         robot.wait()
-        robot.remember("table")
+        robot.finish_recording("table")
         found, _ = matched(robot, truth)
         names = {thing.id: thing.name for thing in robot.things()}
         (sequence,) = sequences_of_experiences(robot.board)

@@ -93,6 +93,8 @@ def run(
             print_line(line)
 
     with live_robot(memory or default_memory(), settings, report, processes) as robot:
+        if experience is not None:
+            robot.record(experience)
         typing = threading.Thread(target=_listen, args=(robot, report), name="typed words", daemon=True)
         if sys.stdin is not None and sys.stdin.isatty():
             typing.start()
@@ -101,7 +103,7 @@ def run(
             if robot.problem is not None:
                 raise LiveError(f"{robot.problem}; the story has ended")
             if experience is not None:
-                robot.remember(experience)
+                robot.finish_recording(experience)
             if stay:
                 if not typing.is_alive():
                     typing.start()  # a file or a pipe is read after the story

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from deixis.grammar.utterances import MAX_CHARACTERS, Utterance
 from deixis.memory.episodes.blackboard import Blackboard
-from deixis.memory.episodes.experiences import put_episode
+from deixis.memory.episodes.experiences import finish_recording, start_recording
 from deixis.memory.episodes.fluents.changes import Add, Finish, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.printable import printed_line
@@ -152,8 +152,8 @@ class LiveRobot:
             time.sleep(0.1)
         return True
 
-    def remember(self, experience: str) -> None:
-        """Record the story, which has ended, as an experience.
+    def record(self, experience: str) -> None:
+        """Start to record the story as an experience.
 
         Parameters
         ----------
@@ -165,8 +165,23 @@ class LiveRobot:
         EpisodeError
             If there is an experience of this name.
         """
+        start_recording(self.board, experience, self.board.seconds(), by="robot")
+
+    def finish_recording(self, experience: str) -> None:
+        """Finish the experience where the story ended.
+
+        Parameters
+        ----------
+        experience
+            Name of the experience, which :meth:`record` began.
+
+        Raises
+        ------
+        EpisodeError
+            If there is no such experience, or it has finished.
+        """
         ended = max((each.start.upper for each in self._now(ENDED)), default=self.board.seconds())
-        put_episode(self.board, experience, (), self.began, ended + MOMENT, by="robot")
+        finish_recording(self.board, experience, ended + MOMENT, by="robot")
 
     def answered(self, seconds: float = 60.0) -> bool:
         """Wait until the robot has dealt with all typed words.

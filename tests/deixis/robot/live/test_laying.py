@@ -9,6 +9,7 @@ import pytest
 
 from deixis.grammar.layout.parser import parse_script
 from deixis.memory.episodes.blackboard import Blackboard
+from deixis.memory.errors import EpisodeError
 from deixis.reasoning.activities.activity import box_of
 from deixis.robot.live.run import SeenThing, live_robot
 from deixis.robot.live.story import StorySettings, laying_story
@@ -35,8 +36,11 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
     words = str(folder / "more.said.jsonl")
     story = StorySettings("laying", str(folder / "pair.layout"), seed=3, rate=1.0, words=words, camera="still")
     with live_robot(folder / "memory", story, lines.append) as robot:
+        robot.record("first table")
+        with pytest.raises(EpisodeError, match="there is an experience 'first table' already"):
+            robot.record("first table")
         assert robot.wait(120.0)
-        robot.remember("first table")
+        robot.finish_recording("first table")
         return Ran(folder / "memory", lines, robot.things())
 
 
