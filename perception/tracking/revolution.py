@@ -72,4 +72,4 @@ def circle_around(points: NDArray[np.float64]) -> Circle | None:
     widest = float(np.quantile(radius[count >= MIN_SLICE_POINTS], 0.9))
     if misfit > MAX_MISFIT or sectors < MIN_SECTORS or not 0 < widest < MAX_RADIUS:
         return None
-    return Circle(centre, widest)
+    return Circle(np.asarray(centre, np.float64), widest)

@@ -17,6 +17,7 @@ from deixis.grammar.english.vocabulary.function_words import NUMBERS, ORDINALS
 from deixis.grammar.reading import StatedFact
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.inflection import is_plural, plural
+from deixis.ontology.things.kinds import with_article
 
 MAX_PREDICATES = 4
 """Maximum number of predicates in a sentence."""
@@ -346,7 +347,7 @@ class _Names:
             return f"the {words}" if "_" in words.strip("_") and words.replace("_", "").isalnum() else f"the `{words}`"
         if words in self.confusable and words not in self.introduced:
             self.introduced.add(words)
-            return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+            return with_article(words)
         return f"the {words}"
 
 

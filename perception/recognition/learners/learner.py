@@ -58,10 +58,8 @@ class Learner(Protocol):
     The same calls in the same order give the same predictions.
     """
 
-    @property
-    def name(self) -> str:
-        """Name of the learner."""
-        ...
+    name: str
+    """Name of the learner."""
 
     @property
     def categories(self) -> tuple[str, ...]:

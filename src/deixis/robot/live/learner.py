@@ -15,6 +15,7 @@ from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED
 from deixis.memory.episodes.fluents.changes import Add, Logged
 from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Source, episodic
 from deixis.memory.errors import MemoryWriteError
+from deixis.ontology.things.kinds import with_article
 from deixis.perception.formats.scene_json import read_scene
 from deixis.printable import printed_line
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern
@@ -230,7 +231,10 @@ class Learner(Module):
         except DeixisError as error:
             self._say(f"I could not learn '{label}': {error}", at, board)
             return
-        self._then(lambda: self._understand(board, at), lambda: self._say(f"I see: {thing} is a {label}.", at, board))
+        self._then(
+            lambda: self._understand(board, at),
+            lambda: self._say(f"I see: {thing} is {with_article(label)}.", at, board),
+        )
 
     def _heard(self, text: str, fluent: EpisodicFluent, board: Board) -> None:
         by, at = fluent.source.by, fluent.start.lower

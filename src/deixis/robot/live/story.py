@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from deixis.grammar.utterances import Utterance
+from deixis.ontology.things.kinds import plain_name, with_article
 from deixis.perception.pointing.skeleton import Skeleton
 from deixis.perception.scene import Scene
 from deixis.perception.tracking.frame import Frame
@@ -299,7 +300,10 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     recording = Teacher(scene, seed).points_at([scene.ids[k] for k in shown], hold=1.5)
     words = [
         Utterance(
-            f"This is a {first.things[k].name.replace('_', ' ')}.", TALK + aim.start, TALK + aim.finish, "teacher"
+            f"This is {with_article(first.things[k].name.replace('_', ' '))}.",
+            TALK + aim.start,
+            TALK + aim.finish,
+            "teacher",
         )
         for k, aim in zip(shown, recording.aims, strict=True)
     ]
@@ -365,7 +369,6 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     >>> [words.text for words in story.words]
     ['First the plate.', 'Finally the cup.']
     """
-    from deixis.ontology.things.kinds import plain_name
     from deixis.perception.simulator.cameras.camera import chair_camera
     from deixis.perception.simulator.films.camera_paths import camera_path
     from deixis.perception.simulator.films.motion import Bring, Rest, Stage
