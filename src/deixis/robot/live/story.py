@@ -350,7 +350,7 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     rate
         Frames a second.
     camera
-        Path of the camera, a name of :data:`~deixis.perception.simulator.films.camera_paths.CAMERA_PATHS`.
+        Path of the camera: ``still``, ``sway`` or ``walk``.
 
     Returns
     -------
