@@ -221,7 +221,8 @@ class Learner(Module):
     def _shown(self, fluent: EpisodicFluent, board: Board) -> None:
         """Learn a name that a thing was given; if the thing has not been looked at yet, when it is."""
         thing, label, at = fluent.statement.subject, str(fluent.statement.object), fluent.start.lower
-        if thing not in self.robot.scene.ids and len(self._unseen) < MAX_UNSEEN:
+        seen = self.robot.sees_a_table and thing in self.robot.scene.ids
+        if not seen and len(self._unseen) < MAX_UNSEEN:
             self._unseen.append(fluent)
             return
         try:
