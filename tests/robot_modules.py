@@ -45,6 +45,16 @@ class Echo(Module):
         write_together(lambda _: None, [board.part(Add(fluent))])
 
 
+class Dying(Module):
+    """Ends its own process as soon as it runs."""
+
+    name = "dying"
+
+    def run(self, board: Board, stopped: threading.Event) -> None:
+        """End the process."""
+        os._exit(3)
+
+
 class Trespasser(Module):
     """Tries to write and read what it does not declare, and writes the messages of the errors."""
 

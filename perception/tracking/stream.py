@@ -10,7 +10,7 @@ import csv
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
@@ -135,28 +135,40 @@ class FolderSource:
         CloudError
             If ``times.csv`` is invalid.
         """
-        times = _times(self._folder / TIMES)
-        if times is not None:
-            for number, (name, at) in enumerate(times):
-                yield _read(self._folder / name, self._intrinsics, at, number)
+        if self._grows:
+            yield from self._growing()
             return
-        if not self._grows:
+        times = _times(self._folder / TIMES)
+        if times is None:
             yield from FileSource(self._files(), self._rate, self._intrinsics).frames()
             return
-        seen: set[Path] = set()
+        for number, (name, at) in enumerate(times):
+            yield _read(self._folder / name, self._intrinsics, at, number)
+
+    def _growing(self) -> Iterator[Frame]:
+        """Yield a frame for each file that comes, at the time in ``times.csv`` if there is one."""
+        seen: list[Path] = []
         first: float | None = None
         quiet_since = time.monotonic()
         while time.monotonic() - quiet_since < self._patience:
-            now = time.time()
-            dates = {file: _written_at(file) for file in self._files() if file not in seen}
-            new = {file: at for file, at in dates.items() if at is not None and abs(now - at) > SETTLE_SECONDS}
-            for file, written in new.items():
-                seen.add(file)
-                first = written if first is None else first
-                yield _read(file, self._intrinsics, written - first, len(seen) - 1)
+            times = _times(self._folder / TIMES, grows=True)
+            if times is not None:
+                new, first = [(self._folder / name, at) for name, at in times[len(seen) :]], 0.0
+            else:
+                new = self._settled(seen)
+                first = new[0][1] if new and first is None else first
+            for file, at in new:
+                seen.append(file)
+                yield _read(file, self._intrinsics, at - (first or 0.0), len(seen) - 1)
                 quiet_since = time.monotonic()
             if not new:
                 time.sleep(0.05)
+
+    def _settled(self, seen: Collection[Path]) -> list[tuple[Path, float]]:
+        """Return the files that have not been seen and are not being written any more, with the times of writing."""
+        now, known = time.time(), set(seen)
+        dates = [(file, _written_at(file)) for file in self._files() if file not in known]
+        return [(file, at) for file, at in dates if at is not None and abs(now - at) > SETTLE_SECONDS]
 
     def _files(self) -> list[Path]:
         return sorted(file for file in self._folder.iterdir() if file.suffix.lower() in CLOUD_SUFFIXES)
@@ -216,12 +228,16 @@ def recording(frames: Iterable[Frame], folder: str | Path) -> Iterator[Frame]:
         yield frame
 
 
-def _times(file: Path) -> list[tuple[str, float]] | None:
-    """Return names and times of a recorded sequence, or None if there is no such file."""
+def _times(file: Path, grows: bool = False) -> list[tuple[str, float]] | None:
+    """Return names and times of a recorded sequence, or None if there is no such file.
+
+    Of a growing one, a last line without an end is left out: it is still being written.
+    """
     if not file.is_file():
         return None
     found = []
-    for number, row in enumerate(csv.reader(read_lines(file, CloudError, MAX_TIMES_LINE)), start=1):
+    lines = (line for line in read_lines(file, CloudError, MAX_TIMES_LINE) if not grows or line.endswith("\n"))
+    for number, row in enumerate(csv.reader(lines), start=1):
         if number == 1 and row[:1] == ["file"]:
             continue
         try:

@@ -232,6 +232,16 @@ class Runner(Protocol):
         """
         ...
 
+    def failure(self) -> str | None:
+        """Return why the module has been given up.
+
+        Returns
+        -------
+        str or None
+            The reason in one line; None if the module runs.
+        """
+        return None
+
     def stop(self) -> None:
         """End both threads; one that hangs is left behind."""
         ...

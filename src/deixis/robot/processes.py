@@ -46,6 +46,12 @@ from deixis.robot.modules import AccessError, Board, Clock, Module, ModuleBoard,
 CALL_TIMEOUT = 10.0
 """Time in seconds for one call to the owner of the blackboard."""
 
+MAX_STARTS = 6
+"""Number of starts of a process, each soon after the one before, after which its module is given up."""
+
+STABLE_SECONDS = 60.0
+"""Time in seconds after which a process that ends is started again as if for the first time."""
+
 PAGE = 256
 """Maximum number of log entries in one answer."""
 
@@ -155,7 +161,7 @@ class Hub:
 
 
 class ProcessRunner(Runner):
-    """A module in a process, which is started again if it dies."""
+    """A module in a process, which is started again if it dies, until :data:`MAX_STARTS` starts were in vain."""
 
     def __init__(self, name: str, where: dict[str, Any], position: int, report: Callable[[str], None]) -> None:
         self._name, self._where, self._report = name, where, report
@@ -163,6 +169,7 @@ class ProcessRunner(Runner):
         self._moving = threading.Condition()
         self._stopped = threading.Event()
         self._ready = threading.Event()
+        self._failure: str | None = None
         self._process = self._begin()
         self._watch = threading.Thread(target=self._watching, name=f"process {name}", daemon=True)
         self._watch.start()
@@ -194,6 +201,10 @@ class ProcessRunner(Runner):
         with self._moving:
             return self._moving.wait_for(lambda: self._position >= sequence, timeout)
 
+    def failure(self) -> str | None:
+        """Return why the module has been given up; None if it runs."""
+        return self._failure
+
     def stop(self) -> None:
         """End the process, and kill it if it does not end within two seconds."""
         self._stopped.set()
@@ -221,8 +232,9 @@ class ProcessRunner(Runner):
         return process
 
     def _watching(self) -> None:
-        pause = 0.2
+        starts = 1
         while True:
+            began = time.monotonic()
             assert self._process.stdout is not None
             for line in self._process.stdout:
                 if line.rstrip("\n") == "ready":
@@ -236,10 +248,18 @@ class ProcessRunner(Runner):
                     self._process.stdin.close()
             if self._stopped.is_set():
                 return
-            self._report(f"the process of the module '{self._name}' ended with {code} and is started again")
-            if self._stopped.wait(pause):
+            if time.monotonic() - began > STABLE_SECONDS:
+                starts = 0
+            ended = f"the process of the module '{self._name}' ended with {code}"
+            if starts == MAX_STARTS:
+                self._failure = f"{ended} after each of {MAX_STARTS} starts and is not started again"
+                self._ready.set()
+                self._report(self._failure)
                 return
-            pause = min(2 * pause, 10.0)
+            self._report(f"{ended} and is started again")
+            if self._stopped.wait(0.1 * 2**starts):
+                return
+            starts += 1
             self._process = self._begin()
 
 

@@ -81,6 +81,16 @@ class Runtime(Closing):
         """
         return {name: runner.position() for name, runner in self._runners.items()}
 
+    def failure(self) -> str | None:
+        """Return why a module has been given up.
+
+        Returns
+        -------
+        str or None
+            The reason in one line, of the first such module; None if all modules run.
+        """
+        return next(filter(None, (runner.failure() for runner in list(self._runners.values()))), None)
+
     def wait(self, sequence: int | None = None, timeout: float = 10.0) -> bool:
         """Wait until all modules have handled the log up to a sequence number.
 

@@ -13,6 +13,7 @@ from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.fluents.changes import Add
 from deixis.memory.episodes.fluents.episode import episodic
 from deixis.reasoning.temporal.fluent import Pattern
+from deixis.robot import processes
 from deixis.robot.modules import Clock, ModuleError, ModuleSpec
 from deixis.robot.runtime import Runtime
 
@@ -61,6 +62,19 @@ def test_killed_process_goes_on_from_its_position(tmp_path: Path) -> None:
         assert until(lambda: len(heard(board)) == 5), lines
         assert heard(board) == ["one", "two", "killed", "three", "four"]
     assert lines == ["the process of the module 'echo' ended with -9 and is started again"]
+
+
+@pytest.mark.kills
+def test_process_that_always_dies_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processes, "MAX_STARTS", 2)
+    lines: list[str] = []
+    dying = ModuleSpec("robot_modules:Dying")
+    given_up = "the process of the module 'dying' ended with 3 after each of 2 starts and is not started again"
+    with Blackboard.open(tmp_path, create=True) as board, Runtime(board, [dying, ECHO], True, lines.append) as runtime:
+        assert until(lambda: runtime.failure() == given_up), lines
+        say(board, "one")
+        assert until(lambda: heard(board) == ["one"]), lines
+    assert lines == ["the process of the module 'dying' ended with 3 and is started again", given_up]
 
 
 def test_two_modules_cannot_have_one_name() -> None:

@@ -60,6 +60,18 @@ def test_growing_folder_yields_files_that_come_later(tmp_path: Path) -> None:
     assert [float(frame.cloud.points[0, 0]) for frame in (first, *frames)] == [1.0, 2.0]
 
 
+def test_growing_recording_yields_rows_that_come_later(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_cloud(tmp_path / f"{name}.pcd", cloud(ord(name)))
+    times = tmp_path / "times.csv"
+    times.write_text("file,seconds\na.pcd,0.5\nb.pcd,0.", encoding="utf-8")  # the last line is still being written
+    frames = FolderSource(tmp_path, grows=True, patience=0.8).frames()
+    first = next(frames)
+    times.write_text("file,seconds\na.pcd,0.5\nb.pcd,0.75\n", encoding="utf-8")
+    found = [(frame.at, float(frame.cloud.points[0, 0])) for frame in (first, *frames)]
+    assert found == [(0.5, 97.0), (0.75, 98.0)]
+
+
 def test_growing_folder_may_lose_files_and_be_of_the_future(tmp_path: Path) -> None:
     for name in ("a", "b"):
         write_cloud(tmp_path / f"{name}.pcd", cloud(ord(name)))

@@ -65,7 +65,8 @@ class LiveRobot:
     @property
     def problem(self) -> str | None:
         """Reason why the story ended early; None if it did not."""
-        return next((each.statement.object for each in self._now(ENDED)), None)
+        failure = None if self.runtime is None else self.runtime.failure()
+        return failure or next((each.statement.object for each in self._now(ENDED)), None)
 
     @property
     def dropped(self) -> int:
@@ -133,7 +134,7 @@ class LiveRobot:
         self.board.write(Add(typed), by=by)
 
     def wait(self, seconds: float | None = None) -> bool:
-        """Wait until the robot has dealt with the whole story.
+        """Wait until the robot has dealt with the whole story, or one of its modules has been given up.
 
         Parameters
         ----------
@@ -147,7 +148,8 @@ class LiveRobot:
         """
         until = None if seconds is None else time.monotonic() + seconds
         while not self._now(DONE):
-            if until is not None and time.monotonic() > until:
+            given_up = self.runtime is not None and self.runtime.failure() is not None
+            if given_up or (until is not None and time.monotonic() > until):
                 return False
             time.sleep(0.1)
         return True
