@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.activities.prediction import Prediction
     from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
+    from deixis.robot.robot import Robot, Told
     from deixis.session import Session
     from deixis.workflows.descriptions.refer import refer
     from deixis.workflows.descriptions.tell import tell
@@ -86,12 +87,14 @@ __all__ = [
     "Reference",
     "Relation",
     "Retrieval",
+    "Robot",
     "Scene",
     "Script",
     "Session",
     "Shown",
     "Taught",
     "Telling",
+    "Told",
     "Unlearned",
     "ask",
     "check",
@@ -138,12 +141,14 @@ _HOMES = {
     "Reference": "deixis.reasoning.grounding.reference.answer",
     "Relation": "deixis.ontology.relations.relation",
     "Retrieval": "deixis.workflows.grounding.retrieve",
+    "Robot": "deixis.robot.robot",
     "Scene": "deixis.perception.scene",
     "Script": "deixis.grammar.script",
     "Session": "deixis.session",
     "Shown": "deixis.workflows.scenes.point",
     "Taught": "deixis.learning.views.views",
     "Telling": "deixis.workflows.descriptions.telling",
+    "Told": "deixis.robot.robot",
     "Unlearned": "deixis.workflows.knowledge.unlearn",
     "ask": "deixis.workflows.grounding.ask",
     "check": "deixis.workflows.grounding.check",

@@ -103,6 +103,7 @@ class Row(tuple[Term | None, ...]):
 class QueryResult(Answer):
     """Answer of a query: rows of terms, a boolean, or triples, by its kind.
 
+    An answer is iterated by its rows or triples, which ``len`` counts; it is true if there are any, or if the boolean is.
     Rows are in the order of the store; the printed rows are sorted if the query has no order, so that the same memory
     prints the same answer.
 
@@ -116,6 +117,8 @@ class QueryResult(Answer):
     >>> found = QueryResult.of(QueryKind.SELECT, answer, ordered=False, limits=limits)
     >>> found, found.empty, found.printed()[0]["kind"].value
     (<QueryResult SELECT ?what ?kind: 1 row>, False, 'cutlery')
+    >>> len(found), [row.kind.value for row in found]
+    (1, ['cutlery'])
     >>> found.to_table()
     ['what        kind', '----------  -------', '<urn:fork>  cutlery']
     >>> found.to_csv().split()
@@ -134,6 +137,16 @@ class QueryResult(Answer):
     triples: tuple[ox.Triple, ...] = ()
     ordered: bool = False  # True if the query has ORDER BY
     notes: tuple[str, ...] = ()  # on what the answer may lack
+
+    def __iter__(self) -> Iterator[Row | ox.Triple]:
+        yield from self.rows
+        yield from self.triples
+
+    def __len__(self) -> int:
+        return len(self.rows or self.triples)
+
+    def __bool__(self) -> bool:
+        return bool(self.boolean or self.rows or self.triples)
 
     def summary(self) -> str:
         """Return the kind of the answer, and its number of rows or triples."""

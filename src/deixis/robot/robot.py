@@ -24,6 +24,7 @@ from deixis.memory.episodes.fluents.changes import Change
 from deixis.memory.episodes.fluents.episode import event_of
 from deixis.memory.errors import MemoryWriteError
 from deixis.memory.journal import Part
+from deixis.memory.owner import Closing
 from deixis.ontology.things.kinds import plain_name
 from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import Scene
@@ -83,7 +84,7 @@ class Told:
         return tuple(self.lesson.waiting)
 
 
-class Robot:
+class Robot(Closing):
     """A robot with one memory over time.
 
     Parameters
@@ -97,7 +98,7 @@ class Robot:
 
     Notes
     -----
-    Things are identified by their ids in the present scene. Times are in seconds since the origin of the blackboard;
+    A robot is closed when its ``with`` block ends. Things are identified by their ids in the present scene. Times are in seconds since the origin of the blackboard;
     None is the present. Only one thread at a time may call a method.
 
     Examples
@@ -131,6 +132,9 @@ class Robot:
     >>> robot.layouts
     {}
     >>> robot.close()
+    >>> with Robot(folder.name + "/memory") as again:
+    ...     again.layouts
+    {}
     >>> folder.cleanup()
     """
 

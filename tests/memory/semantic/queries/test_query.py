@@ -25,6 +25,17 @@ Read = Callable[[str], list[ox.Triple]]
 U = "<http://127.0.0.1:1/>"
 
 
+def test_answers_are_iterated_counted_and_true_if_not_empty(memory: SemanticMemory, read: Read) -> None:
+    memory.learn("one", {GraphName.ASSERTED: read("<urn:a> <urn:p> 1, 2 .")}, [])
+    rows = memory.query("SELECT ?o { <urn:a> <urn:p> ?o }")
+    assert (len(rows), list(rows), bool(rows)) == (2, list(rows.rows), True)
+    triples = memory.query("CONSTRUCT { ?s <urn:q> ?o } WHERE { ?s <urn:p> ?o }")
+    assert (len(triples), list(triples)) == (2, list(triples.triples))
+    assert not memory.query("SELECT ?o { <urn:b> <urn:p> ?o }")
+    assert memory.query("ASK { <urn:a> ?p ?o }")
+    assert not memory.query("ASK { <urn:b> ?p ?o }")
+
+
 def test_the_default_graph_is_the_union_of_three(memory: SemanticMemory, read: Read) -> None:
     graphs = {
         GraphName.ASSERTED: read("<urn:a> <urn:p> 1 ."),
