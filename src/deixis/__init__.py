@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from deixis.reasoning.activities.prediction import Prediction
     from deixis.reasoning.grounding.answers.answer import Grounding
     from deixis.reasoning.grounding.reference.answer import Reference
+    from deixis.robot.looking import Look
     from deixis.robot.robot import Robot, Told
     from deixis.session import Session
     from deixis.workflows.descriptions.refer import refer
@@ -74,6 +75,7 @@ __all__ = [
     "Learned",
     "LearnedWords",
     "Lint",
+    "Look",
     "Match",
     "OrientedBox",
     "PerceivedObject",
@@ -129,6 +131,7 @@ _HOMES = {
     "Learned": "deixis.workflows.knowledge.learn",
     "LearnedWords": "deixis.learning.models.words",
     "Lint": "deixis.workflows.layouts.lint",
+    "Look": "deixis.robot.looking",
     "Match": "deixis.ontology.lessons.types",
     "OrientedBox": "deixis.perception.scene",
     "PerceivedObject": "deixis.perception.scene",

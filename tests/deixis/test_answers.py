@@ -11,7 +11,9 @@ import deixis
 from deixis.answers import Answer, share
 from deixis.errors import DeixisError
 from deixis.extras import MissingExtraError
+from deixis.perception.simulator.laying import truth_scene
 from deixis.report.renderers import RENDERERS, to_rows
+from deixis.workflows.layouts.lay_table import lay_script
 
 SCRIPT = deixis.read_script("examples/formal_dinner.layout")
 SCENE = deixis.read_scene("examples/place_setting.scene.json")
@@ -25,7 +27,14 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
     with deixis.Session(memory=tmp_path_factory.mktemp("answers") / "memory") as session:
         learned = session.learn(SCRIPT, SCENE)
         words, concept, layout = session.learn_relations(), session.concept("formal_dinner"), session.layouts()[0]
+    with deixis.Robot(tmp_path_factory.mktemp("robot") / "memory") as robot:
+        robot.sees(truth_scene(lay_script(SCRIPT, seed=7).table), at=0.0)
+        told, look = robot.told(SCRIPT, at=1.0), robot.look()
+        assert repr(robot) == "<Robot: 12 things in view, 1 layout known>"
+        assert repr(robot.layouts["formal_dinner"]) == "<LearnedLayout 'formal_dinner': 12 roles, 1 table>"
     return {
+        "Told": told,
+        "Look": look,
         "Learned": learned,
         "LearnedWords": words,
         "CountedConcept": concept,
@@ -65,6 +74,7 @@ def test_plain_data_is_json(answers: dict[str, Answer]) -> None:
 
 def test_text_is_what_the_command_prints(answers: dict[str, Answer]) -> None:
     assert answers["Grounding"].to_text().splitlines()[0].split()[:2] == ["napkin", "o2"]
+    assert answers["Look"].to_text().startswith("This table is laid as 'formal_dinner' says, probability 1.00.")
     assert answers["Check"].to_text().startswith("This table is not laid as 'formal_dinner' says.")
 
 
@@ -75,6 +85,7 @@ def test_tables_have_a_row_for_each_thing(answers: dict[str, Answer]) -> None:
     ]
     assert len(rows["Script"]) == len(SCRIPT.facts)
     assert len(rows["Scene"]) == len(rows["Imagination"]) == len(rows["Learned"]) == 12
+    assert len(rows["Look"]) == len(rows["Told"]) == 12
     assert len(rows["LayoutConcept"]) == len(rows["CountedConcept"]) == len(SCRIPT.facts)
     assert {row["verdict"] for row in rows["Check"]} == {"correct", "missing", "misplaced", "extra"}
     assert all(len(set(map(tuple, table))) >= 1 for table in rows.values())
@@ -115,7 +126,7 @@ def test_pictures_go_into_given_axes(answers: dict[str, Answer]) -> None:
 
 def test_pictures_are_png_in_notebooks(answers: dict[str, Answer]) -> None:
     pytest.importorskip("matplotlib")
-    for name in ("Grounding", "Scene", "Check", "Imagination", "Learned"):
+    for name in ("Grounding", "Scene", "Check", "Imagination", "Learned", "Look", "Told"):
         shown = answers[name]._repr_png_()
         assert shown is not None
         assert shown.startswith(PNG)

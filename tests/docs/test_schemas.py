@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from commands import deixis as deixis_command
 from documentation.command_reference import commands, options
@@ -108,6 +110,9 @@ CASES = [
 OF_INPUT = {"skeleton", "utterance"}
 """Schemas of lines of files that Deixis reads."""
 
+OF_ROBOT = {"look", "told"}
+"""Schemas of answers of a robot, which no command prints."""
+
 
 def errors(name: str, answer: Any) -> list[str]:
     return errors_in(name, json.loads(answer.to_json()))
@@ -188,7 +193,7 @@ def test_every_command_with_json_has_a_schema_on_the_page() -> None:
         if "--json" in options(command, context)
     }
     assert known and _listed().keys() == known
-    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT} == SCHEMAS.keys()
+    assert set().union(*_listed().values()) | {"fact", "claim", *LINES, *OF_INPUT, *OF_ROBOT} == SCHEMAS.keys()
 
 
 def test_answers_of_every_command_are_validated() -> None:
@@ -231,6 +236,21 @@ def test_groundings_have_their_schema(scene: deixis.Scene, options: dict[str, An
 @pytest.mark.parametrize(("text", "oracle"), [("the lamp on the desk", None), ("the chair", None), ("the bin", "o14")])
 def test_references_have_their_schema(text: str, oracle: str | None) -> None:
     assert errors("reference", deixis.refer(text, EXAMPLES / "study.scene.json", oracle=oracle)) == []
+
+
+def test_answers_of_a_robot_have_their_schema(tmp_path: Path) -> None:
+    low = np.array([[0, 0, 0], [0.1, 0, 0], [0.5, 0, 0]])
+    table = deixis.Scene.from_boxes(low, low + np.array([[0.03, 0.2, 0.01], [0.03, 0.2, 0.01], [0.25, 0.25, 0.02]]))
+    with deixis.Robot(tmp_path / "memory") as robot:
+        robot.sees(table, at=0.0)
+        known = robot.told(deixis.read_script(text="layout row; fork left of knife; knife left of plate"), at=1.0)
+        waiting = robot.told(deixis.read_script(text="layout pair; fork left of plate; knife left of plate"), at=1.0)
+        assert known.taught and waiting.waiting
+        assert errors("told", known) == errors("told", waiting) == []
+        assert errors("look", robot.look()) == []
+        robot.sees(replace(table, objects=table.objects[1:]), at=2.0)
+        assert robot.look().faults()
+        assert errors("look", robot.look()) == []
 
 
 def test_facts_of_graded_words_have_their_schema() -> None:

@@ -103,9 +103,9 @@ class Row(tuple[Term | None, ...]):
 class QueryResult(Answer):
     """Answer of a query: rows of terms, a boolean, or triples, by its kind.
 
-    An answer is iterated by its rows or triples, which ``len`` counts; it is true if there are any, or if the boolean is.
-    Rows are in the order of the store; the printed rows are sorted if the query has no order, so that the same memory
-    prints the same answer.
+    An answer is iterated by its rows or triples, which ``len`` counts; it is true if there are any, or if the boolean
+    is. Rows are in the order of the store; the printed rows are sorted if the query has no order, so that the same
+    memory prints the same answer.
 
     Examples
     --------

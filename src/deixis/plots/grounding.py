@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.patches import Rectangle
 
     from deixis.ontology.lessons.types import Match
+    from deixis.robot.looking import Look
+    from deixis.robot.robot import Told
     from deixis.workflows.knowledge.learn import Learned
 
 GROUP_COLOURS = ("#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#f0e442")
@@ -151,6 +153,24 @@ def learned_figure(learned: Learned, axes: Axes | None = None) -> Figure:
     return answer_figure(learned.grounding, axes)
 
 
+def told_figure(told: Told, axes: Axes | None = None) -> Figure:
+    """Draw the grounding of a lesson of a robot in the table that it saw.
+
+    Parameters
+    ----------
+    told
+        Answer of :meth:`deixis.Robot.told`.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return learned_figure(told.learned, axes)
+
+
 def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     """Draw the boxes of a scene from above, each with its label or id.
 
@@ -170,6 +190,39 @@ def scene_figure(scene: Scene, axes: Axes | None = None) -> Figure:
     named = {thing.id: thing.label for thing in scene.objects if thing.label}
     _draw_boxes(axes, scene, named, {}, NO_MARKS, {})
     _finish(figure, axes, scene, named, (), None)
+    return figure
+
+
+def look_figure(look: Look, axes: Axes | None = None) -> Figure:
+    """Draw what a robot concludes about a table: the name of each thing, and what is wrong.
+
+    Names below 0.99 have their probabilities and faded edges. Things that are in a mistake have an edge of their own
+    colour; the title says what is wrong.
+
+    Parameters
+    ----------
+    look
+        Answer of :meth:`deixis.Robot.look`.
+    axes
+        Axes to draw into, or None for a new figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    figure, axes = canvas(axes, WIDTH, _table_height(look.scene) + 1.3)
+    faults = look.faults()
+    labels, sureness = {}, {}
+    for thing, names in look.names.items():
+        name = look.name(thing)
+        if name is not None:
+            sureness[thing] = names[name]
+            labels[thing] = name if names[name] >= DECIDED else f"{name} {probability_text(names[name])}"
+    marks = Marks(wrong={thing for fault in faults for thing in fault.things})
+    _draw_boxes(axes, look.scene, labels, {}, marks, sureness)
+    title = "no known layout" if look.layout is None else "; ".join((f"'{look.layout}'", *map(str, faults)))
+    _finish(figure, axes, look.scene, labels, (), title)
     return figure
 
 

@@ -135,6 +135,18 @@ RENDERERS = {
         "report.descriptions.relation:learned_words_lines",
         "report.descriptions.relation:learned_words_rows",
     ),
+    "Look": Renderer(
+        "report.scenes.robot:look_to_dict",
+        "report.scenes.robot:look_lines",
+        "report.scenes.robot:look_rows",
+        "plots.grounding:look_figure",
+    ),
+    "Told": Renderer(
+        "report.scenes.robot:told_to_dict",
+        "report.scenes.robot:told_lines",
+        "report.scenes.robot:told_rows",
+        "plots.grounding:told_figure",
+    ),
     "Taught": Renderer("report.scenes.seen:taught_to_dict", "report.scenes.seen:taught_lines"),
     "LayoutConcept": Renderer(
         "report.knowledge.concept:layout_to_dict",

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from deixis.answers import count
 from deixis.grammar.script import Script
 from deixis.learning.layouts.experience import TOLERANCE, Experience, log_sizes, long_axis, predictive
 from deixis.learning.lessons.lesson import layout_name
@@ -94,7 +95,7 @@ def angle_between(first: float, second: float) -> float:
     return float(abs((first - second + np.pi / 2) % np.pi - np.pi / 2))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LearnedLayout:
     """A layout: the script that describes it, and the experience of its tables.
 
@@ -111,6 +112,11 @@ class LearnedLayout:
     name: str
     script: Script
     experience: Experience = field(default_factory=Experience)
+
+    def __repr__(self) -> str:
+        return (
+            f"<LearnedLayout '{self.name}': {count(len(self.roles), 'role')}, {count(self.experience.tables, 'table')}>"
+        )
 
     @classmethod
     def told(cls, script: Script) -> LearnedLayout:

@@ -12,6 +12,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from deixis.answers import count
 from deixis.learning.layouts.tables import TaughtTable
 from deixis.perception.scene import Scene
 from deixis.reasoning.grounding.answers.answer import Grounding
@@ -81,7 +82,7 @@ def _told(thing: str) -> Settled:
     return Settled(thing, SettledBy.WORDS, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TableLesson:
     """A table on which a layout was described.
 
@@ -113,6 +114,10 @@ class TableLesson:
     id: str = ""
     roles: tuple[str, ...] = ()
     present: frozenset[str] = frozenset()
+
+    def __repr__(self) -> str:
+        known = count(len(self.settled), "role")
+        return f"<TableLesson {self.id} of '{self.layout}': {known} known, {len(self.waiting)} waiting>"
 
     @classmethod
     def of(cls, number: int, layout: str, scene: Scene, grounding: Grounding, id: str = "") -> TableLesson:

@@ -13,6 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
+from deixis import answers
+from deixis.answers import Answer, count
 from deixis.learning.layouts.experience import Experience
 from deixis.learning.views.views import Known, recognise
 from deixis.ontology.tbox import Ontology
@@ -61,8 +63,8 @@ class Fault:
         return sentences[self.kind]
 
 
-@dataclass(frozen=True, eq=False)
-class Look:
+@dataclass(frozen=True, eq=False, repr=False)
+class Look(Answer):
     """Explanation of a table: its layouts, the names of its things, and the mistakes.
 
     Attributes
@@ -78,6 +80,13 @@ class Look:
     scene: Scene
     layouts: Mapping[str, float]
     explanations: Mapping[str, tuple[LearnedLayout, Explanation]]
+
+    def summary(self) -> str:
+        """Return the layout, and the numbers of things with names and of mistakes."""
+        layout = "no known layout" if self.layout is None else f"'{self.layout}' {self.layouts[self.layout]:.2f}"
+        named = sum(self.name(thing) is not None for thing in self.names)
+        mistakes = f", {count(len(self.faults()), 'mistake')}" if self.layout is not None else ""
+        return f"{layout}: {answers.share(named, len(self.names), 'thing')} named{mistakes}" if self.names else layout
 
     @property
     def layout(self) -> str | None:
@@ -148,7 +157,7 @@ class Look:
         return tuple(found)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TableKnowledge:
     """Learned knowledge that the explanation of a table needs, without an open store.
 
@@ -168,6 +177,10 @@ class TableKnowledge:
     layouts: tuple[LearnedLayout, ...]
     meaning: Meaning
     ontology: Ontology
+
+    def __repr__(self) -> str:
+        categories = count(len(self.known.recogniser.parts[0].categories), "category")
+        return f"<TableKnowledge {count(len(self.layouts), 'layout')}, {categories}>"
 
     def portable(self) -> tuple[Known, tuple[tuple[str, str, Experience], ...], Meaning]:
         """Return the knowledge as values for another process, which has the shipped ontology.

@@ -11,8 +11,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
+from deixis.answers import Answer, count, share
 from deixis.errors import DeixisError
 from deixis.grammar.errors import ScriptError
 from deixis.grammar.layout.format import format_script
@@ -66,12 +67,18 @@ class RobotError(DeixisError, ValueError):
     """Error for what a robot cannot do now, such as naming things before it sees any."""
 
 
-@dataclass(frozen=True, eq=False)
-class Told:
+@dataclass(frozen=True, eq=False, repr=False)
+class Told(Answer):
     """Result of describing a layout: the lesson, what the session learned, the known roles, and those that wait."""
 
     lesson: TableLesson
     learned: Learned
+
+    def summary(self) -> str:
+        """Return the layout, its lesson, and the numbers of roles that are known and that wait."""
+        waiting = f", {len(self.waiting)} waiting" if self.waiting else ""
+        known = share(len(self.taught), len(self.taught) + len(self.waiting), "role")
+        return f"'{self.lesson.layout}' as lesson {self.lesson.id}: {known} known{waiting}"
 
     @property
     def taught(self) -> tuple[str, ...]:
@@ -98,8 +105,8 @@ class Robot(Closing):
 
     Notes
     -----
-    A robot is closed when its ``with`` block ends. Things are identified by their ids in the present scene. Times are in seconds since the origin of the blackboard;
-    None is the present. Only one thread at a time may call a method.
+    A robot is closed when its ``with`` block ends. Things are identified by their ids in the present scene. Times are
+    in seconds since the origin of the blackboard; None is the present. Only one thread at a time may call a method.
 
     Examples
     --------
@@ -159,6 +166,10 @@ class Robot(Closing):
         if board is not None:
             self._remember_unnamed()
         self.remember()
+
+    def __repr__(self) -> str:
+        seen = f"{count(len(self._scene.objects), 'thing')} in view" if self._scene is not None else "no table in view"
+        return f"<Robot: {seen}, {count(len(self.layouts), 'layout')} known>"
 
     def close(self) -> None:
         """Close the memory, and keep the present table if its layout has no name."""
@@ -261,13 +272,13 @@ class Robot(Closing):
             raise RobotError("the robot must see a table first; call sees() with a scene or a cloud")
         return self._scene
 
-    def sees(self, scene: Scene | PointCloud, at: float | None = None) -> Scene:
+    def sees(self, scene: Scene | PointCloud | str | Path | Mapping[str, Any], at: float | None = None) -> Scene:
         """Take a scene as the present one, and look in it for expected objects.
 
         Parameters
         ----------
         scene
-            A scene, or a cloud in which the things are then detected.
+            A scene, as such, by its file or as parsed JSON; or a cloud in which the things are then detected.
         at
             Time in seconds.
 
@@ -278,11 +289,14 @@ class Robot(Closing):
 
         Raises
         ------
+        SceneError
+            If it is not a scene.
         RobotError
             If the boxes of the scene have no heights.
         """
-        if isinstance(scene, PointCloud):
-            scene = perceived(scene)
+        from deixis.workflows.layouts.read import as_scene
+
+        scene = perceived(scene) if isinstance(scene, PointCloud) else as_scene(scene)
         if scene.objects and len(scene.objects[0].minimum) < 3:
             raise RobotError("`scene` must have boxes with heights, in metres, as perceive() makes them")
         if self._fullest is not None and not is_same_table(self._fullest, scene):
@@ -519,6 +533,8 @@ class Robot(Closing):
         RobotError
             If it describes a layout before the robot has seen a table.
         """
+        if isinstance(text, str) and not text.strip():
+            raise RobotError("`text` must say something, got blank text; describe how the table is laid")
         if isinstance(text, str) and (presence := self._presence(text)) is not None:
             return self._told_presence(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)

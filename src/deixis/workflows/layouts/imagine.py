@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from deixis.reasoning.entailment.realisation.picture import Impossible, Picture,
 from deixis.reasoning.errors import SettingError
 from deixis.reasoning.geometry.rectangle import scene_relations
 from deixis.workflows.layouts.arrange import Arrangement, arrange
+from deixis.workflows.layouts.read import as_script
 
 TIME_LIMIT = 30.0
 MAX_ATTEMPTS = 5
@@ -117,7 +119,12 @@ class Imagination(Answer):
 
 
 def imagine(
-    script: Script, *, any_size: bool = False, seed: int = 0, count: int = 1, time_limit: float = TIME_LIMIT
+    script: Script | str | Path,
+    *,
+    any_size: bool = False,
+    seed: int = 0,
+    count: int = 1,
+    time_limit: float = TIME_LIMIT,
 ) -> Imagination:
     """Lay example tables that satisfy every firm fact of a script in its stated reading, and the others where possible.
 
@@ -126,7 +133,7 @@ def imagine(
     Parameters
     ----------
     script
-        The script.
+        The script, or its file.
     any_size
         True to allow whatever sizes it takes, not only those usual for the kinds.
     seed
@@ -152,6 +159,8 @@ def imagine(
     >>> found = imagine(parse_script("fork left of plate; knife right of plate"))
     >>> [thing.label for thing in found.tables[0].scene.objects]
     ['fork', 'plate', 'knife']
+    >>> str(imagine("examples/formal_dinner.layout"))
+    'Imagination of examples/formal_dinner.layout: 1 example table'
     >>> str(imagine(parse_script("dinner_plate on teaspoon")).none.sizes[1])
     'teaspoon, a teaspoon: 11 to 16 cm long and 2.2 to 3.6 cm wide'
     """
@@ -159,15 +168,16 @@ def imagine(
         raise SettingError(
             f"`count` must be at least 1, `seed` and `time_limit` at least 0, got {count}, {seed} and {time_limit:g}"
         )
-    graph = _with_claims(script).affirming()
-    objects = sized_objects(script, graph)
+    read = as_script(script)
+    graph = _with_claims(read).affirming()
+    objects = sized_objects(read, graph)
     tables: list[ImaginedTable] = []
-    for found in _pictures(graph, objects, any_size, seed, count, time_limit, script.ontology.kinds):
+    for found in _pictures(graph, objects, any_size, seed, count, time_limit, read.ontology.kinds):
         if isinstance(found, Impossible):
-            return Imagination(script, none=_no_table(graph, objects, found))
+            return Imagination(read, none=_no_table(graph, objects, found))
         if isinstance(found, Picture):
-            tables.append(_table(script, graph, objects, found, np.random.default_rng([seed, len(tables)]), time_limit))
-    return Imagination(script, tuple(tables))
+            tables.append(_table(read, graph, objects, found, np.random.default_rng([seed, len(tables)]), time_limit))
+    return Imagination(read, tuple(tables))
 
 
 def _pictures(
