@@ -59,6 +59,7 @@ def test_one_long_line(text: str) -> None:
         assert len(message) < 2_000
 
 
+@pytest.mark.long
 def test_long_lists() -> None:
     many = ", ".join(f"n{i}" for i in range(50_000))
     assert len(parse_script(f"{many} left of plate").facts) == 50_000
