@@ -7,6 +7,7 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Self, TypeVar
 
+from deixis.deadline import Deadline
 from deixis.knowledge_store import KnowledgeStore
 from deixis.memory.on_demand import default_memory
 from deixis.memory.owner import Closing, ThreadLock
@@ -187,7 +188,7 @@ class Session(Closing):
         from deixis.workflows.layouts.read import as_script
 
         return ground(
-            as_script(script, self.ontology),
+            as_script(script, self.ontology, Deadline.after(time_limit)),
             scene,
             engine,
             time_limit,

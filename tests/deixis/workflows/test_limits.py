@@ -67,6 +67,14 @@ def test_a_request_over_the_memory_limit_is_refused_in_advance(tmp_path: Path) -
     assert "200 things" in err and "--memory-limit" in err
 
 
+@pytest.mark.parametrize("method", ["ground", "learn", "check"])
+def test_reading_a_long_text_keeps_to_the_time_limit(method: str, tmp_path: Path) -> None:
+    text = tmp_path / "long.txt"
+    text.write_text("The fork that is left of the plate which lies on the mat is by the cup. " * 5000, encoding="utf-8")
+    with package.Session(tmp_path / "memory") as session, pytest.raises(ScriptTimeError, match="time limit reached"):
+        getattr(session, method)(text, "examples/place_setting.scene.json", time_limit=0.2)
+
+
 def test_where_memory_is_short_probabilities_are_beliefs(tmp_path: Path) -> None:
     script, scene = written(100, tmp_path)
     read = package.read_script(script)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.learning.lessons.scene_evidence import (
@@ -134,7 +135,7 @@ def check(
         raise SettingError(f"`layout` must be a script, its file or the name of a layout, got {layout!r:.60}")
     known = default_ontology() if knowledge is None else knowledge.ontology
     if isinstance(layout, Script) or is_script_file(layout):
-        concept = layout_concept(as_script(layout, known), "script")
+        concept = layout_concept(as_script(layout, known, Deadline.after(time_limit)), "script")
     elif knowledge is None:
         message = f"layout must be a script or its file (.layout) where there is no memory, got the name '{layout}'"
         raise SettingError(message)

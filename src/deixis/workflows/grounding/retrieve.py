@@ -165,7 +165,7 @@ def retrieve(
     deadline, folder = Deadline.after(time_limit), None if among is None else Path(among)
     comparison = Comparison(default_ontology(), memory.meaning().sizes if memory else None)
     if isinstance(query, str | Path):
-        query = read_script_file(str(query)) if _is_script_file(str(query)) else read_scene(query)
+        query = read_script_file(str(query), deadline=deadline) if _is_script_file(str(query)) else read_scene(query)
     if isinstance(query, Script):
         layout, scenes = Described(query.file, query.graph()), _known_scenes(memory, folder, hide_labels, left_out)
         ranked = rank_scenes(layout, scenes.values(), comparison, top, deadline, progress)
@@ -173,7 +173,7 @@ def retrieve(
         return Retrieval(tuple(found), len(scenes), query.file, least)
     scene = query if isinstance(query, Scene) else read_scene(query)
     asked = _seen(scene.file, scene.without_labels() if hide_labels else scene)
-    layouts = _known_layouts(memory, folder)
+    layouts = _known_layouts(memory, folder, deadline)
     ranked = rank_layouts(asked, layouts.values(), comparison, top, deadline, progress)
     found = [_retrieved(one.layout, one, layouts[one.layout], asked) for one in ranked if one.similarity >= least]
     return Retrieval(tuple(found), len(layouts), scene.file, least)
@@ -208,10 +208,10 @@ def _seen(name: str, scene: Scene) -> ComparedScene:
     )
 
 
-def _known_layouts(memory: Knowledge | None, among: Path | None) -> dict[str, Described]:
+def _known_layouts(memory: Knowledge | None, among: Path | None, deadline: Deadline) -> dict[str, Described]:
     """Return the scripts of a folder and the layouts in memory; a name learned several times is listed by lesson."""
     paths = _files(among, "*.layout", "layout scripts") if among is not None else []
-    known = {path.name: Described(path.name, read_script_file(str(path)).graph()) for path in paths}
+    known = {path.name: Described(path.name, read_script_file(str(path), deadline=deadline).graph()) for path in paths}
     layouts = memory.layouts() if memory is not None else ()
     names = [layout.name for layout in layouts]
     for layout in layouts:

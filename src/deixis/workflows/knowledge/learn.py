@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from deixis.answers import Answer, count
+from deixis.deadline import Deadline
 from deixis.grammar.script import Script
 from deixis.knowledge_store import KnowledgeStore
 from deixis.ontology.lessons.types import ANONYMOUS
@@ -176,7 +177,7 @@ def _lesson(
     from deixis.learning.lessons.lesson import Occasion, layout_name, lesson_of
     from deixis.ontology.lessons.types import next_lesson_id
 
-    script, scene = as_script(script, knowledge.ontology), as_scene(scene)
+    script, scene = as_script(script, knowledge.ontology, Deadline.after(time_limit)), as_scene(scene)
     request = GroundingRequest(script, scene, engine, time_limit=time_limit, meaning=knowledge.meaning())
     conflict = request.conflict
     if conflict is not None:

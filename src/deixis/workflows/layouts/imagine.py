@@ -168,7 +168,7 @@ def imagine(
         raise SettingError(
             f"`count` must be at least 1, `seed` and `time_limit` at least 0, got {count}, {seed} and {time_limit:g}"
         )
-    read = as_script(script)
+    read = as_script(script, deadline=Deadline.after(time_limit))
     graph = _with_claims(read).affirming()
     objects = sized_objects(read, graph)
     tables: list[ImaginedTable] = []
