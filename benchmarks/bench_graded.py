@@ -2,7 +2,8 @@
 
 Every image's facts become log-likelihood ratios (:mod:`deixis.reasoning.grounding.evidence.facts.facts`); the
 one-to-one map with the largest sum is found exactly. Prints the share of objects named right, mean over images, each a
-mean over random node orders. ``shipped`` words and sizes do not depend on these images. ``learned`` words, and sizes by
+mean over random node orders. ``shipped`` words and sizes do not depend on these images;
+``anonymous names`` are names that say nothing of the kinds. ``learned`` words, and sizes by
 the names in the descriptions, are fitted by cross-validation over images: the test fold is never seen. ``--halves``
 adds the shares of two fixed halves of the images, development and confirmation; the last choices of form, and the
 strengths of the priors of learned models, were made on the first half alone.
@@ -17,6 +18,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from common import data_folder
@@ -84,6 +86,13 @@ def crisp_shares(images: Sequence[Photograph], orders: int) -> NDArray[np.float6
         nothing = np.zeros((len(boxes), len(boxes)))
         shares.append(share_right(crisp_tables(description, names), nothing, len(boxes), rng, orders))
     return np.array(shares)
+
+
+def anonymous(image: Photograph) -> Photograph:
+    """Return a photograph whose described objects have names that say nothing of their kinds."""
+    description, boxes = image
+    names = tuple(f"x{number}" for number in range(len(description.nodes)))
+    return Photograph(replace(description, nodes=names, kinds=(None,) * len(names)), boxes)
 
 
 def report(name: str, shares: NDArray[np.float64], started: float, halves: bool) -> None:
@@ -156,6 +165,9 @@ def on_photographs(options: argparse.Namespace) -> None:
         started = time.perf_counter()
         shares = graded_shares(images, [meaning] * len(images), options.orders, saying, literal)
         report(name, shares, started, options.halves)
+    started = time.perf_counter()
+    shares = graded_shares([anonymous(image) for image in images], [SHIPPED] * len(images), options.orders)
+    report("shipped, anonymous names", shares, started, options.halves)
     for seed in map(int, filter(None, options.seeds.split(","))):
         started = time.perf_counter()
         settings = FitSettings(options.strength, options.word_contrast, iterations=60)
