@@ -157,11 +157,13 @@ class StorySettings:
         UtteranceError, PointingError
             If a file of words or skeletons has an error.
         SimulationError
-            If no table can be laid as the script says.
+            If no table can be laid as the script says, or there is no such path of the camera.
         """
         from deixis.grammar.utterances import read_utterances
+        from deixis.perception.simulator.films.camera_paths import camera_path
         from deixis.perception.tracking.stream import LatestFrames
 
+        camera_path(self.camera)  # an unknown path is an error in every story
         driver = self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
         if self.source in SIMULATED:
             from deixis.examples_data import example
