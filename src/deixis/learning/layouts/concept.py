@@ -50,7 +50,7 @@ class Counted:
 
     def __str__(self) -> str:
         counted = f"held on {self.tally.held:g} of {self.tally.of:g} tables" if self.tally.of else "never compared"
-        return f"{self.statement}: {counted}{'' if self.told else ', not told'}"
+        return f"{self.statement}: {counted}{'' if self.told else ', not stated'}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
