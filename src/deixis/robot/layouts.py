@@ -45,7 +45,7 @@ MIN_TURN_OUTLIERS = 1e-4
 each further one."""
 
 OBSERVED_WEIGHT = 0.5
-"""Factor of the evidence of relations that were seen but not stated, since those of different pairs depend on each other.
+"""Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.
 """
 
 
@@ -150,7 +150,7 @@ class LearnedLayout:
 
     @cached_property
     def graph(self) -> RelationGraph:
-        """Roles and told facts."""
+        """Roles and stated facts."""
         return self.script.graph()
 
     @property
@@ -162,7 +162,7 @@ class LearnedLayout:
     def expectations(self) -> tuple[tuple[Relation, int, int, float, float], ...]:
         """Wide relations between roles: the relation, the two roles, the probability that it holds, and its weight.
 
-        Told facts come first, and what follows from them; then what was seen of other pairs.
+        Stated facts come first, and what follows from them; then what was seen of other pairs.
         """
         relations, graph = self.graph.vocabulary, self.graph
         found: dict[tuple[int, int, int], tuple[Relation, int, int, float, float]] = {}
@@ -304,7 +304,7 @@ class LearnedLayout:
         return evidence
 
     def _offsets(self, boxes: Array, things: int) -> Iterator[tuple[int, int, Array]]:
-        """Yield pairs of roles that a told fact relates, and the evidence of the offset of each pair of poses."""
+        """Yield pairs of roles that a stated fact relates, and the evidence of the offset of each pair of poses."""
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
