@@ -47,12 +47,12 @@ _ITEM = re.compile(
 
 
 class ActivityTextError(DeixisError, ValueError):
-    """A told activity, or a file of activities, that cannot be read."""
+    """A described activity, or a file of activities, that cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)
 class ToldItem:
-    """Things of a told activity: their kind, and how many; None for all that there are."""
+    """Things of a described activity: their kind, and how many; None for all that there are."""
 
     kind: str
     count: int | None
@@ -62,7 +62,7 @@ class ToldItem:
 
 
 def read_activity(text: str) -> list[list[ToldItem]]:
-    """Read a told activity.
+    """Read a described activity.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def read_activity(text: str) -> list[list[ToldItem]]:
     kinds = [item.kind for group in groups for item in group]
     twice = next((kind for kind in kinds if kinds.count(kind) > 1), None)
     if twice is not None:
-        raise ActivityTextError(f"the told activity names '{twice}' twice; name each kind of thing once")
+        raise ActivityTextError(f"the description names '{twice}' twice; name each kind of thing once")
     return groups
 
 
@@ -105,12 +105,14 @@ def _items(part: str, text: str) -> list[ToldItem]:
             continue
         found = _ITEM.match(words)
         if found is None or not found["noun"].strip():
-            raise ActivityTextError(f"'{words}' in the told activity '{text.strip()[:60]}' is not a thing")
+            raise ActivityTextError(
+                f"'{words}' in '{text.strip()[:60]}' is not a thing; write, say, 'first the plate, then the forks'"
+            )
         noun, number = found["noun"].strip(), (found["det"] or "").split()[-1:]
         said = _NUMBERS.get(number[0].lower(), int(number[0]) if number[0].isdigit() else None) if number else None
         items.append(ToldItem(kind_of(singular(noun)), said or (None if is_plural(noun) else 1)))
     if not items:
-        raise ActivityTextError(f"the told activity '{text.strip()[:60]}' names no thing in '{part.strip()}'")
+        raise ActivityTextError(f"'{text.strip()[:60]}' names no thing in '{part.strip()}'")
     return items
 
 
@@ -156,12 +158,12 @@ def announced_thing(text: str) -> str | None:
 
 
 def told_activity(text: str, seen: StepSequence, name: str = "told") -> Activity:
-    """Return a told activity with as many steps as a sequence has things of the told kinds.
+    """Return a described activity with as many steps as a sequence has things of the described kinds.
 
     Parameters
     ----------
     text
-        The told activity.
+        The described activity.
     seen
         The sequence, in which *the forks* are counted.
     name

@@ -33,7 +33,7 @@ class Diagnostic:
 
     def __str__(self) -> str:
         line, caret = _line_with_carets(self.line_text, self.source)
-        parts = [f"{self.source}: {self.message}", line, caret]
+        parts = [f"{self.source}: {self.message}", *((line, caret) if line.strip() else ())]
         return "\n".join(parts if self.hint is None else [*parts, self.hint])
 
 

@@ -332,7 +332,7 @@ def _write(file: Path, mark: dict[str, Any]) -> None:
 
 @contextmanager
 def committed(folder: Path) -> Iterator[None]:
-    """Turn errors of a write into MemoryWriteError.
+    """Raise the errors of a write in the block as MemoryWriteError.
 
     Parameters
     ----------
@@ -342,7 +342,7 @@ def committed(folder: Path) -> Iterator[None]:
     Yields
     ------
     None
-        Nothing; errors in the block are turned.
+        Nothing.
     """
     advice = "check that the disk has room and the folder is writable, then try again: earlier content is unchanged"
     with wrap_storage_errors(folder, "written", advice):
@@ -361,7 +361,7 @@ def reading(folder: Path) -> Iterator[None]:
     Yields
     ------
     None
-        Nothing; errors in the block are turned.
+        Nothing.
     """
     with wrap_storage_errors(folder, "read", "restore the folder from a copy"):
         yield
@@ -383,7 +383,7 @@ def wrap_storage_errors(folder: Path, done: str, advice: str) -> Iterator[None]:
     Yields
     ------
     None
-        Nothing; errors in the block are turned.
+        Nothing.
 
     Raises
     ------

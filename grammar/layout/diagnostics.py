@@ -105,6 +105,8 @@ def unexpected(tokens: list[Token], at: int, accepts: set[str], draft: Draft) ->
         return StatementError(source_of(word), message, naming_hint(tokens, at + 1))
     if token.type in OUT_OF_PLACE:
         return StatementError(source_of(token), f"'{token}' is not expected here", QUOTE_HINT)
+    if token.type == "_LPAR" and at == 1 and tokens[0].type == "NAME" and any(t.type == "_COMMA" for t in tokens):
+        return _unknown_relation(tokens[0], draft)
     if token.type == "FUNCTION" or (token.type in NAMES and at and tokens[at - 1].type in NAMES):
         return _missing_relation(tokens, at, accepts, draft)
     return _unexpected_token(tokens, at, accepts)
@@ -178,6 +180,16 @@ def _missing_relation(tokens: list[Token], at: int, accepts: set[str], draft: Dr
         return StatementError(source_of(token), f"{RELATION_EXPECTED}, not '{shown}'", hint)
     nearness = NEARNESS_HINT if str(token).casefold() in NEARNESS_WORDS else None
     return StatementError(source_of(token), _no_bare_name(shown), nearness)
+
+
+def _unknown_relation(name: Token, draft: Draft) -> StatementError:
+    """Return the error for a pair in brackets after a word that is not a relation; suggest the nearest relation."""
+    message = f"there is no relation '{shortened(name)}'"
+    near = draft.nearest(plain_phrase(name), list(draft.phrases)) if len(name) <= MAX_NAME_SEARCHED else None
+    if near is None:
+        return StatementError(source_of(name), message, "a pair in brackets follows a relation: left(fork, plate)")
+    meant = draft.phrases[near]
+    return StatementError(source_of(name), message, f"did you mean '{meant}'?", meant)
 
 
 def _no_bare_name(shown: str) -> str:

@@ -243,8 +243,8 @@ def experience_named(board: Holding, name: str) -> Experience:
     """
     found = board.holding(Pattern(name, RECORDED))
     if not found:
-        known = ", ".join(each.name for each in experiences(board)[-5:]) or "none"
-        raise EpisodeError(f"there is no experience '{name}'; the blackboard has: {known}")
+        known = ", ".join(each.name for each in experiences(board)[-5:])
+        raise EpisodeError(f"there is no experience '{name}'; the blackboard has {known or 'no experiences'}")
     return _read(found[0])
 
 

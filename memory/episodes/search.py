@@ -116,8 +116,8 @@ class FluentSearch:
 
     def _candidates(self, board: Episodes) -> Iterable[EpisodicFluent]:
         if self.subjects is None:
-            whole = self.edge is not Edge.HOLDS
-            return board.holding() if whole else board.holding(start=self.start, end=self.end)
+            at_any_time = self.edge is not Edge.HOLDS
+            return board.holding() if at_any_time else board.holding(start=self.start, end=self.end)
         found = (each for name in sorted(self.subjects) for each in board.holding(Pattern(name)))
         return sorted(found, key=lambda each: (each.start.lower, each.id))
 

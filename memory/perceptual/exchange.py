@@ -154,18 +154,18 @@ def _records(
     archive: Archive, memory: PerceptualMemory, there: dict[str, str], coming: dict[str, set[str]]
 ) -> tuple[list[CategoryRecord], tuple[str, ...]]:
     """Return the records to write, and the names of the categories that lose their state."""
-    theirs = {record.name: record for record in archive.records()}
+    imported = {record.name: record for record in archive.records()}
     held: dict[str, set[str]] = defaultdict(set)
     for view_id, category in there.items():
         held[category].add(view_id)
     records, relearn = [], []
-    for name in sorted({*theirs, *coming}):
+    for name in sorted({*imported, *coming}):
         if name not in memory.categories():
-            records.append(theirs.get(name, CategoryRecord(name)))
+            records.append(imported.get(name, CategoryRecord(name)))
         elif coming[name] <= held[name]:
             continue  # the stored record covers more views
         elif held[name] <= coming[name]:
-            records.append(theirs.get(name, CategoryRecord(name)))
+            records.append(imported.get(name, CategoryRecord(name)))
         else:
             records.append(CategoryRecord(name, {}, memory.category(name).metadata))
             relearn.append(name)

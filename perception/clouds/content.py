@@ -59,6 +59,8 @@ class Content:
         CloudError
             If a line or the header is too long, or if the file ends before the caller stops.
         """
+        if not len(self.data):
+            raise CloudError(f"{self.name}: the file is empty; get it again")
         at = number = 0
         while True:
             number += 1
@@ -127,6 +129,8 @@ def content_of(path: str | Path) -> Content:
             return Content(name, np.frombuffer(file.read(status.st_size), np.uint8))
     except IsADirectoryError:
         raise CloudError(f"{name}: this is a folder; give a point cloud or mesh file") from None
+    except FileNotFoundError:
+        raise CloudError(f"{name}: there is no such file") from None
     except OSError as error:
         raise CloudError(f"{name}: cannot be read: {error.strerror}") from error
     except ValueError as error:

@@ -36,12 +36,14 @@ class _Thresholds:
         for each in fields(self):
             value = getattr(self, each.name)
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value) or value < 0:
-                raise CloudError(f"{name}'s {each.name} must be a finite number of at least 0, got {value!r}")
+                raise CloudError(f"`{each.name}` of {name} must be a finite number of at least 0, got {value!r}")
             if isinstance(each.default, int) and not (isinstance(value, int) and value >= 1):
-                raise CloudError(f"{name}'s {each.name} must be a whole number of at least 1, got {value!r}")
+                raise CloudError(f"`{each.name}` of {name} must be a whole number of at least 1, got {value!r}")
             least = getattr(self, each.name.replace("max_", "min_", 1), value)
             if value < least:
-                raise CloudError(f"{name}'s {each.name} must be at least its min_, {least}, got {value!r}")
+                raise CloudError(
+                    f"`{each.name}` of {name} must be at least the corresponding minimum, {least}, got {value!r}"
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -659,29 +661,29 @@ class DetectionSettings:
         for name in ("height", "reach", "least_length", "concavity", "step"):
             value = getattr(self, name)
             if not (_is_finite(value) and value > 0):
-                raise CloudError(f"detection's {name} must be a number above 0, got {value}")
+                raise CloudError(f"`{name}` must be a number above 0, got {value}")
         if not _is_whole(self.seed) or self.seed < 0:
-            raise CloudError(f"detection's seed must be a whole number of at least 0, got {self.seed}")
+            raise CloudError(f"`seed` must be a whole number of at least 0, got {self.seed}")
         if not _is_whole(self.table) or self.table < 1:
-            raise CloudError(f"detection's table must be a whole number of at least 1, got {self.table}")
+            raise CloudError(f"`table` must be a whole number of at least 1, got {self.table}")
         if not _is_whole(self.least_points) or self.least_points < 1:
-            raise CloudError(f"detection's least_points must be a whole number of at least 1, got {self.least_points}")
+            raise CloudError(f"`least_points` must be a whole number of at least 1, got {self.least_points}")
         for name in ("viewer", "up"):
             vector = getattr(self, name)
             if vector is not None and not (
                 hasattr(vector, "__len__") and len(vector) == 3 and all(map(_is_finite, vector))
             ):
-                raise CloudError(f"detection's {name} must be three finite numbers, got {vector}")
+                raise CloudError(f"`{name}` must be three finite numbers, got {vector}")
         if self.frame is not None and not (
             np.shape(self.frame) == (4, 4) and np.isfinite(np.array(self.frame, dtype=np.float64)).all()
         ):
-            raise CloudError(f"detection's frame must be four rows of four finite numbers, got {self.frame!r:.80}")
+            raise CloudError(f"`frame` must be four rows of four finite numbers, got {self.frame!r:.80}")
         if self.up is not None and not any(self.up):
-            raise CloudError("detection's up must be a direction, got (0, 0, 0)")
+            raise CloudError("`up` must have a length above 0, got (0, 0, 0); give a direction such as 0 0 1")
         for each in fields(self):
             group = each.default_factory
             if isinstance(group, type) and not isinstance(getattr(self, each.name), group):
-                raise CloudError(f"detection's {each.name} must be {group.__name__}, got {getattr(self, each.name)!r}")
+                raise CloudError(f"`{each.name}` must be {group.__name__}, got {getattr(self, each.name)!r}")
 
 
 def _is_finite(value: object) -> bool:

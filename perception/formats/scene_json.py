@@ -120,6 +120,8 @@ def read_scene(source: str | Path | Mapping[str, Any], image: str | int | None =
             raise SceneError(f"{path}: this is a folder; give a .scene.json file")
         if not path.is_file() and path.exists():
             raise SceneError(f"{path}: not a regular file; give a .scene.json file")
+        if path.suffix == ".layout":
+            raise SceneError(f"{path}: this is a layout script, not a scene; give the script before the scene")
         if path.stat().st_size > MAX_BYTES:
             raise SceneError(f"{path}: the file is larger than {MAX_BYTES // 2**20} MiB; split the scene")
         content = path.read_text(encoding="utf-8-sig")

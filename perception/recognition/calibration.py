@@ -123,7 +123,7 @@ class Calibration:
         return min(self.known, self.unknown) >= MIN_HELD_OUT_ANSWERS
 
     def mean(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the weighted geometric mean of the ND by each descriptor.
+        """Return the weighted geometric mean of the normalised distances by each descriptor.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class Calibration:
         return np.exp(_mean_logs(self.logs(normalised), np.array(self.weights)))
 
     def logs(self, normalised: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-        """Return the logarithms of ND by each of b descriptors, raised to their floors.
+        """Return the logarithms of the normalised distances by each of b descriptors, raised to their floors.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class Calibration:
         return result
 
     def probabilities(self, normalised: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return probabilities of c categories, and of unknown, from their ND.
+        """Return probabilities of c categories, and of unknown, from their normalised distances.
 
         Parameters
         ----------
@@ -251,7 +251,7 @@ def calibrate(held: HeldOut, prior_unknown: float = 0.5, start: Calibration = SH
 def calibrate_jointly(
     held: Sequence[HeldOut], prior_unknown: float = 0.5, start: Calibration = SHIPPED_JOINT
 ) -> Calibration:
-    """Fit weights, threshold and probabilities to held-out views, given the ND of the same views by each descriptor.
+    """Fit weights, threshold and probabilities to held-out views, given their normalised distances by each descriptor.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def calibrate_jointly(
 
 
 def best_threshold(known: NDArray[np.float64], unknown: NDArray[np.float64], prior_unknown: float = 0.5) -> float:
-    """Return the threshold of ND with the least expected share of errors.
+    """Return the threshold of the normalised distance with the least expected share of errors.
 
     Errors are known things above the threshold, and unknown things at or below it. Candidate thresholds are halfway
     between neighbouring values; of equally good ones the middle one is taken. With an even prior this maximises

@@ -57,13 +57,16 @@ class HeldOut:
 
     @property
     def as_known(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """ND (k, c) and truth (k,) of the views whose category has other things: leave one out."""
+        """Normalised distances (k, c) and truth (k,) of the views whose category has other things: leave one out."""
         left = np.isfinite(self.normalised[np.arange(len(self.truth)), self.truth])
         return self.normalised[left], self.truth[left]
 
     @property
     def as_unknown(self) -> NDArray[np.float64]:
-        """ND (v, c) with inf for the view's own category: leave one category out. Empty if it is the only category."""
+        """Normalised distances (v, c), inf for the view's own category: leave one category out.
+
+        Empty if there is only one category.
+        """
         others = self.normalised.copy()
         others[np.arange(len(self.truth)), self.truth] = np.inf
         return others[np.isfinite(others).any(axis=1)]
@@ -76,7 +79,7 @@ def hold_out(
     most: int = MAX_HELD_OUT,
     progress: Progress | None = None,
 ) -> HeldOut:
-    """Compute the ND of held-out views; all views of a thing are held out together.
+    """Compute the normalised distances (ND) of held-out views; all views of a thing are held out together.
 
     The result is therefore about things that were never seen before, if it is known which thing each view shows.
 
@@ -136,7 +139,7 @@ def _thing(categories: Sequence[InstanceCategory], number: int, place: int) -> t
 
 
 def shortening(fewer: Sequence[tuple[int, float]]) -> float:
-    """Return the exponent a with which D_C falls with the number n of things in a category, D_C ~ n^-a.
+    """Return the exponent a with which the distance D_C to a category falls with its number n of things, D_C ~ n^-a.
 
     A category without the held-out thing has one thing less than in recognition, and is a little farther for that
     reason alone.

@@ -197,7 +197,7 @@ class InvertedFile:
         return cls(centres, starts, reduced[order], views[order], count)
 
     def estimates(self, reduced: NDArray[np.float32], count: int) -> NDArray[np.float64]:
-        """Estimate D_V between a target and every view from the nearest descriptors in a number of lists.
+        """Estimate the distance D_V (equation 1) to every view from the nearest descriptors in a number of lists.
 
         The distance to a view without a descriptor in these lists counts as that of their farthest centre.
 
@@ -234,7 +234,7 @@ MIN_AXES_SHARE = 0.6
 
 @dataclass(frozen=True)
 class Nearest:
-    """D_C (equation 2), the index of the view that has it (-1 without views), and the number of views compared."""
+    """Distance D_C to a category (equation 2), index of its view (-1 without views), and number of views compared."""
 
     distance: float
     place: int

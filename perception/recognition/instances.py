@@ -17,7 +17,7 @@ from deixis.perception.recognition.views import PackedViews
 
 @dataclass(frozen=True, eq=False)
 class InstanceCategory:
-    """A category: a name, n views, and ``distances[i, j]`` = D_V(view i, view j).
+    """A category: a name, n views, and ``distances[i, j]``, the distance D_V (equation 1) of view i to view j.
 
     Adding a view computes only its distances to and from the views of this category; removing one computes nothing.
     ``things`` maps ids of views to the things that they show; a view that is not in it shows a thing of its own.
@@ -99,7 +99,7 @@ class InstanceCategory:
 
     @property
     def intra_category_distance(self) -> float | None:
-        """ICD (equation 3), the mean of D_V over ordered pairs of different views; None for fewer than two views.
+        """Intra-category distance (ICD, equation 3): the mean over ordered pairs of views; None for fewer than two.
 
         It is 0 if all views are equal. :mod:`.spread` derives the divisor of equation 4 from it.
         """
@@ -113,7 +113,7 @@ class InstanceCategory:
         return np.array([numbers[name] for name in names], np.int64)
 
     def width(self, over_things: bool, places: NDArray[np.intp] | None = None) -> Width:
-        """Return the ICD (equation 3) over views of different things, or over all views.
+        """Return the intra-category distance (ICD, equation 3) over views of different things, or over all views.
 
         Parameters
         ----------

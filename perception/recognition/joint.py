@@ -78,7 +78,7 @@ class JointRecogniser:
         return decided(ranked, unknown, self.calibration, all(each.exact for each in found), by_threshold)
 
     def held_out(self, progress: Progress | None = None) -> list[HeldOut]:
-        """Return the ND of held-out views by each descriptor.
+        """Return the normalised distances (ND) of held-out views by each descriptor.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class JointRecogniser:
         return self.calibrated_by(self.held_out(progress))
 
     def calibrated_by(self, held: Sequence[HeldOut]) -> JointRecogniser:
-        """Return the recogniser calibrated by the ND of held-out views by each descriptor.
+        """Return the recogniser calibrated by the normalised distances (ND) of held-out views by each descriptor.
 
         Parameters
         ----------

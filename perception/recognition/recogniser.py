@@ -47,7 +47,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Recognition:
-    """Answer of recognition: candidates in order of ND, and the label.
+    """Answer of recognition: candidates in the order of their normalised distances (ND, equation 4), and the label.
 
     ``label`` is the category of the first candidate, or None if it is not probable enough. ``unknown`` is the
     probability that no category is right. ``exact`` is False for an approximate search. ``reasons`` explain the
@@ -231,7 +231,7 @@ class Recogniser:
 
     @cached_property
     def spreads(self) -> list[Spread]:
-        """Divisors of D_C, one for each category."""
+        """Divisors of the distances D_C (equation 2), one for each category."""
         widths = [category.width(self.settings.over_things) for category in self.categories]
         return spreads(widths, self.settings.prior_spread, self.settings.shrinkage)
 

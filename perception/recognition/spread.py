@@ -42,7 +42,7 @@ tables. The roots of spin images are those of :data:`deixis.learning.views.views
 
 @dataclass(frozen=True)
 class Width:
-    """A category's ICD, None if it is undefined, and the number of things (or views) that it is computed from."""
+    """Intra-category distance (ICD) of a category, None if undefined, and the number of things (or views) in it."""
 
     icd: float | None
     count: int
@@ -79,7 +79,7 @@ class Width:
 
 
 class SpreadSource(StrEnum):
-    """Source of the divisor of D_C."""
+    """Source of the divisor of the distance D_C (equation 4)."""
 
     MEASURED = "measured"  # equation 3
     SHRUNK = "shrunk"  # equation 3, shrunk towards the median of all categories
@@ -89,7 +89,7 @@ class SpreadSource(StrEnum):
 
 @dataclass(frozen=True)
 class Spread:
-    """Divisor of D_C, above 0, with its source and the category's own width."""
+    """Divisor of the distance D_C (equation 4), above 0, with its source and the category's own width."""
 
     value: float
     source: SpreadSource
@@ -97,7 +97,7 @@ class Spread:
 
 
 def spreads(widths: Sequence[Width], prior: float, shrinkage: float = 0.0) -> list[Spread]:
-    """Return the spread of each category, (n ICD + s M) / (n + s).
+    """Return the spread of each category: its intra-category distance, shrunk, (n ICD + s M) / (n + s).
 
     n is the category's number of things, M the median ICD of all categories, and s the shrinkage.
 

@@ -122,7 +122,7 @@ def turned_by(vectors: Floats, turns: Floats) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """Place (3,) and turn (4,) of a thing, with the mean score and the number of particles of the first round."""
+    """Position (3,) and unit quaternion (4,) of a thing, with the mean score and particle number of round 1."""
 
     place: Floats
     turn: Floats

@@ -118,7 +118,7 @@ class FolderSource:
         if not 0 < rate <= 1000:
             raise CloudError(f"`rate` must be above 0 and at most 1000 frames a second, got {rate:g}")
         if not self._folder.is_dir():
-            raise CloudError(f"{self._folder}: no such folder; give a folder with clouds")
+            raise CloudError(f"{self._folder}: there is no such folder; give a folder with clouds")
         if not grows and not self._files():
             raise CloudError(f"{self._folder}: no clouds in this folder; it needs .pcd, .ply or .npz files")
 

@@ -1,7 +1,7 @@
 """Activities as temporal relation graphs: steps, and for each pair of steps the Allen relations that it may have.
 
-A told activity states sets of relations; a learned one counts, over its examples, how often each relation held and how
-often each step was there. The counts are sums, so the order of the examples does not matter.
+A described activity states sets of relations; a learned one counts, over its examples, how often each relation held and
+how often each step was there. The counts are sums, so the order of the examples does not matter.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from deixis.reasoning.temporal.fluent import Fluent, Statement
 RELATIONS = 13
 
 TOLD_PRESENT, TOLD_HOLDS = 0.95, 0.97
-"""Probabilities that a told step is carried out, and that a told relation between two steps holds."""
+"""Probabilities that a described step is carried out, and that a described relation between two steps holds."""
 
 PRIOR = 1.0
 """Number of examples that the prior of the relations of a pair counts as."""
@@ -241,7 +241,7 @@ class Activity:
     counts
         Expected number of examples in which each relation held, shape (n, n, 13).
     examples
-        Number of examples; 0 for a told activity.
+        Number of examples; 0 for a described activity.
     layings
         Things with their places, in the order of each example that has any.
     """
@@ -256,7 +256,7 @@ class Activity:
 
     @classmethod
     def in_order(cls, name: str, groups: Sequence[Sequence[Step]]) -> Activity:
-        """Return a told activity: the steps of each group start before those of the next one.
+        """Return a described activity: the steps of each group start before those of the next one.
 
         Parameters
         ----------

@@ -1,9 +1,9 @@
 """Predict what is laid next, and where, from examples of how a table was laid and from what a person said of the order.
 
 Order. For each pair of steps, three hypotheses are compared: the first always comes before the second, the second
-before the first, or their order is free. The examples give their posterior, and a told order a strong prior. A step can
-come next if no step that must come before it is still to come. Among those, a step is the more probable the more often
-it was laid at all, and the more often it directly followed the step that was laid last.
+before the first, or their order is free. The examples give their posterior, and a stated order a strong prior. A step
+can come next if no step that must come before it is still to come. Among those, a step is the more probable the more
+often it was laid at all, and the more often it directly followed the step that was laid last.
 
 Place. The offset of a thing from each thing that is there already, and from the origin of the table, has a mean and a
 spread over the examples. The offsets with the least spread decide: a fork keeps its distance from the plate and not
@@ -108,7 +108,7 @@ class LayingModel:
     Raises
     ------
     SettingError
-        If there is neither an example nor a told order.
+        If there is neither an example nor a stated order.
 
     Examples
     --------
@@ -127,7 +127,7 @@ class LayingModel:
         said = () if told is None else tuple((step.thing, step.number) for step in told.steps)
         self._items: tuple[Item, ...] = tuple(sorted({item for order in orders for item in order} | set(said)))
         if not self._items:
-            raise SettingError("a prediction needs at least one example of a laying, or a told order")
+            raise SettingError("a prediction needs at least one example of a laying, or a stated order")
         at = {item: number for number, item in enumerate(self._items)}
         n = len(self._items)
         self._before, self._present = np.zeros((n, n)), np.zeros(n)

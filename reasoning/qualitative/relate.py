@@ -280,7 +280,9 @@ def _by_atom(bridge: Callable[[], Bridge]) -> _Relator:
 
 def _distances(boxes: NDArray[np.float64], settings: _Settings) -> Codes:
     reference = settings.reference
-    if reference is None or not 0 < reference < np.inf:
+    if reference is None:
+        raise SettingError("a calculus with distances needs the length `reference`, in the boxes' unit")
+    if not 0 < reference < np.inf:
         raise SettingError(f"`reference` must be a length above 0, in the boxes' unit, got {reference}")
     centres = boxes.mean(axis=1)[:, :2]
     offsets = centres[:, None] - centres[None, :]

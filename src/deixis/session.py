@@ -720,7 +720,9 @@ class Session(Closing):
         from deixis.workflows.knowledge.recall import recall
 
         if not has_episodes(self.path):
-            raise MemoryFormatError(f"the memory at {self.path} has no episodes; name another folder")
+            raise MemoryFormatError(
+                f"the memory at {self.path} has no episodes; record something first, or name another folder"
+            )
 
         with Blackboard.open(self.path) as board:
             return recall(question, board, None if at is None else board.seconds(at), speaker=speaker)

@@ -94,6 +94,8 @@ def _opened(file: str | Path, error: type[DeixisError]) -> Iterator[TextIO]:
         raise error(f"{file}: this is a folder; name a file") from None
     except UnicodeDecodeError as wrong:
         raise error(f"{file}: the file is not UTF-8 (byte {wrong.start}); save it as UTF-8") from wrong
+    except FileNotFoundError:
+        raise error(f"{file}: there is no such file") from None
     except OSError as wrong:
         raise error(f"{file}: cannot be read: {wrong.strerror}") from wrong
     except ValueError as wrong:

@@ -28,7 +28,7 @@ def test_what_is_not_a_text_file_is_refused_by_name(read: Callable[[Path], objec
     latin.write_bytes(b"caf\xe9\n")
     assert "this is a folder; name a file" in refused(read, tmp_path)
     assert "this is not a regular file" in refused(read, Path("/dev/zero"))
-    assert "cannot be read: No such file" in refused(read, tmp_path / "missing.txt")
+    assert "there is no such file" in refused(read, tmp_path / "missing.txt")
     assert "not UTF-8 (byte 3); save it as UTF-8" in refused(read, latin)
     assert "cannot be read: embedded null byte" in refused(read, tmp_path / "a\0b")
 

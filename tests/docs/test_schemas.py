@@ -91,6 +91,23 @@ CASES = [
     ("recognised_activity", "activity recognise --known {t}/known.json --memory {t}/watched"),
     ("recall", "recall 'what is on the table?' --memory {t}/watched"),
     ("recall", "recall 'where was the spoon before?' --memory {t}/watched"),
+    ("asked", "ask napkin {t}/table.scene.json"),
+    ("asked", "ask coaster {t}/table.scene.json --points-at o1 --memory {t}/asked"),
+    ("fluent", "episodes add t2 left t1 --start 1 --memory {t}/told"),
+    ("episodes_changed", "episodes import {t}/laid.fluents.json --memory {t}/told"),
+    ("episodes_changed", "episodes update f1 --certainty 0.9 --memory {t}/told"),
+    ("episodes_changed", "episodes finish f2 --at 3 --memory {t}/told"),
+    ("episodes_changed", "episodes delete f3 --memory {t}/told"),
+    ("episodes_log", "episodes changes --memory {t}/watched"),
+    ("experience", "episodes record 'first table' --at 0 --memory {t}/told"),
+    ("experience", "episodes record 'second table' --stop --at 9 --memory {t}/told"),
+    ("episodes_classes", "episodes classes --used --memory {t}/watched"),
+    ("memory_content", "episodes memory working --memory {t}/watched"),
+    ("memory_content", "episodes memory episodic --memory {t}/told"),
+    ("memory_content", "episodes memory semantic --memory {t}/watched"),
+    ("memory_content", "episodes memory perceptual --memory {t}/watched"),
+    ("memory_content", "episodes memory procedural --memory {t}/watched"),
+    ("consolidated", "episodes consolidate --memory {t}/told"),
     ("episodes", "episodes list --memory {t}/watched"),
     ("episodes_checked", "episodes check --no-ontology --memory {t}/watched"),
     ("unlearned", "unlearn --table {t}/table.scene.json --dry-run"),
@@ -144,6 +161,9 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
         seen = Source(Origin.SEEN, "tracker")
         board.add(episodic("f1", ("t1", "isA", "cup"), start=0.0, source=seen), by="tracker")
         board.add(episodic("f2", ("t1", "on", "table"), start=Bounds(-1.0, 0.0), source=seen), by="tracker")
+    for thing in ("t1", "t2", "t3"):
+        deixis_command("episodes", "add", thing, "on", "table", "--start", 1, "--memory", folder / "told")
+    deixis_command("episodes", "record", "second table", "--at", 0, "--memory", folder / "told")
     prefixes = "@prefix : <http://e/> . @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> ."
     fluent = {"id": "a", "statement": ["cup", "full"], "start": [0, 1], "finish": [5, 6]}
     too_short = {"from": "a.start", "to": "a.finish", "bounds": [1, 2]}

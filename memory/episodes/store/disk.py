@@ -98,7 +98,9 @@ class DiskKeys(Keys):
         """
         real = Path(os.path.realpath(folder))
         if not (real / STORE).is_dir() and not create:
-            raise MemoryFormatError(f"there are no episodes at {folder}; record something first, or name another")
+            raise MemoryFormatError(
+                f"there are no episodes at {folder}; record something first, or name another folder"
+            )
         made = not real.exists()
         try:
             with contextlib.ExitStack() as undo, wrap_level_errors(real):

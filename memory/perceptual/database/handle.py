@@ -672,7 +672,9 @@ def release(handle: Handle) -> None:
 
 def _opened(folder: Path, real: Path, create: bool) -> Handle:
     if layout.version_in(folder) is None and not create:
-        raise MemoryFormatError(f"there is no perceptual memory at {folder}; teach something first, or name another")
+        raise MemoryFormatError(
+            f"there is no perceptual memory at {folder}; teach something first, or name another folder"
+        )
     made = not real.exists()
     try:
         real.mkdir(parents=True, exist_ok=True)

@@ -257,9 +257,9 @@ def check_query(sparql: str, prefixes: Mapping[str, str] = PREFIXES) -> CheckedQ
     names_graphs = _check_from(text, found, known)
     asks_graphs = any(token.kind is TokenKind.WORD and token.upper == "GRAPH" for token in found)
     used = {token.text.partition(":")[0] for token in found if token.kind is TokenKind.NAME}
-    mine = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
+    undeclared = {prefix: base for prefix, base in prefixes.items() if prefix in used and prefix not in declared}
     kind, ordered, terms = QueryKind(form.text.lower()), _ordered(found), _vocabulary_terms(found, known)
-    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, mine, terms)
+    return CheckedQuery(text.text, kind, names_graphs, asks_graphs, ordered, undeclared, terms)
 
 
 def _vocabulary_terms(found: list[Token], known: Mapping[str, str]) -> tuple[tuple[str, int], ...]:

@@ -212,7 +212,7 @@ def read_quads(file: Path) -> Iterator[ox.Quad]:
     """
     file_format = FORMATS.get(file.suffix.lower())
     if file_format is None:
-        raise ImportFormatError(f"{file}: unknown format; its name must end in {', '.join(FORMATS)} or .zip (views)")
+        raise ImportFormatError(f"{file}: unknown format; its name must end in {', '.join(FORMATS)}")
     if not file.is_file():
         raise ImportFormatError(f"{file}: there is no such file")
     size = file.stat().st_size

@@ -52,7 +52,7 @@ class FocusData:
         bool
             False for a node whose statements are all read at once.
         """
-        return self._few(node) is None
+        return self._read_at_once(node) is None
 
     def about(self, node: Node) -> dict[ox.NamedNode, set[Node]]:
         """Return the objects of a node, by predicate.
@@ -67,7 +67,7 @@ class FocusData:
         dict
             Objects by predicate, after the change.
         """
-        found = self._few(node)
+        found = self._read_at_once(node)
         if found is None:
             found = defaultdict(set)
             for name in DATA:
@@ -75,7 +75,7 @@ class FocusData:
                     found[triple.predicate].add(triple.object)
         return found
 
-    def _few(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
+    def _read_at_once(self, node: Node) -> dict[ox.NamedNode, set[Node]] | None:
         """Return the objects of a node, by predicate; None where there are many."""
         if node not in self._about:
             self._about[node] = self._read(node)
@@ -109,9 +109,9 @@ class FocusData:
         Iterable[Node]
             Distinct objects.
         """
-        few = self._few(node)
-        if few is not None:
-            return few.get(predicate, ())
+        objects = self._read_at_once(node)
+        if objects is not None:
+            return objects.get(predicate, ())
         known = self._values.get((node, predicate))
         if known is None:
             known = set(self._objects(node, predicate))
@@ -135,9 +135,9 @@ class FocusData:
         Iterable[Node]
             Distinct objects; as few as possible are read.
         """
-        few = self._few(node)
-        if few is not None:
-            return list(few.get(predicate, ()))[:number]
+        objects = self._read_at_once(node)
+        if objects is not None:
+            return list(objects.get(predicate, ()))[:number]
         each = self._objects(node, predicate)
         found: set[Node] = set()
         while len(found) < number and (value := next(each, None)) is not None:

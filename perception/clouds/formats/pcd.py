@@ -148,7 +148,8 @@ def _entries(content: Content) -> tuple[dict[str, _Entry], int]:
         if keyword.startswith("#"):
             continue
         if keyword not in _KEYWORDS:
-            raise CloudError(f"{where}: unknown entry '{shown(keyword)}' in a PCD header; take the line out")
+            remedy = "take the line out" if entries else "this does not look like a PCD file"
+            raise CloudError(f"{where}: unknown entry '{shown(keyword)}' in a PCD header; {remedy}")
         if keyword in entries:
             raise CloudError(f"{where}: {keyword} is given twice; take one of them out")
         entries[keyword] = _Entry(values, where)

@@ -16,7 +16,9 @@ INSTANCES = "equations 1-4, ICD of things"
 
 
 class InstanceBased(TaughtViews):
-    """Learner by equations 1 to 4 over one descriptor; a score is minus ND, and ``unknown`` is the least ND.
+    """Learner by equations 1 to 4 over one descriptor.
+
+    A score is minus the normalised distance ND (equation 4), and ``unknown`` is the least ND.
 
     Equations 1 to 4, and a new instance at each teaching and each correction, are those of the paper (and of Kasaei et
     al., Interactive open-ended learning for 3D object recognition, 2015). There are three optional additions:
@@ -47,7 +49,7 @@ class InstanceBased(TaughtViews):
         self._number = 0
 
     def predict(self, view: ViewFeatures) -> Prediction:
-        """Rank the categories by ND, or by D_C, without categories that have no comparable view."""
+        """Rank the categories that have a comparable view by normalised distance, or by distance."""
         found = self._recogniser.recognise(self._described(view)).candidates
         usable = [candidate for candidate in found if candidate.nearest is not None]
         if not usable:

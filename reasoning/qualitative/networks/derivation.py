@@ -155,7 +155,7 @@ def require_pair(network: Network, first: int, second: int) -> None:
     """
     for thing in (first, second):
         if not 0 <= thing < network.size:
-            raise NetworkError(f"there is no thing {thing}; the network has {network.size}, numbered from 0")
+            raise NetworkError(f"there is no object {thing}; the objects of the network are 0 to {network.size - 1}")
 
 
 def _supporting(network: Network, first: int, second: int, goal: int, deadline: Deadline) -> Core | None:

@@ -114,12 +114,12 @@ class CommandsOnDemand(TyperGroup):
             return None
         module, function = COMMANDS[cmd_name].split(":")
         command = getattr(import_module(f"deixis.cli.{module}"), function)
-        alone = typer.Typer(rich_markup_mode=None)
+        single = typer.Typer(rich_markup_mode=None)
         if isinstance(command, typer.Typer):
-            alone.add_typer(command, name=cmd_name, cls=FullSummaries)
+            single.add_typer(command, name=cmd_name, cls=FullSummaries)
         else:
-            alone.command(cmd_name)(command)
-        return typer.main.get_group(alone).commands[cmd_name]
+            single.command(cmd_name)(command)
+        return typer.main.get_group(single).commands[cmd_name]
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the commands with their summaries, group by group, in columns of one width."""

@@ -19,7 +19,7 @@ from deixis.plots.figure import BELONGS, INK, PAPER, QUIET, WRONG, canvas, dress
 from deixis.plots.names import write_names
 from deixis.reasoning.grounding.answers.answer import FactOutcome, Grounding
 from deixis.reasoning.grounding.options import DECIDED
-from deixis.report.grounding.ground import MAX_LISTED, at_most_many, probability_text
+from deixis.report.grounding.ground import MAX_LISTED, probability_text, shortened_list
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -440,7 +440,7 @@ def _keys(found: Grounding, groups: Sequence[Sequence[str]], marks: Marks) -> li
         keys.append(Patch(facecolor=PAPER, edgecolor=INK, linestyle=":", label="named by its place alone"))
     for number, group in enumerate(groups[:MAX_LISTED]):
         colour = GROUP_COLOURS[number % len(GROUP_COLOURS)]
-        members = at_most_many([name.replace("_", NO_BREAK) for name in group])
+        members = shortened_list([name.replace("_", NO_BREAK) for name in group])
         label = textwrap.fill(f"cannot be told apart: {', '.join(members)}", LINE).replace(NO_BREAK, " ")
         keys.append(Patch(facecolor=colour, alpha=0.45, label=label))
     if len(groups) > MAX_LISTED:

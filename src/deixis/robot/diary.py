@@ -37,7 +37,7 @@ CALLED, NOT_CALLED = "called", "notCalled"
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
-MOMENT = 1e-3
+MIN_DURATION = 1e-3
 """Least duration of a fluent in seconds."""
 
 Found = tuple[str, str, str]
@@ -169,9 +169,9 @@ class Diary:
         stayed: dict[str, str] = {}
         if known and scene.objects:
             boxes = np.array([json.loads(each.statement.object or "") for each in self._places.values()])
-            apart = np.abs(scene.boxes.reshape(-1, 1, 6) - boxes[None]).max(axis=2)
-            for new, old in zip(*linear_sum_assignment(apart), strict=True):
-                if apart[new, old] <= SAME_PLACE:
+            distances = np.abs(scene.boxes.reshape(-1, 1, 6) - boxes[None]).max(axis=2)
+            for new, old in zip(*linear_sum_assignment(distances), strict=True):
+                if distances[new, old] <= SAME_PLACE:
                     stayed[scene.ids[new]] = known[old]
         gone = set(known) - set(stayed.values())
         changes: list[Change] = [_end(self._places[id], at) for id in sorted(gone)]
@@ -225,7 +225,7 @@ class Diary:
         """
         if not self._tracked:
             source = Source(Origin.SAID, by, event)
-            self._write(Add(self._fluent((by, SAID, " ".join(text.split())), at, source, finish=at + MOMENT)))
+            self._write(Add(self._fluent((by, SAID, " ".join(text.split())), at, source, finish=at + MIN_DURATION)))
 
     def shown(self, thing: str, label: str, by: str, at: float, event: str | None) -> None:
         """Write that a person showed what a thing is, unless another module did; an earlier showing of it ends.
@@ -436,7 +436,7 @@ class Diary:
 
 def _end(fluent: EpisodicFluent, at: float) -> Change:
     """Return the end of a fluent at a time, or shortly after its start if that is later."""
-    return Finish(fluent.id, max(at, fluent.started_by + MOMENT))
+    return Finish(fluent.id, max(at, fluent.started_by + MIN_DURATION))
 
 
 def _scene_of(text: str | None) -> Scene | None:

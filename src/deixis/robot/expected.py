@@ -18,22 +18,22 @@ from deixis.grammar.script import Script
 from deixis.ontology.graph.claims import PLACES, SUPERLATIVES
 from deixis.ontology.things.kinds import plain_name
 
-RELIABLE = 0.95
+PRIOR_PRESENT = 0.95
 """Probability that an object is there when a person says so."""
 
-FOUND = 0.9
+MIN_MATCH_PROBABILITY = 0.9
 """Probability from which a thing is taken for the expected object."""
 
-SEEN_RATE = 0.7
+DETECTION_PROBABILITY = 0.7
 """Probability that one look detects a thing whose place is in view."""
 
-LOOK = 1.0
+LOOK_INTERVAL = 1.0
 """Time in seconds between two looks that count as independent."""
 
-GIVEN_UP = 0.05
+MIN_PRESENT_PROBABILITY = 0.05
 """Probability below which an object is not expected any more."""
 
-IN_VIEW = 0.8
+MIN_SHARE_IN_VIEW = 0.8
 """Share of the place of an object from which all of it counts as in view."""
 
 DESCRIBED = PLACES | frozenset(
@@ -133,7 +133,7 @@ class ExpectedObject:
     by: str
     event: str
     since: float
-    probability: float = RELIABLE
+    probability: float = PRIOR_PRESENT
     standing: Standing = Standing.EXPECTED
     thing: str | None = None
     reason: str | None = None
@@ -180,19 +180,19 @@ class ExpectedObject:
         ExpectedObject
             The object, seen if a thing fits, contradicted if its place was empty for long enough.
         """
-        if sighting.thing is not None and sighting.probability >= FOUND and sighting.fits_place:
+        if sighting.thing is not None and sighting.probability >= MIN_MATCH_PROBABILITY and sighting.fits_place:
             return replace(
                 self, standing=Standing.SEEN, thing=sighting.thing, probability=min(sighting.probability, 1.0)
             )
         if looks < 1:
             return self
-        in_view = max(self.in_view, 1.0 if sighting.in_view >= IN_VIEW else sighting.in_view)
+        in_view = max(self.in_view, 1.0 if sighting.in_view >= MIN_SHARE_IN_VIEW else sighting.in_view)
         count = self.looks + looks
-        missed = 1.0 - in_view + in_view * (1.0 - SEEN_RATE) ** count  # what is hidden stays possible
-        left = RELIABLE * missed / (RELIABLE * missed + 1.0 - RELIABLE)
+        missed = 1.0 - in_view + in_view * (1.0 - DETECTION_PROBABILITY) ** count  # what is hidden stays possible
+        left = PRIOR_PRESENT * missed / (PRIOR_PRESENT * missed + 1.0 - PRIOR_PRESENT)
         first = at if self.first_look is None else self.first_look
         looked = replace(self, probability=left, looked=at, first_look=first, looks=count, in_view=in_view)
-        if left >= GIVEN_UP:
+        if left >= MIN_PRESENT_PROBABILITY:
             return looked
         return looked.contradicted(f"its place was in view and empty in {count} looks within {at - first:.0f} s")
 

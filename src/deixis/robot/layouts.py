@@ -31,11 +31,11 @@ from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 
 Array = NDArray[np.float64]
 
-TOLD_HOLDS, TOLD_SUPPORT = 0.998, 0.98
+FACT_HOLDS, SUPPORT_HOLDS = 0.998, 0.98
 """Probability that a firm fact of a layout is seen to hold on a table without mistakes, and that of *on* and *under*,
 which a small error of heights breaks."""
 
-TURNED_FROM = np.deg2rad(28.0)
+MIN_TURN = np.deg2rad(28.0)
 """Angle from which a thing is compared with how it would lie straight."""
 
 TURN_DEVIATION = np.deg2rad(7.0)
@@ -45,8 +45,8 @@ MIN_TURN_OUTLIERS = 1e-4
 """Least share of things that lie anyhow without a mistake. It is a tenth with no table seen, and a tenth of that with
 each further one."""
 
-LEARNED_WEIGHT = 0.5
-"""Factor of the evidence of relations that were seen but not told, since those of different pairs depend on each other.
+OBSERVED_WEIGHT = 0.5
+"""Factor of the evidence of relations that were seen but not stated, as those of different pairs depend on each other.
 """
 
 
@@ -56,11 +56,11 @@ HELD_WEIGHT = 0.5
 OFFSET_DEVIATION, OFFSET_PRIOR = 0.05, 2.0
 """Prior standard deviation in metres of the offset between two things, and the number of tables that it counts as."""
 
-FLOATING, SUPPORT_ERROR = 0.03, 0.02
+MIN_FLOATING_HEIGHT, SUPPORT_ERROR = 0.03, 0.02
 """Height in metres above the table from which a thing must rest on another one, and the error of that one's height."""
 
-SLENDER, STEEP = 0.02, 2.5
-"""Width in metres below which a thing cannot stand if it is higher than ``STEEP`` times its width."""
+MAX_SLENDER_WIDTH, MAX_SLENDERNESS = 0.02, 2.5
+"""Width in metres below which a thing cannot stand if it is higher than ``MAX_SLENDERNESS`` times its width."""
 
 SIZE_DEVIATIONS, SIZE_PRIOR = (0.15, 0.15, 0.15), 2.0
 """Prior standard deviations of the logarithms of length, width and height, and the number of things they count as."""
@@ -75,7 +75,7 @@ LOOKS_OUTLIERS = 0.002
 PIECE_SHARE, PIECE_HEIGHT = 0.7, 0.012
 """Share of a thing that lies over another one, and metres by which it rises above it, for a piece of that one."""
 
-OFFSET_OUTLIERS, REACH = 0.02, 0.7
+OFFSET_OUTLIERS, OFFSET_AREA = 0.02, 0.7
 """Share of offsets that are arbitrary, and side in metres of the area of arbitrary ones."""
 
 
@@ -156,7 +156,7 @@ class LearnedLayout:
 
     @cached_property
     def graph(self) -> RelationGraph:
-        """Roles and told facts."""
+        """Roles and stated facts."""
         return self.script.graph()
 
     @property
@@ -168,13 +168,13 @@ class LearnedLayout:
     def expectations(self) -> tuple[tuple[Relation, int, int, float, float], ...]:
         """Wide relations between roles: the relation, the two roles, the probability that it holds, and its weight.
 
-        Told facts come first, and what follows from them; then what was seen of other pairs.
+        Stated facts come first, and what follows from them; then what was seen of other pairs.
         """
         relations, graph = self.graph.vocabulary, self.graph
         found: dict[tuple[int, int, int], tuple[Relation, int, int, float, float]] = {}
-        for fact in self._told():
+        for fact in self._stated_and_implied():
             (relation,), a, b = fact.relations, graph.index(fact.subject), graph.index(fact.object)
-            holds = TOLD_SUPPORT if relation.word in ("on", "under") else TOLD_HOLDS
+            holds = SUPPORT_HOLDS if relation.word in ("on", "under") else FACT_HOLDS
             share = fact.weight * holds + (1 - fact.weight) * 0.5
             found[relation.index, a, b] = (relation, a, b, share, 1.0)
         for (word, first, second), tally in sorted(self.experience.held.items()):
@@ -183,10 +183,10 @@ class LearnedLayout:
             relation, a, b = relations[word], graph.index(first), graph.index(second)
             inverse = relations[relation.inverse]
             if (relation.index, a, b) not in found and (inverse.index, b, a) not in found and tally.of > 0:
-                found[relation.index, a, b] = (relation, a, b, tally.probability, LEARNED_WEIGHT)
+                found[relation.index, a, b] = (relation, a, b, tally.probability, OBSERVED_WEIGHT)
         return tuple(found.values())
 
-    def _told(self) -> Iterator[Fact]:
+    def _stated_and_implied(self) -> Iterator[Fact]:
         """Yield the facts of wide words that the script states or implies, each unordered pair and word once."""
         graph = self.graph
         implied = Implications(graph)
@@ -255,8 +255,8 @@ class LearnedLayout:
             identity = identity + known.colours
         boxes, turn, straight = self._poses(scene)
         ends, kinds, tables = self._tables(boxes, len(scene.objects), ontology.relations)
-        spare = dispensable(self.graph.facts())
-        optional = np.array([role in spare for role in self.roles], dtype=bool)
+        dispensable_roles = dispensable(self.graph.facts())
+        optional = np.array([role in dispensable_roles for role in self.roles], dtype=bool)
         low, high = scene.boxes[:, 0, :2], scene.boxes[:, 1, :2]
         over = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
         pieces = _pieces(scene.boxes)
@@ -283,7 +283,7 @@ class LearnedLayout:
                 likely = np.exp(-0.5 * (away / TURN_DEVIATION) ** 2) * np.sqrt(np.pi / 2) / TURN_DEVIATION
                 outliers = max(MIN_TURN_OUTLIERS, 10.0 ** -(1 + self.experience.axes[self.roles[i]].count))
                 turn[t][i] = float(np.log((1 - outliers) * likely + outliers))
-                if away > TURNED_FROM:
+                if away > MIN_TURN:
                     key = (t, round(float(np.rad2deg(axis)) / 15) % 12)
                     if key not in made:
                         made[key] = len(boxes)
@@ -310,7 +310,7 @@ class LearnedLayout:
         return evidence
 
     def _offsets(self, boxes: Array, things: int) -> Iterator[tuple[int, int, Array]]:
-        """Yield pairs of roles that a told fact relates, and the evidence of the offset of each pair of poses."""
+        """Yield pairs of roles that a stated fact relates, and the evidence of the offset of each pair of poses."""
         graph = self.graph
         centres = boxes.mean(axis=1)[:, :2]
         offset = centres[None, :] - centres[:, None]  # (p, p, 2)
@@ -320,7 +320,7 @@ class LearnedLayout:
             if seen is None or seen.count < 0.5:
                 continue
             density = predictive(offset, seen, np.full(2, OFFSET_DEVIATION), OFFSET_PRIOR).prod(axis=2)
-            table = np.log((1 - OFFSET_OUTLIERS) * density * REACH**2 + OFFSET_OUTLIERS)
+            table = np.log((1 - OFFSET_OUTLIERS) * density * OFFSET_AREA**2 + OFFSET_OUTLIERS)
             np.fill_diagonal(table, 0.0)
             yield graph.index(first), graph.index(second), table
 
@@ -386,10 +386,10 @@ def _pieces(boxes: Array) -> NDArray[np.bool_]:
     flat = high[:, None, 2] <= high[None, :, 2] + PIECE_HEIGHT
     under = (shared > 0) & (np.abs(low[:, None, 2] - high[None, :, 2]) < SUPPORT_ERROR)
     np.fill_diagonal(under, False)
-    floats = (low[:, 2] > FLOATING) & ~under.any(axis=1)
+    floats = (low[:, 2] > MIN_FLOATING_HEIGHT) & ~under.any(axis=1)
     size = high - low
     width = size[:, :2].min(axis=1)
-    slender = (width < SLENDER) & (size[:, 2] > STEEP * width)
+    slender = (width < MAX_SLENDER_WIDTH) & (size[:, 2] > MAX_SLENDERNESS * width)
     found: NDArray[np.bool_] = (within & flat).any(axis=1) | floats | slender
     return found
 

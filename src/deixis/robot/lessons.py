@@ -20,7 +20,7 @@ from deixis.reasoning.grounding.answers.answer import Grounding
 QUESTION_COST = 0.5
 """Cost of a question in nats: it is asked if its answer is expected to tell more."""
 
-SETTLED = 0.97
+MIN_SETTLED_PROBABILITY = 0.97
 """Probability from which a role that waits is taught in hindsight."""
 
 
@@ -78,7 +78,7 @@ class Question:
         )
 
 
-def _told(thing: str) -> Settled:
+def _settled_by_words(thing: str) -> Settled:
     return Settled(thing, SettledBy.WORDS, 1.0)
 
 
@@ -193,7 +193,7 @@ class TableLesson:
             return replace(self, settled={}, waiting={})
         roles = tuple(role.name for role in table.layout.roles)
         settled = {
-            role: known if (known := self.settled.get(role)) and known.thing == thing else _told(thing)
+            role: known if (known := self.settled.get(role)) and known.thing == thing else _settled_by_words(thing)
             for role, thing in table.things.items()
         }
         waiting: dict[str, Mapping[str | None, float]] = {

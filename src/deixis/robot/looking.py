@@ -25,11 +25,11 @@ from deixis.reasoning.comparison.explanation import Explanation, MistakeKind, ex
 from deixis.reasoning.grounding.evidence.words.meaning import Meaning
 from deixis.robot.layouts import LearnedLayout
 
-UNEXPLAINED_LAYOUT = -2.0
+MIN_EXPLANATION_RATIO = -2.0
 """Log-likelihood ratio, per thing, that an explanation by a layout must exceed for the layout to be there at all."""
 
 
-MAX_SHOWN = 0.99
+MAX_SHOWN_PROBABILITY = 0.99
 """Maximum probability of a name that a person gave to a thing of the table that is looked at."""
 
 
@@ -259,8 +259,8 @@ class TableKnowledge:
                 found[layout.name] = (layout, explain(evidence))
         values = np.array([explanation.evidence for _, explanation in found.values()])
         # A table of things that no layout mentions has one extra thing after another.
-        nothing = UNEXPLAINED_LAYOUT * len(seen.objects)
-        total = np.logaddexp.reduce(np.append(values, nothing))
+        threshold = MIN_EXPLANATION_RATIO * len(seen.objects)
+        total = np.logaddexp.reduce(np.append(values, threshold))
         shares = dict(zip(found, np.exp(values - total).tolist(), strict=True))
         ordered = dict(sorted(shares.items(), key=lambda item: (-item[1], item[0])))
         return Look(replace(seen), ordered, found)
@@ -272,7 +272,7 @@ def _with_names(scene: Scene, shown: Mapping[str, tuple[str, float]]) -> Scene:
     def named(thing: PerceivedObject) -> PerceivedObject:
         if thing.id not in shown:
             return thing
-        name, certainty = shown[thing.id][0], min(shown[thing.id][1], MAX_SHOWN)
+        name, certainty = shown[thing.id][0], min(shown[thing.id][1], MAX_SHOWN_PROBABILITY)
         others = [(other, (1 - certainty) * share) for other, share in thing.candidates if other != name]
         return replace(thing, label=name, confidence=certainty, candidates=((name, certainty), *others))
 

@@ -33,7 +33,7 @@ from deixis.memory.folder import one_line
 from deixis.memory.journal import Part
 from deixis.reasoning.temporal.fluent import ANYTHING, Pattern, Statement
 
-PAUSE = 0.2
+RESTART_PAUSE = 0.2
 """Pause in seconds before a module whose run method raised is run again; it doubles each time, up to 10 s."""
 
 
@@ -443,7 +443,7 @@ def run_until_stopped(module: Module, board: Board, stopped: threading.Event, re
     report
         Called with one line for each error.
     """
-    pause, last_line = PAUSE, ""
+    pause, last_line = RESTART_PAUSE, ""
     while not stopped.is_set():
         try:
             return module.run(board, stopped)

@@ -20,22 +20,22 @@ from deixis.workflows.grounding.ground import GroundingRequest
 
 Array = NDArray[np.float64]
 
-CELLS = (12, 9)
+GRID = (12, 9)
 """Number of boxes from left to right and from near to far."""
 
-MARGIN = 0.15
+TABLE_MARGIN = 0.15
 """Distance in metres by which the table is taken to extend beyond its things."""
 
-SIZE = 0.04
+BOX_SIDE = 0.04
 """Side length in metres of the boxes."""
 
-STACKABLE = 0.05
+MAX_SUPPORT_HEIGHT = 0.05
 """Greatest height in metres of a thing on which an object may lie."""
 
-PLACE_RATIO = 0.2
+MIN_PLACE_RATIO = 0.2
 """Probability of a place, as a share of that of the best one, from which an object may well be there."""
 
-MIN_EYE = 0.05
+MIN_CAMERA_HEIGHT = 0.05
 """Least height in metres of a camera above the table whose position is known."""
 
 MAX_THINGS = 90
@@ -70,7 +70,7 @@ class Places:
         """
         middle = (np.array(thing.minimum[:2]) + np.array(thing.maximum[:2])) / 2
         nearest = np.linalg.norm(self.centres[:, :2] - middle, axis=1).argmin()
-        return bool(self.shares[nearest] >= PLACE_RATIO * self.shares.max())
+        return bool(self.shares[nearest] >= MIN_PLACE_RATIO * self.shares.max())
 
 
 def places_of(script: Script, role: str, scene: Scene, meaning: Meaning) -> Places | None:
@@ -96,14 +96,14 @@ def places_of(script: Script, role: str, scene: Scene, meaning: Meaning) -> Plac
     if not 0 < len(scene.objects) <= MAX_THINGS:
         return None
     centres = _grid(scene)
-    half = SIZE / 2
+    half = BOX_SIDE / 2
     boxes = [
-        PerceivedObject(f"place {number}", (x - half, y - half, z), (x + half, y + half, z + SIZE))
+        PerceivedObject(f"place {number}", (x - half, y - half, z), (x + half, y + half, z + BOX_SIDE))
         for number, (x, y, z) in enumerate(centres.tolist())
     ]
     things = len(scene.objects)
-    whole = Scene((*scene.objects, *boxes), scene.frame, scene.viewpoint, scene.unit, viewer=scene.viewer)
-    request = GroundingRequest(script, whole.from_viewer(), sizes=False, meaning=meaning)
+    with_boxes = Scene((*scene.objects, *boxes), scene.frame, scene.viewpoint, scene.unit, viewer=scene.viewer)
+    request = GroundingRequest(script, with_boxes.from_viewer(), sizes=False, meaning=meaning)
     problem = request.evidence(request.scene).problem
     index = request.graph.index(role)
     value = problem.unary[index, things:].copy()
@@ -121,12 +121,12 @@ def _grid(scene: Scene) -> Array:
     """Return centres on the table, and on the low things that lie on it, shape (k, 3)."""
     low, high = scene.boxes[:, 0], scene.boxes[:, 1]
     axes = [
-        np.linspace(low[:, axis].min() - MARGIN, high[:, axis].max() + MARGIN, number + 2)[1:-1]
-        for axis, number in enumerate(CELLS)
+        np.linspace(low[:, axis].min() - TABLE_MARGIN, high[:, axis].max() + TABLE_MARGIN, number + 2)[1:-1]
+        for axis, number in enumerate(GRID)
     ]
     plan = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     over = np.all((plan[:, None] > low[None, :, :2]) & (plan[:, None] < high[None, :, :2]), axis=2)
-    tops = np.where(over & (high[None, :, 2] <= STACKABLE), high[None, :, 2], 0.0).max(axis=1)
+    tops = np.where(over & (high[None, :, 2] <= MAX_SUPPORT_HEIGHT), high[None, :, 2], 0.0).max(axis=1)
     return np.column_stack([plan, tops])
 
 
@@ -134,7 +134,7 @@ def _visible(centres: Array, scene: Scene) -> NDArray[np.bool_]:
     """Return which places are in view; all if the position of the camera is unknown."""
     clouds = (scene.cloud_of(thing.id) for thing in scene.objects if isinstance(thing.cloud, PointCloud | str))
     eye = next((np.array(cloud.origin, dtype=np.float64) for cloud in clouds), None)
-    if eye is None or eye[2] < MIN_EYE:
+    if eye is None or eye[2] < MIN_CAMERA_HEIGHT:
         return np.ones(len(centres), dtype=bool)
-    high = [thing for thing in scene.objects if thing.maximum[2] > STACKABLE]
-    return ~hidden_places(centres + np.array([0.0, 0.0, SIZE / 2]), eye, high)
+    high = [thing for thing in scene.objects if thing.maximum[2] > MAX_SUPPORT_HEIGHT]
+    return ~hidden_places(centres + np.array([0.0, 0.0, BOX_SIDE / 2]), eye, high)

@@ -32,13 +32,13 @@ from deixis.perception.scene import Scene
 from deixis.reasoning.comparison.explanation import explain
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT, Diary, RobotModule
-from deixis.robot.expected import FOUND, LOOK, ExpectedObject, Sighting, Standing, introduced
+from deixis.robot.expected import LOOK_INTERVAL, MIN_MATCH_PROBABILITY, ExpectedObject, Sighting, Standing, introduced
 from deixis.robot.layouts import LearnedLayout
-from deixis.robot.lessons import QUESTION_COST, SETTLED, Question, Settled, SettledBy, TableLesson
+from deixis.robot.lessons import MIN_SETTLED_PROBABILITY, QUESTION_COST, Question, Settled, SettledBy, TableLesson
 from deixis.robot.looking import Fault, Look, TableKnowledge
 from deixis.robot.modules import Board, ModuleBoard
 from deixis.robot.places import places_of
-from deixis.robot.unnamed import MIN_THINGS, NOTICED_FROM, LayoutQuestion, UnnamedKind, is_same_table, place_among
+from deixis.robot.unnamed import MIN_TABLES, MIN_THINGS, LayoutQuestion, UnnamedKind, is_same_table, place_among
 from deixis.session import Session
 from deixis.view_store import category_name, new_category_name
 from deixis.workflows.knowledge.episodes import Consolidation, consolidate, named_layout
@@ -53,10 +53,10 @@ if TYPE_CHECKING:
     from deixis.workflows.knowledge.unlearn import Selection, Unlearned
 
 
-SURE = 0.8
+MIN_NAME_PROBABILITY = 0.8
 """Probability from which a name is written to the blackboard as the category of a thing."""
 
-GROUNDING_SECONDS = 5.0
+GROUNDING_TIME_LIMIT = 5.0
 """Time limit in seconds for looking for one expected object."""
 
 _THERE = re.compile(r"^(?:\w+[,:]\s*)?there(?:'s|’s|\s+(?:is|are|should be|must be))\s+\S", re.IGNORECASE)
@@ -225,7 +225,7 @@ class Robot(Closing):
         for id, fluent in held.items():
             text, source = str(fluent.statement.object), fluent.source
             kinds = self._diary.board.now(Pattern(id, IS_A))
-            script = self._presence(text)
+            script = self._as_presence(text)
             if id in known or script is None or not kinds or source.event is None:
                 continue
             taken = {one.role for one in self.expected if one.event == source.event}
@@ -393,7 +393,7 @@ class Robot(Closing):
             (self.diary.id_of(thing), IS_A, best): min(shares[best], 1.0)
             for thing, shares in look.names.items()
             for best in list(shares)[:1]
-            if shares[best] >= SURE
+            if shares[best] >= MIN_NAME_PROBABILITY
         }
         found = {*certain, *(("table", FAULT, str(fault)) for fault in look.faults())}
         if look.layout is not None:
@@ -535,8 +535,8 @@ class Robot(Closing):
         """
         if isinstance(text, str) and not text.strip():
             raise RobotError("`text` must say something, got blank text; describe how the table is laid")
-        if isinstance(text, str) and (presence := self._presence(text)) is not None:
-            return self._told_presence(presence, text, by, self._time(at), event)
+        if isinstance(text, str) and (presence := self._as_presence(text)) is not None:
+            return self._expect_objects(presence, text, by, self._time(at), event)
         script = text if isinstance(text, Script) else self._layout(text)
         seen = self.knowledge().recognised(self.scene)
         words = text if isinstance(text, str) else script.reading.text if script.reading else format_script(script)
@@ -557,7 +557,7 @@ class Robot(Closing):
         script = read_layout_or_english(rest, self.session.ontology)
         return script if name is None else replace(script, name=name)
 
-    def _presence(self, text: str) -> Script | None:
+    def _as_presence(self, text: str) -> Script | None:
         """Return a text as a script, if it is English about objects that are there."""
         from deixis.grammar.layout.parser import parse_script
         from deixis.workflows.layouts.read import read_script
@@ -580,7 +580,7 @@ class Robot(Closing):
             return script if introduced(script) or (absent and not script.objects) else None
         return None
 
-    def _told_presence(
+    def _expect_objects(
         self, script: Script, text: str, by: str, at: float, event: str | None
     ) -> tuple[ExpectedObject, ...]:
         """Expect the objects that a sentence introduces, and do not expect those that it says are absent."""
@@ -611,12 +611,12 @@ class Robot(Closing):
         """Return the ids on the blackboard of the objects of a sentence that are surely seen."""
         if self._scene is None or not script.objects:
             return {}
-        found = self.session.ground(script, self.knowledge().recognised(self.scene), time_limit=GROUNDING_SECONDS)
+        found = self.session.ground(script, self.knowledge().recognised(self.scene), time_limit=GROUNDING_TIME_LIMIT)
         new = introduced(script)
         return {
             role: self.diary.id_of(match.perceived)
             for role, match in found.object_matches.items()
-            if role not in new and (match.probability or 0.0) >= FOUND
+            if role not in new and (match.probability or 0.0) >= MIN_MATCH_PROBABILITY
         }
 
     def _look_for_expected(self, at: float, among: Sequence[ExpectedObject] = (), watched: bool = False) -> None:
@@ -625,7 +625,9 @@ class Robot(Closing):
             if one.standing is not Standing.EXPECTED:
                 continue
             since = math.inf if one.looked is None else at - one.looked
-            looks = 0 if since < LOOK else int(since / LOOK) if watched and one.looked is not None else 1
+            looks = (
+                0 if since < LOOK_INTERVAL else int(since / LOOK_INTERVAL) if watched and one.looked is not None else 1
+            )
             if one.id not in self._sightings:
                 self._sightings[one.id] = self._sighting(one)
             new = one.after(self._sightings[one.id], at, looks)
@@ -640,14 +642,14 @@ class Robot(Closing):
         """
         knowledge = self.knowledge()
         scene = knowledge.recognised(self.scene)
-        found = self.session.ground(one.script, scene, time_limit=GROUNDING_SECONDS)
-        alike = [role for role in introduced(one.script) if plain_name(role) == one.name]
+        found = self.session.ground(one.script, scene, time_limit=GROUNDING_TIME_LIMIT)
+        same_name = [role for role in introduced(one.script) if plain_name(role) == one.name]
         shares: dict[str, float] = {}
-        matched = [match for match in found.object_matches.values() if match.object in alike]
+        matched = [match for match in found.object_matches.values() if match.object in same_name]
         for match in matched:
             shares[match.perceived] = shares.get(match.perceived, 0.0) + (match.probability or 0.0)
         others = [each for match in matched for each in match.alternatives]
-        others += [each for left in found.unmatched_objects if left.name in alike for each in left.alternatives]
+        others += [each for left in found.unmatched_objects if left.name in same_name for each in left.alternatives]
         for other in others:
             if other.perceived is not None:
                 shares[other.perceived] = shares.get(other.perceived, 0.0) + (other.probability or 0.0)
@@ -690,14 +692,14 @@ class Robot(Closing):
     def questions(self) -> tuple[Question, ...]:
         """Questions about the present table whose information is worth their cost, the most informative first."""
         questions = [each for lesson in self.lessons if lesson.scene is self._scene for each in lesson.questions()]
-        worth = [question for question in questions if question.gain > QUESTION_COST]
-        return tuple(sorted(worth, key=lambda question: -question.gain))
+        informative = [question for question in questions if question.gain > QUESTION_COST]
+        return tuple(sorted(informative, key=lambda question: -question.gain))
 
     @property
     def layout_question(self) -> LayoutQuestion | None:
         """Question for the name of a layout that came up several times without a name; None if there is no question."""
         found = None if self._scene is None else self._kind(self._scene)
-        if found is None or len(found[1].tables) < NOTICED_FROM or found[1].asked:
+        if found is None or len(found[1].tables) < MIN_TABLES or found[1].asked:
             return None
         return LayoutQuestion(found[1])
 
@@ -848,7 +850,7 @@ class Robot(Closing):
                     continue
                 best = int(found.roles_of[index].argmax())
                 share, thing = float(found.roles_of[index, best]), lesson.scene.ids[best]
-                if share < SETTLED or (known is not None and known.thing == thing):
+                if share < MIN_SETTLED_PROBABILITY or (known is not None and known.thing == thing):
                     continue
                 if any(other != role and each.thing == thing for other, each in lesson.settled.items()):
                     continue

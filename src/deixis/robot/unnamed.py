@@ -29,16 +29,16 @@ from deixis.view_store import UNKNOWN
 MIN_THINGS = 3
 """Number of things from which an arrangement says something."""
 
-NOTICED_FROM = 3
+MIN_TABLES = 3
 """Number of tables of one kind from which its name is asked for."""
 
 SAME_PLACE = 0.01
 """Distance in metres up to which a thing is where it was."""
 
-UNEXPLAINED = -2.0
+MIN_EXPLANATION_RATIO = -2.0
 """Log-likelihood ratio per thing that an explanation must exceed for a table to be of a kind."""
 
-KNOWN_NAME = 0.5
+MIN_NAME_PROBABILITY = 0.5
 """Probability from which a recognised name names a role."""
 
 
@@ -144,7 +144,7 @@ class UnnamedKind:
         """
         found = explain(self.layout.evidence(scene, ontology, meaning))
         roles = self.layout.roles
-        if found.evidence <= UNEXPLAINED * len(scene.objects) or 2 * len(found.mistakes) >= len(roles):
+        if found.evidence <= MIN_EXPLANATION_RATIO * len(scene.objects) or 2 * len(found.mistakes) >= len(roles):
             return None
         things = {
             role: scene.ids[thing] for role, thing in zip(roles, found.thing.tolist(), strict=True) if thing != NOTHING
@@ -235,11 +235,11 @@ def is_same_table(first: Scene, second: Scene) -> bool:
     bool
         True if more than half of the things of the scene with fewer things lie where things of the other one lie.
     """
-    few, many = sorted((first, second), key=lambda scene: len(scene.objects))
-    if not few.objects:
+    smaller, larger = sorted((first, second), key=lambda scene: len(scene.objects))
+    if not smaller.objects:
         return True
-    apart = np.linalg.norm(few.boxes.mean(axis=1)[:, None] - many.boxes.mean(axis=1)[None], axis=2)
-    return bool(2 * np.count_nonzero(apart.min(axis=1) < SAME_PLACE) > len(few.objects))
+    distances = np.linalg.norm(smaller.boxes.mean(axis=1)[:, None] - larger.boxes.mean(axis=1)[None], axis=2)
+    return bool(2 * np.count_nonzero(distances.min(axis=1) < SAME_PLACE) > len(smaller.objects))
 
 
 def _roles(scene: Scene) -> list[str]:
@@ -247,7 +247,7 @@ def _roles(scene: Scene) -> list[str]:
     names = []
     for thing in scene.objects:
         best = next(iter(thing.candidates), (thing.label, thing.confidence))
-        known = best[0] is not None and best[0] != UNKNOWN and best[1] >= KNOWN_NAME
+        known = best[0] is not None and best[0] != UNKNOWN and best[1] >= MIN_NAME_PROBABILITY
         names.append(best[0] if known and best[0] else "thing")
     often, done, found = Counter(names), Counter[str](), []
     for name in names:

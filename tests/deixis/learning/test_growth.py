@@ -308,7 +308,7 @@ def test_of_many_lessons_all_are_kept_or_none(
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (["pairs/tea.layout"], "name its scene behind it"),
+        (["pairs/tea.layout"], "give its scene after it"),
         (["empty"], "there is no NAME.layout"),
         (["alone"], "there is no tea.scene.json beside it"),
     ],

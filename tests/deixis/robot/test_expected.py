@@ -20,7 +20,7 @@ from deixis.perception.clouds.cloud import PointCloud
 from deixis.perception.scene import PerceivedObject, Scene
 from deixis.reasoning.grounding.evidence.words.meaning import SHIPPED
 from deixis.reasoning.temporal.fluent import Pattern
-from deixis.robot.expected import GIVEN_UP, ExpectedObject, Sighting, Standing, introduced
+from deixis.robot.expected import MIN_PRESENT_PROBABILITY, ExpectedObject, Sighting, Standing, introduced
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.places import places_of
 from deixis.robot.robot import Robot, Told
@@ -207,7 +207,7 @@ def test_probability_never_rises_by_looking(looks: list[tuple[float, float]]) ->
         at += pause
         new = one.after(Sighting(None, 0.0, False, in_view), at)
         assert new.probability <= one.probability + 1e-9
-        assert (new.standing is Standing.CONTRADICTED) == (new.probability < GIVEN_UP)
+        assert (new.standing is Standing.CONTRADICTED) == (new.probability < MIN_PRESENT_PROBABILITY)
         if new.standing is Standing.CONTRADICTED:
             break
         one = new

@@ -34,6 +34,6 @@ def test_episode_is_put_as_a_whole_or_not_at_all() -> None:
             put_episode(board, "two", [on("f2", 1.0), on("f1", 1.0)], 1.0, 2.0, by="test")
         with pytest.raises(EpisodeError, match="an experience 'one' already"):
             start_recording(board, "one", 3.0, by="test")
-        with pytest.raises(EpisodeError, match="no experience 'two'; the blackboard has: one"):
+        with pytest.raises(EpisodeError, match="no experience 'two'; the blackboard has one"):
             episode(board, "two")
         assert [each.id for each in episode(board, "one")] == ["f1"]

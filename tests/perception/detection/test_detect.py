@@ -164,12 +164,16 @@ def test_a_cloud_without_a_finite_point_is_bad_input() -> None:
         (
             SurfaceSettings,
             {"min_jump": -0.1},
-            "SurfaceSettings's min_jump must be a finite number of at least 0",
+            "`min_jump` of SurfaceSettings must be a finite number of at least 0",
         ),
-        (SurfaceSettings, {"min_radius": 0.5}, "SurfaceSettings's max_radius must be at least its min_, 0.5"),
-        (PlaneSettings, {"max_planes": 0}, "PlaneSettings's max_planes must be a whole number of at least 1, got 0"),
-        (JoiningSettings, {"patch_width": math.nan}, "JoiningSettings's patch_width must be a finite number"),
-        (DetectionSettings, {"joining": {"patch_width": 0.1}}, "detection's joining must be JoiningSettings"),
+        (
+            SurfaceSettings,
+            {"min_radius": 0.5},
+            "`max_radius` of SurfaceSettings must be at least the corresponding minimum, 0.5",
+        ),
+        (PlaneSettings, {"max_planes": 0}, "`max_planes` of PlaneSettings must be a whole number of at least 1, got 0"),
+        (JoiningSettings, {"patch_width": math.nan}, "`patch_width` of JoiningSettings must be a finite number"),
+        (DetectionSettings, {"joining": {"patch_width": 0.1}}, "`joining` must be JoiningSettings"),
     ],
 )
 def test_impossible_thresholds_are_refused(
@@ -191,14 +195,14 @@ def test_other_thresholds_give_other_objects(boxes_seen: Look) -> None:
     "wrong", [{"height": 0.0}, {"reach": float("nan")}, {"up": (0.0, 0.0, 0.0)}, {"least_points": 0}]
 )
 def test_impossible_settings_are_refused(wrong: dict[str, float]) -> None:
-    with pytest.raises(CloudError, match=r"detection's"):
+    with pytest.raises(CloudError, match=r"^`\w+` must "):
         DetectionSettings(**wrong)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("value", ["x", True, (), float("nan"), (1.0, 2.0, "z"), -1])
 @pytest.mark.parametrize("name", [field.name for field in fields(DetectionSettings)])
 def test_a_setting_of_another_type_is_refused(name: str, value: object) -> None:
-    with pytest.raises(CloudError, match=r"detection's"):
+    with pytest.raises(CloudError, match=r"^`\w+` must "):
         DetectionSettings(**{name: value})  # type: ignore[arg-type]
 
 

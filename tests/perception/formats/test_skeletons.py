@@ -62,5 +62,5 @@ def test_a_wrong_line_is_named(text: str, message: str) -> None:
 
 
 def test_a_file_that_is_missing_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(PointingError, match="cannot be read"):
+    with pytest.raises(PointingError, match="there is no such file"):
         read_skeletons(tmp_path / "none.jsonl")

@@ -158,7 +158,7 @@ def test_no_boxes_have_no_relations(name: str) -> None:
         ("point", {"axis": "xy"}, SettingError, "x, y or z, got 'xy'"),
         ("ra", {"tolerance": -1.0}, SettingError, "tolerance"),
         ("ra", {"tolerance": float("nan")}, SettingError, "tolerance"),
-        ("distance", {}, SettingError, "`reference` must be a length"),
+        ("distance", {}, SettingError, "needs the length `reference`"),
         ("distance", {"reference": 0.0}, SettingError, "`reference` must be a length"),
         ("distance", {"reference": float("nan")}, SettingError, "`reference` must be a length"),
     ],

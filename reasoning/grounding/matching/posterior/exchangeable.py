@@ -46,7 +46,7 @@ def exchangeable(problem: Problem) -> tuple[tuple[int, ...], ...]:
     homes: defaultdict[tuple[object, ...], list[list[int]]] = defaultdict(list)
     for i in range(len(problem.absent)):
         groups = homes[_signature(i, problem, facts)]
-        home = next((group for group in groups if _twins(group[0], i, facts)), None)
+        home = next((group for group in groups if _are_exchangeable(group[0], i, facts)), None)
         groups.append([i]) if home is None else home.append(i)
     found = [tuple(group) for groups in homes.values() for group in groups if len(group) > 1]
     return tuple(sorted(found))
@@ -82,11 +82,11 @@ def averaged(marginals: NDArray[Number], groups: tuple[tuple[int, ...], ...]) ->
 def _signature(i: int, problem: Problem, facts: Facts) -> tuple[object, ...]:
     """Return a key that exchangeable objects have in common and that few other objects share."""
     facts_of_object = tuple(sorted((kind, first, n) for (kind, first, _), n in facts[i].items()))
-    alone = np.where(problem.allowed[i], problem.unary[i], 0.0).tobytes(), problem.allowed[i].tobytes()
-    return float(problem.absent[i]), alone, facts_of_object
+    own_evidence = np.where(problem.allowed[i], problem.unary[i], 0.0).tobytes(), problem.allowed[i].tobytes()
+    return float(problem.absent[i]), own_evidence, facts_of_object
 
 
-def _twins(i: int, j: int, facts: Facts) -> bool:
+def _are_exchangeable(i: int, j: int, facts: Facts) -> bool:
     swap = {i: j, j: i}
     swapped = Counter({(kind, first, swap.get(k, k)): n for (kind, first, k), n in facts[i].items()})
     return swapped == facts[j]

@@ -107,15 +107,15 @@ def sampled_marginals(
     steps = max(RUNGS_PER_ROOT * math.sqrt(n1), MIN_RUNGS)
     rungs = max(int(min(steps, MAX_CHAIN_OBJECTS / n1)), MIN_RUNGS)
     coldness = 1.0 - (1.0 - MIN_COLDNESS) * np.arange(rungs) / (steps - 1)
-    run, known = _begun(problem, np.maximum(coldness, MIN_COLDNESS), deadline, seed, places)
-    known = averaged(known, groups)
-    marginals, errors = known, np.full(n1, math.inf)
+    run, beliefs = _start(problem, np.maximum(coldness, MIN_COLDNESS), deadline, seed, places)
+    beliefs = averaged(beliefs, groups)
+    marginals, errors = beliefs, np.full(n1, math.inf)
     left = min(PROPOSALS, MAX_PROPOSALS / n1) / (LADDERS * rungs)
     parts: list[_Part] = []
     for number, part in enumerate(run.parts(left)):
         part.counts[:] /= np.float32(part.sweeps)
         parts = [*parts[-1:], _Part(part.sweeps, averaged(part.counts, groups) if groups else part.counts, part.values)]
-        marginals, errors = _agreement(parts, known)
+        marginals, errors = _agreement(parts, beliefs)
         if number and errors.max() <= TOLERANCE:
             break
     return marginals, errors
@@ -154,7 +154,7 @@ def log_evidence(problem: Problem, deadline: Deadline = Deadline.never(), *, see
         return 0.0, 0.0
     rungs = int(max(2 * RUNGS_PER_ROOT * math.sqrt(n1), 4 * MIN_RUNGS)) | 1
     coldness = np.linspace(1.0, 0.0, rungs) ** 1.5
-    run, _ = _begun(problem.compiled, coldness, deadline, seed)
+    run, _ = _start(problem.compiled, coldness, deadline, seed)
     found, error = math.nan, math.inf
     for part in run.parts(min(PROPOSALS, MAX_PROPOSALS / n1) / (LADDERS * rungs)):
         means = part.values / part.sweeps
@@ -170,10 +170,10 @@ def warm() -> None:
     """Compile the chains, or load their compiled code, so that a time limit is spent on running them."""
     tables, ends = np.zeros((1, 2, 2), np.float32), np.array([[0, 1]])
     tiny = Problem(ends, np.array([0]), tables, np.zeros((2, 2)), np.zeros(2))
-    next(_begun(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
+    next(_start(tiny.compiled, np.array([1.0, 0.5]), Deadline.never(), 0)[0].parts(1.0))
 
 
-def believed_marginals(
+def propagated_marginals(
     problem: Compiled, deadline: Deadline, places: NDArray[np.float32] | None = None
 ) -> tuple[Array, Compiled]:
     """Return the marginals of belief propagation until the deadline, computed in one thread.
@@ -194,8 +194,8 @@ def believed_marginals(
         places of absent objects.
     """
     with threadpool_limits(1, "blas"):
-        known, placed = beliefs_with_places(problem, places, deadline)
-    return known.astype(np.float64), placed
+        beliefs, placed = beliefs_with_places(problem, places, deadline)
+    return beliefs.astype(np.float64), placed
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,25 +247,25 @@ class _Run:
                 return False
             begin(chains, self.problem, self.guide, int(seeds.integers(1 << 30)))
         until = self.deadline.share(COOLING_SHARE)
-        whole, way = until.left, 0.0
+        seconds, progress = until.left, 0.0
         at_once = max(1, int(PROPOSALS_PER_CLOCK_CHECK / (COOLING_SWEEPS * self.rungs * len(self.problem.unary))))
-        while way < 1.0:
+        while progress < 1.0:
             if self.deadline.passed:
                 return False
-            elapsed = 1.0 - until.left / whole if 0.0 < whole < math.inf else 0.0
-            ways: list[float] = []
+            elapsed = 1.0 - until.left / seconds if 0.0 < seconds < math.inf else 0.0
+            steps: list[float] = []
             drawn: list[list[int]] = []
-            while way < 1.0 and len(ways) < at_once:
-                way = min(1.0, max(way + 1.0 / COOLING_TURNS, elapsed))
-                ways.append(way)
+            while progress < 1.0 and len(steps) < at_once:
+                progress = min(1.0, max(progress + 1.0 / COOLING_TURNS, elapsed))
+                steps.append(progress)
                 drawn.append(seeds.integers(1 << 30, size=LADDERS).tolist())
-            list(pool.map(self._cool_some_turns, self.ladders, zip(*drawn, strict=True), [ways] * LADDERS))
+            list(pool.map(self._cool_some_turns, self.ladders, zip(*drawn, strict=True), [steps] * LADDERS))
         return True
 
-    def _cool_some_turns(self, chains: Chains, seeds: tuple[int, ...], ways: list[float]) -> None:
+    def _cool_some_turns(self, chains: Chains, seeds: tuple[int, ...], steps: list[float]) -> None:
         hottest = min(MIN_COLDNESS, chains.coldness[-1])
-        for seed, way in zip(seeds, ways, strict=True):
-            coldness = hottest + (chains.coldness - hottest) * way
+        for seed, progress in zip(seeds, steps, strict=True):
+            coldness = hottest + (chains.coldness - hottest) * progress
             cool(chains, self.problem, self.guide, coldness, COOLING_SWEEPS, seed)
 
     def _sampled(self, pool: ThreadPoolExecutor, number: int, sweeps: int) -> _Part:
@@ -287,33 +287,33 @@ class _Run:
         return _Part(done, counts, values)
 
 
-def _begun(
+def _start(
     problem: Compiled, coldness: Array, deadline: Deadline, seed: int, places: NDArray[np.float32] | None = None
 ) -> tuple[_Run, Array]:
     """Return a run at those temperatures (K,), and the beliefs (n1, n2 + 1) that guide it."""
-    known, placed = believed_marginals(problem, deadline.share(GUIDE_SHARE), places)
+    beliefs, placed = propagated_marginals(problem, deadline.share(GUIDE_SHARE), places)
     ladders = tuple(new_chains(problem, coldness) for _ in range(LADDERS))
-    return _Run(placed, guide_by(known, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), known
+    return _Run(placed, guide_by(beliefs, problem.allowed), ladders, seed, deadline.share(CHAINS_SHARE)), beliefs
 
 
-def _agreement(parts: list[_Part], known: Array) -> tuple[Array, Array]:
+def _agreement(parts: list[_Part], beliefs: Array) -> tuple[Array, Array]:
     """Return the marginals (n1, n2 + 1) by the last parts, and the largest standard error of each object's (n1,).
 
     The error is the larger of the standard errors between ladders and between their parts. An object's effective sample
-    size is that of independent draws with its error (Gelman and Rubin 1992), and the beliefs ``known`` (n1, n2 + 1)
+    size is that of independent draws with its error (Gelman and Rubin 1992), and the beliefs ``beliefs`` (n1, n2 + 1)
     count as ``BELIEF_DRAWS`` more draws. Where chains mix, they determine the result; where each is stuck at a map,
     they are a few draws, which show no probability near 0 or 1. An object that is the same thing in all draws gets the
     lower quartile of the effective sample sizes of the others.
     """
     sweeps = sum(part.sweeps for part in parts)
-    mean, squared = np.zeros_like(known), np.zeros_like(known)
+    mean, squared = np.zeros_like(beliefs), np.zeros_like(beliefs)
     for number in range(LADDERS):  # one after the other, to hold little
         mean += _mean_of(parts, number, sweeps) / LADDERS
     for number in range(LADDERS):
         squared += (_mean_of(parts, number, sweeps) - mean) ** 2
     squared /= LADDERS * (LADDERS - 1)
     if len(parts) > 1:
-        halves, spread = LADDERS * len(parts), np.zeros_like(known)
+        halves, spread = LADDERS * len(parts), np.zeros_like(beliefs)
         for counts in (counts for part in parts for counts in part.counts):
             spread += (counts - mean) ** 2
         squared = np.maximum(squared, spread / (halves * (halves - 1)))
@@ -322,7 +322,7 @@ def _agreement(parts: list[_Part], known: Array) -> tuple[Array, Array]:
     draws = np.divide(variance, noise, out=np.full(len(mean), np.inf), where=varied & (noise > 0))
     usual = np.quantile(draws[np.isfinite(draws)], 0.25) if np.isfinite(draws).any() else LADDERS
     draws = np.clip(np.where(np.isfinite(draws), draws, usual), 1.0, LADDERS * sweeps)[:, None]
-    marginals = (draws * mean + BELIEF_DRAWS * known) / (draws + BELIEF_DRAWS)
+    marginals = (draws * mean + BELIEF_DRAWS * beliefs) / (draws + BELIEF_DRAWS)
     errors = np.sqrt(squared.max(axis=1)) + 1.0 / (LADDERS * sweeps)
     return marginals, errors
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from deixis.deadline import Deadline
 from deixis.reasoning.grounding.matching.posterior.enumeration import add_up, factors
 from deixis.reasoning.grounding.matching.posterior.exchangeable import averaged, exchangeable
-from deixis.reasoning.grounding.matching.posterior.ladders import believed_marginals, sampled_marginals
+from deixis.reasoning.grounding.matching.posterior.ladders import propagated_marginals, sampled_marginals
 from deixis.reasoning.grounding.matching.problem import MatchingError, Problem, to_assignment, to_labels
 from deixis.reasoning.grounding.matching.search.belief_propagation import belief_seconds
 from deixis.reasoning.grounding.matching.search.scalable import search_from
@@ -147,7 +147,7 @@ def posterior(
         labels = np.full(n1, n2) if start is None else to_labels(start, n2)
         return Posterior((labels[:, None] == np.arange(n2 + 1)).astype(np.float64), False, math.inf)
     if not chains:
-        return Posterior(believed_marginals(problem.compiled, deadline)[0], False, math.inf, is_propagated=True)
+        return Posterior(propagated_marginals(problem.compiled, deadline)[0], False, math.inf, is_propagated=True)
     places = None
     if problem.places is not None and len(problem.ends) and n2 >= MIN_PLACED_THINGS:
         needed = SECONDS_PER_PLACED_THING * len(problem.tables) * n2 * min(n2, MAX_PLACED_THINGS)
@@ -195,8 +195,8 @@ def exact_posterior(
         raise MatchingError(f"`mass` must be between 0 and 1, got {mass}")
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
-        nobody = np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1))
-        return Posterior(nobody, True, 0.0, log_total=float(problem.absent.sum()))
+        unmatched = np.ones((n1, 1)) if n2 == 0 else np.zeros((0, n2 + 1))
+        return Posterior(unmatched, True, 0.0, log_total=float(problem.absent.sum()))
     compiled, width = problem.compiled, n2 + 1
     if len(compiled.kind) * width * width > FACTOR_CELLS or deadline.passed:
         return None

@@ -106,27 +106,27 @@ def _alias_tables(chance):  # type: ignore[no-untyped-def]
     keep, alias = np.ones((rows, width), np.float32), np.empty((rows, width), np.int32)
     small, large, scaled = np.empty(width, np.int64), np.empty(width, np.int64), np.empty(width)
     for i in range(rows):
-        few, many, total = 0, 0, 0.0
+        n_small, n_large, row_sum = 0, 0, 0.0
         for p in range(width):
-            total += chance[i, p]
+            row_sum += chance[i, p]
         for p in range(width):
             alias[i, p] = p
-            scaled[p] = chance[i, p] * width / total
+            scaled[p] = chance[i, p] * width / row_sum
             if scaled[p] < 1.0:
-                small[few] = p
-                few += 1
+                small[n_small] = p
+                n_small += 1
             else:
-                large[many] = p
-                many += 1
-        while few > 0 and many > 0:
-            few -= 1
-            low, high = small[few], large[many - 1]
+                large[n_large] = p
+                n_large += 1
+        while n_small > 0 and n_large > 0:
+            n_small -= 1
+            low, high = small[n_small], large[n_large - 1]
             keep[i, low], alias[i, low] = scaled[low], high
             scaled[high] -= 1.0 - scaled[low]
             if scaled[high] < 1.0:
-                many -= 1
-                small[few] = high
-                few += 1
+                n_large -= 1
+                small[n_small] = high
+                n_small += 1
     return keep, alias
 
 
@@ -157,7 +157,7 @@ def begin(chains, problem, guide, seed):  # type: ignore[no-untyped-def]
                 if p < width - 1 and problem.allowed[i, p] and holder[p] < 0:
                     labels[i], holder[p] = p, i
                     break
-        chains.values[k] = _worth(labels, problem)
+        chains.values[k] = _value(labels, problem)
 
 
 @njit(cache=True)
@@ -167,7 +167,7 @@ def _drawn(row, keep, alias):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _worth(labels, problem):  # type: ignore[no-untyped-def]
+def _value(labels, problem):  # type: ignore[no-untyped-def]
     """Return the value of a map minus the cost of the objects that it leaves out."""
     total, out = 0.0, problem.unary.shape[1] - 1
     for i in range(len(labels)):

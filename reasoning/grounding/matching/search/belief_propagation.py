@@ -92,10 +92,10 @@ def propagate(
     while done < 1.0:
         coldness = FIRST_COLDNESS * (LAST_COLDNESS / FIRST_COLDNESS) ** done / scale
         np.exp(np.multiply(costs, np.float32(coldness), out=weights), out=weights)
-        known = wiring.adder @ facts + np.float32(coldness) * unary + field
-        _update_demand(demand, known)
-        belief = _normalised(known + demand)
-        _update_facts(facts, _said(facts, belief, wiring), weights, wiring)
+        incoming = wiring.adder @ facts + np.float32(coldness) * unary + field
+        _update_demand(demand, incoming)
+        belief = _normalised(incoming + demand)
+        _update_facts(facts, _cavity_messages(facts, belief, wiring), weights, wiring)
         before, now = now, time.perf_counter()
         left = deadline.left
         if left <= MIN_LEVELS * (now - before) * (1.0 - done):
@@ -163,40 +163,40 @@ def beliefs_with_places(
     unary = np.where(problem.allowed, np.maximum(problem.unary, RULED_OUT), RULED_OUT).astype(np.float32)
     facts, demand = np.zeros((len(problem.kind), unary.shape[1]), np.float32), np.zeros_like(unary)
     before = found = np.zeros_like(unary)
-    weights, away, placed = np.empty_like(costs), None, 0
+    weights, away, placings = np.empty_like(costs), None, 0
     until = deadline.share(GROWING_SHARE)
-    whole, way, full = until.left, 0.0, False
+    seconds, progress, full_power = until.left, 0.0, False
     for _ in range(GROWING_STEPS + steps):
-        if not full:
-            full = way >= 1.0
-            cold = np.float32(FIRST_POWER + (1.0 - FIRST_POWER) * way)
-            np.exp(np.multiply(costs, cold, out=weights), out=weights)
+        if not full_power:
+            full_power = progress >= 1.0
+            power = np.float32(FIRST_POWER + (1.0 - FIRST_POWER) * progress)
+            np.exp(np.multiply(costs, power, out=weights), out=weights)
             evidence = unary.copy()
-            evidence[:, :-1] *= cold
-        known = wiring.adder @ facts + evidence
-        _update_demand(demand, known)
-        belief = _normalised(known + demand)
+            evidence[:, :-1] *= power
+        incoming = wiring.adder @ facts + evidence
+        _update_demand(demand, incoming)
+        belief = _normalised(incoming + demand)
         before, found = found, np.exp(belief)
         found /= found.sum(axis=1, keepdims=True)
-        if deadline.passed or (full and np.abs(found - before).sum(axis=1).max(initial=0.0) <= SETTLED):
+        if deadline.passed or (full_power and np.abs(found - before).sum(axis=1).max(initial=0.0) <= SETTLED):
             break
-        said = _said(facts, belief, wiring)
-        if places is not None and int(way * PLACINGS) > placed:
-            placed = int(way * PLACINGS)
-            problem = located(start, places, said, found, wiring)
+        cavity = _cavity_messages(facts, belief, wiring)
+        if places is not None and int(progress * PLACINGS) > placings:
+            placings = int(progress * PLACINGS)
+            problem = located(start, places, cavity, found, wiring)
             unary[:, -1] = evidence[:, -1] = problem.unary[:, -1]
-        if places is not None and placed:
-            away = _away_weights(problem, wiring, cold)
-        _update_facts(facts, said, weights, wiring, away)
-        elapsed = 1.0 - until.left / whole if 0.0 < whole < math.inf else 0.0
-        way = min(1.0, max(way + 1.0 / GROWING_STEPS, elapsed))
+        if places is not None and placings:
+            away = _away_weights(problem, wiring, power)
+        _update_facts(facts, cavity, weights, wiring, away)
+        elapsed = 1.0 - until.left / seconds if 0.0 < seconds < math.inf else 0.0
+        progress = min(1.0, max(progress + 1.0 / GROWING_STEPS, elapsed))
     return found, problem
 
 
 def located(
     problem: Compiled,
     places: NDArray[np.float32],
-    said: Messages,
+    cavity: Messages,
     belief: Messages,
     wiring: _Wiring,
 ) -> Compiled:
@@ -214,7 +214,7 @@ def located(
         The problem in the layout of compiled loops, with the prior odds of absence.
     places
         Likelihood ratios of the facts at g places, shape (2k, g, n2).
-    said
+    cavity
         Messages to the facts about the other object of each slot, in the order of ``wiring``, shape (2m, n2 + 1).
     belief
         Probability of each match, shape (n1, n2 + 1).
@@ -227,21 +227,21 @@ def located(
         Copy with values of absence and of the facts about absent objects.
     """
     slots, (n1, width) = len(problem.kind), problem.unary.shape
-    chances = said / said.sum(axis=1, keepdims=True)
-    fitting = np.empty((slots, places.shape[1]), np.float32)
+    chances = cavity / cavity.sum(axis=1, keepdims=True)
+    likelihoods = np.empty((slots, places.shape[1]), np.float32)
     for table, first, end in wiring.runs:
-        np.matmul(chances[first:end, :-1], places[table].T, out=fitting[first:end])
-    fitting += chances[:, -1:]
-    fit = wiring.adder @ np.log(fitting, out=fitting)
-    chosen = fit.argmax(axis=1)
-    spread = np.log(np.exp(fit - fit.max(axis=1, keepdims=True)).mean(axis=1))
+        np.matmul(chances[first:end, :-1], places[table].T, out=likelihoods[first:end])
+    likelihoods += chances[:, -1:]
+    log_likelihood = wiring.adder @ np.log(likelihoods, out=likelihoods)
+    chosen = log_likelihood.argmax(axis=1)
+    log_mean = np.log(np.exp(log_likelihood - log_likelihood.max(axis=1, keepdims=True)).mean(axis=1))
     away = np.zeros((slots, width), np.float32)
     for table, first, end in wiring.runs:
         away[wiring.slot[first:end], :-1] = np.log(places[table][chosen[wiring.owner[first:end]]])
     unary = problem.unary.copy()
     expected = min(float(belief[:, -1].sum()), n1 / 2)
-    more = _log_odds_of_absence(expected, n1, width - 1) - _log_odds_of_absence(max(0, n1 - width + 1), n1, width - 1)
-    unary[:, -1] += np.where(unary[:, -1] > CERTAINLY_PRESENT, max(0.0, more) + spread, 0.0)
+    gain = _log_odds_of_absence(expected, n1, width - 1) - _log_odds_of_absence(max(0, n1 - width + 1), n1, width - 1)
+    unary[:, -1] += np.where(unary[:, -1] > CERTAINLY_PRESENT, max(0.0, gain) + log_mean, 0.0)
     return problem._replace(unary=unary, away=away)
 
 
@@ -296,28 +296,28 @@ def _costs(problem: Compiled) -> Messages:
     return costs
 
 
-def _update_demand(demand: Messages, known: Messages) -> None:
+def _update_demand(demand: Messages, incoming: Messages) -> None:
     """Update in place the log messages of things to objects (n1, n2 + 1): that no other object is this thing.
 
     The message is 1 / (1 + s), where s is the sum of the odds that each other object is the thing, without the thing's
     own message. Leaving objects out is not exclusive.
     """
-    belief = _normalised(known + demand)
+    belief = _normalised(incoming + demand)
     share = np.exp(belief)
     odds = np.exp(np.minimum(belief - demand, 60.0))
     odds /= np.maximum(share.sum(axis=1, keepdims=True) - share, 1e-20)
-    wanted = np.minimum(odds[:, :-1], 1e8).astype(np.float64)  # single precision would lose the others beside one
-    told = np.log((1.0 + np.maximum(wanted.sum(axis=0) - wanted, 0.0)).astype(np.float32))
+    capped = np.minimum(odds[:, :-1], 1e8).astype(np.float64)  # single precision would lose the others beside one
+    message = np.log((1.0 + np.maximum(capped.sum(axis=0) - capped, 0.0)).astype(np.float32))
     demand *= np.float32(DAMPING)
-    demand[:, :-1] -= np.float32(1.0 - DAMPING) * told
+    demand[:, :-1] -= np.float32(1.0 - DAMPING) * message
 
 
-def _said(facts: Messages, belief: Messages, wiring: _Wiring) -> Messages:
+def _cavity_messages(facts: Messages, belief: Messages, wiring: _Wiring) -> Messages:
     """Return the messages (2m, n2 + 1) about the other object of each slot, by all evidence but the slot's fact."""
-    said = belief[wiring.other]
-    said -= facts[wiring.twin]
-    np.exp(said, out=said)
-    return said
+    cavity = belief[wiring.other]
+    cavity -= facts[wiring.twin]
+    np.exp(cavity, out=cavity)
+    return cavity
 
 
 def _away_weights(problem: Compiled, wiring: _Wiring, power: np.float32) -> Messages:
@@ -331,28 +331,28 @@ def _away_weights(problem: Compiled, wiring: _Wiring, power: np.float32) -> Mess
 
 
 def _update_facts(
-    facts: Messages, said: Messages, weights: Messages, wiring: _Wiring, away: Messages | None = None
+    facts: Messages, cavity: Messages, weights: Messages, wiring: _Wiring, away: Messages | None = None
 ) -> None:
     """Update in place the log messages (2m, n2 + 1) of each fact to the object of each slot.
 
-    ``said`` holds the messages about the other objects, ``away`` the likelihoods of facts about absent objects, where
+    ``cavity`` holds the messages about the other objects, ``away`` the likelihoods of facts about absent objects, where
     these have places; shape (2m, n2 + 1) each.
     """
-    told = np.empty_like(facts)
+    outgoing = np.empty_like(facts)
     for table, first, end in wiring.runs:
         matrix = weights[table].T if table < len(weights) else weights[table - len(weights)]
         if away is None:
-            np.matmul(said[first:end], matrix, out=told[first:end])
+            np.matmul(cavity[first:end], matrix, out=outgoing[first:end])
         else:
-            np.matmul(said[first:end, :-1], matrix[:-1], out=told[first:end])
+            np.matmul(cavity[first:end, :-1], matrix[:-1], out=outgoing[first:end])
     if away is not None:
-        told += said[:, -1:] * away[wiring.twin]
-        told[:, -1] = np.einsum("sq,sq->s", said, away)
-    np.log(np.maximum(told, math.exp(MIN_LOG_MESSAGE), out=told), out=told)
-    told = np.maximum(_normalised(told), MIN_LOG_MESSAGE, out=told)
+        outgoing += cavity[:, -1:] * away[wiring.twin]
+        outgoing[:, -1] = np.einsum("sq,sq->s", cavity, away)
+    np.log(np.maximum(outgoing, math.exp(MIN_LOG_MESSAGE), out=outgoing), out=outgoing)
+    outgoing = np.maximum(_normalised(outgoing), MIN_LOG_MESSAGE, out=outgoing)
     facts *= np.float32(DAMPING)
-    told *= np.float32(1.0 - DAMPING)
-    facts += told
+    outgoing *= np.float32(1.0 - DAMPING)
+    facts += outgoing
 
 
 def _normalised(messages: Messages) -> Messages:

@@ -103,8 +103,8 @@ def exact(problem: Problem, deadline: Deadline = Deadline.never(), *, seed: int 
     """
     n1, n2 = problem.unary.shape
     if n1 == 0 or n2 == 0:
-        nobody = np.full(n1, -1)
-        return Optimum(nobody, problem.value(nobody), problem.value(nobody), 0)
+        unmatched = np.full(n1, -1)
+        return Optimum(unmatched, problem.value(unmatched), problem.value(unmatched), 0)
     compiled = problem.compiled
     labels, _ = search_from(np.full(n1, n2), compiled, deadline, seed, min(1.0, START_EFFORT_PER_SQUARE * n1**2), 1)
     step = max(_grid(problem) - 1e-3, 0.0) or SLACK

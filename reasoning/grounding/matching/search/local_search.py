@@ -306,16 +306,16 @@ def reassign(labels, problem, patience, seed):  # type: ignore[no-untyped-def]
     total, failed = 0.0, 0
     while failed < patience:
         chosen = _without_facts_between(problem)
-        many = _free(labels, chosen, things)
-        gain = cells[: len(chosen) * (many + 1)].reshape(len(chosen), many + 1)
+        n_free = _free(labels, chosen, things)
+        gain = cells[: len(chosen) * (n_free + 1)].reshape(len(chosen), n_free + 1)
         before = 0.0
         for a in range(len(chosen)):
             gains_of(chosen[a], labels, problem, row)
             before += row[labels[chosen[a]]]
-            for b in range(many + 1):
+            for b in range(n_free + 1):
                 gain[a, b] = row[things[b]] if problem.allowed[chosen[a], things[b]] else -np.inf
         columns = column_of[: len(chosen)]
-        gained = solve_assignment(gain, columns, price[:many], profit[: len(chosen)]) - before
+        gained = solve_assignment(gain, columns, price[:n_free], profit[: len(chosen)]) - before
         failed += 1
         if gained > MIN_GAIN:
             labels[chosen] = things[columns]
@@ -382,8 +382,8 @@ def combine(labels, other, problem):  # type: ignore[no-untyped-def]
         for slot in range(problem.first[i], problem.first[i + 1]):
             j, kind = problem.other[slot], problem.kind[slot]
             if j > i or labels[j] == other[j]:  # a fact within the part counts once
-                said = np.float64(problem.tables[kind, other[i], other[j]])
-                gain[root] += said - problem.tables[kind, labels[i], labels[j]]
+                new_value = np.float64(problem.tables[kind, other[i], other[j]])
+                gain[root] += new_value - problem.tables[kind, labels[i], labels[j]]
     total = 0.0
     for i in range(len(labels)):
         if gain[_root(part, i)] > 1e-9:
@@ -396,14 +396,14 @@ def combine(labels, other, problem):  # type: ignore[no-untyped-def]
 def _parts(labels, other, problem):  # type: ignore[no-untyped-def]
     """Return a forest (n1,) whose trees join differing objects that share a fact or a thing."""
     part, out = np.arange(len(labels)), problem.unary.shape[1] - 1
-    wanted_by = np.full(out + 1, -1)
+    new_owner = np.full(out + 1, -1)
     for i in range(len(labels)):
-        wanted_by[other[i]] = i
+        new_owner[other[i]] = i
     for i in range(len(labels)):
         if labels[i] == other[i]:
             continue
-        if labels[i] < out and wanted_by[labels[i]] >= 0:
-            part[_root(part, i)] = _root(part, wanted_by[labels[i]])
+        if labels[i] < out and new_owner[labels[i]] >= 0:
+            part[_root(part, i)] = _root(part, new_owner[labels[i]])
         for slot in range(problem.first[i], problem.first[i + 1]):
             j = problem.other[slot]
             if labels[j] != other[j]:

@@ -167,10 +167,10 @@ def _annealed(
     """Anneal in at most ``most`` turns, the first one from ``labels`` (n1,)."""
     n1, width = compiled.unary.shape
     rng, noise = _random_numbers(seed, width)
-    scale, best, nobody = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
+    scale, best, unmatched = mean_range(compiled), labels.copy(), np.full(n1, width - 1)
     plan, sweeps = turns_and_sweeps(n1, width)
     for turn, (hot, levels) in enumerate(plan[:most]):
-        found = nobody.copy() if turn and hot == FIRST_TEMPERATURE else best.copy()
+        found = unmatched.copy() if turn and hot == FIRST_TEMPERATURE else best.copy()
         schedule = scale * _relative_temperatures(hot, levels)
         finished = _cool(found, compiled, deadline, schedule, max(1, round(effort * sweeps)), noise, rng)
         if not finished:

@@ -1,4 +1,4 @@
-"""The command ``deixis tell``: say a layout or a scene in English."""
+"""The command ``deixis tell``: describe a layout or a scene in English."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def tell(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Say a layout or a scene in English, in few words.
+    """Describe a layout or a scene in English, in few sentences.
 
     Exit 0 if the text, read again, gives the same facts, and singles out each object of a scene; 1 if not.
     """

@@ -75,20 +75,27 @@ def add(
     origin: Annotated[OriginName, typer.Option(help="How it became known.")] = OriginName.SAID,
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Add a statement with its times; without times it is a plain triple."""
     from deixis.errors import DeixisError
     from deixis.memory.episodes.fluents.changes import Add
     from deixis.memory.episodes.fluents.episode import Origin, Source, episodic
     from deixis.reasoning.temporal.fluent import Statement
+    from deixis.workflows.knowledge.episodes import fluent_to_dict
 
     if len(words) not in (2, 3):
-        raise DeixisError(f"a statement has a subject, a predicate and at most one object, got {len(words)} words")
+        raise DeixisError(
+            f"a statement must have a subject, a predicate and at most one object, got {count(len(words), 'word')}"
+        )
     with _board(memory, create=True) as board:
         source = Source(Origin(origin.value), by)
         statement = Statement(*words)
         fluent = episodic(board.new_id("f"), statement, start=start, finish=finish, certainty=certainty, source=source)
         board.write(Add(fluent), by=by)
+    if as_json:
+        print_json(fluent_to_dict(fluent))
+    else:
         print_line(str(fluent))
 
 
@@ -99,6 +106,7 @@ def import_(
     name: Annotated[str | None, typer.Option(metavar="NAME", help="Keep them as an experience of this name.")] = None,
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Add all fluents of a file, or nothing."""
     from deixis.grammar.files import read_text
@@ -113,7 +121,8 @@ def import_(
             board.write(*map(Add, fluents), by=by)
         else:
             put_episode(board, name, fluents, *span_of(fluents), by=by)
-    print_line(f"Added {count(len(fluents), 'fluent')}.")
+        last = board.sequence
+    _print_changed("Added", len(fluents), last, as_json)
 
 
 @episodes_app.command("finish")
@@ -123,6 +132,7 @@ def finish_(
     pattern: Triple = (ANY, ANY, ANY),
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """State when fluents ceased to hold, by their ids or by a pattern."""
     from deixis.memory.episodes.fluents.changes import Finish
@@ -133,7 +143,7 @@ def finish_(
             last = board.write(*(Finish(id, time) for id in ids or ()), by=by)
         else:
             last = board.finish_where(_pattern(*pattern), time, by)
-    print_line(f"Finished {count(last - before, 'fluent')}.")
+    _print_changed("Finished", last - before, last, as_json)
 
 
 @episodes_app.command("update")
@@ -146,6 +156,7 @@ def update(
     window: Window = None,
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Give fluents new values, by their ids or by a pattern and a window."""
     from deixis.memory.episodes.fluents.changes import Update
@@ -157,7 +168,7 @@ def update(
             chosen = [each.id for each in board.holding(_pattern(*pattern), *(window or (None, None)))]
         changes = (Update(id, start=start, finish=finish, certainty=certainty) for id in chosen)
         last = board.write(*changes, by=by)
-    print_line(f"Updated {count(last - before, 'fluent')}.")
+    _print_changed("Updated", last - before, last, as_json)
 
 
 @episodes_app.command("delete")
@@ -167,6 +178,7 @@ def delete(
     window: Window = None,
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Remove fluents as if they had never been stated, by their ids or by a pattern and a window."""
     from deixis.memory.episodes.fluents.changes import Delete
@@ -177,7 +189,7 @@ def delete(
             last = board.write(*map(Delete, ids or ()), by=by)
         else:
             last = board.delete_where(_pattern(*pattern), by, *(window or (None, None)))
-    print_line(f"Deleted {count(last - before, 'fluent')}.")
+    _print_changed("Deleted", last - before, last, as_json)
 
 
 @episodes_app.command("list")
@@ -211,10 +223,17 @@ def changes(
     since: Annotated[int, typer.Option(metavar="N", help="Only changes after this number.")] = 0,
     pattern: Triple = (ANY, ANY, ANY),
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print the log of changes."""
+    from deixis.workflows.knowledge.episodes import change_to_dict
+
     with _board(memory) as board:
-        print_lines(str(each) for each in board.changes(since, _pattern(*pattern)))
+        found = board.changes(since, _pattern(*pattern))
+        if as_json:
+            print_json({"origin": board.origin.isoformat(), "changes": [change_to_dict(each) for each in found]})
+        else:
+            print_lines(map(str, found))
 
 
 @episodes_app.command("export")
@@ -243,9 +262,11 @@ def record(
     at: Annotated[float | None, typer.Option(metavar="SECONDS", help="When it starts or stops; default: now.")] = None,
     by: By = "user",
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Start or finish the recording of an experience."""
-    from deixis.memory.episodes.experiences import finish_recording, start_recording
+    from deixis.memory.episodes.experiences import experiences, finish_recording, start_recording
+    from deixis.workflows.knowledge.episodes import experience_to_dict
 
     with _board(memory, create=not stop) as board:
         time = board.seconds() if at is None else at
@@ -253,7 +274,11 @@ def record(
             finish_recording(board, name, time, by)
         else:
             start_recording(board, name, time, by)
-    print_line(f"The recording of '{name}' {'finished' if stop else 'started'} at {time:g} s.")
+        recorded = next(each for each in experiences(board) if each.name == name)
+    if as_json:
+        print_json(experience_to_dict(recorded))
+    else:
+        print_line(f"The recording of '{name}' {'finished' if stop else 'started'} at {time:g} s.")
 
 
 @episodes_app.command("check")
@@ -294,35 +319,42 @@ def classes(
     under: Annotated[str | None, typer.Argument(metavar="[CLASS]", help="Only this class and its subclasses.")] = None,
     used: Annotated[bool, typer.Option("--used", help="Only classes with individuals.")] = False,
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """List classes with their broader classes and the individuals that are of them now."""
     from deixis.ontology.tbox import default_ontology
     from deixis.workflows.knowledge.episodes import known_classes
 
     with _board(memory) as board:
-        found = known_classes(board, default_ontology(), under)
+        found = [each for each in known_classes(board, default_ontology(), under) if each.individuals or not used]
+    if as_json:
+        print_json({"classes": [each._asdict() for each in found]})
+        return
     for each in found:
-        if each.individuals or not used:
-            above = f" < {', '.join(each.broader)}" if each.broader else ""
-            print_line(f"{each.name}{above}{': ' if each.individuals else ''}{', '.join(each.individuals)}")
+        above = f" < {', '.join(each.broader)}" if each.broader else ""
+        print_line(f"{each.name}{above}{': ' if each.individuals else ''}{', '.join(each.individuals)}")
 
 
 @episodes_app.command("memory")
 def memory_(
     name: Annotated[MemoryName, typer.Argument(metavar="NAME", help=f"The memory: {', '.join(MemoryName)}.")],
     memory: MemoryDir = None,
+    as_json: AsJson = False,
 ) -> None:
     """Print the content of one of the five memories."""
     from deixis.memory.on_demand import default_memory
     from deixis.session import Session
-    from deixis.workflows.knowledge.episodes import Memory, memory_lines
+    from deixis.workflows.knowledge.episodes import Memory, memory_lines, memory_to_dict
 
     with _board(memory) as board, Session(memory or default_memory()) as session:
+        if as_json:
+            print_json(memory_to_dict(Memory(name.value), board, session))
+            return
         print_lines(list(memory_lines(Memory(name.value), board, session)) or [f"The {name.value} memory is empty."])
 
 
 @episodes_app.command("consolidate")
-def consolidate(memory: MemoryDir = None) -> None:
+def consolidate(memory: MemoryDir = None, as_json: AsJson = False) -> None:
     """Learn a layout from each finished experience that a person described."""
     from deixis.memory.on_demand import default_memory
     from deixis.session import Session
@@ -330,6 +362,9 @@ def consolidate(memory: MemoryDir = None) -> None:
 
     with _board(memory) as board, Session(memory or default_memory()) as session:
         done = run(board, session)
+    if as_json:
+        print_json({"lessons": done.lessons, "left_out": done.left_out})
+        return
     print_lines(f"{name}: lesson {lesson}" for name, lesson in done.lessons.items())
     for name, reason in done.left_out.items():
         print_note(f"{name}: {reason}")
@@ -344,6 +379,14 @@ def _board(memory: Path | None, create: bool = False) -> Iterator[Blackboard]:
 
     with Blackboard.open(memory or default_memory(), create=create, report=print_note) as board:
         yield board
+
+
+def _print_changed(verb: str, fluents: int, sequence: int, as_json: bool) -> None:
+    """Print how many fluents a command changed."""
+    if as_json:
+        print_json({"fluents": fluents, "sequence": sequence})
+    else:
+        print_line(f"{verb} {count(fluents, 'fluent')}.")
 
 
 def _by_ids(ids: list[str] | None, pattern: tuple[str, str, str], window: tuple[float, float] | None = None) -> bool:

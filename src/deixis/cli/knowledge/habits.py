@@ -15,7 +15,7 @@ def habits(
     time_limit: TimeLimit = 10.0,
     as_json: AsJson = False,
 ) -> None:
-    """Learn rules from examples of where a person puts things, and say where other things go."""
+    """Learn rules from examples of where a person puts things, and predict where other things go."""
     from deixis.report.knowledge.habits import habits_lines, habits_to_dict
     from deixis.workflows.knowledge.habits import habits as run
 

@@ -117,13 +117,14 @@ def import_(
 ) -> None:
     """Add exported content to the memory; what the memory has stays."""
     from deixis.errors import DeixisError
-    from deixis.memory.episodes.exchange import has_ending, import_file
+    from deixis.memory.episodes.exchange import ENDING, has_ending, import_file
     from deixis.memory.on_demand import default_memory
     from deixis.memory.perceptual.in_folder import import_all, is_archive
+    from deixis.memory.semantic.rdf.files import FORMATS
     from deixis.session import Session
 
     if not dump.exists():
-        raise DeixisError(f"{dump}: no such file")
+        raise DeixisError(f"{dump}: there is no such file")
     if is_archive(dump):
         where = memory or default_memory()
         with progress_bar("importing") as progress:
@@ -139,6 +140,9 @@ def import_(
         note_change(where)
         print_line(f"Imported {number} fluents of {dump} into the memory {where}.")
         return
+    if dump.suffix.lower() not in FORMATS:
+        endings = ", ".join((*FORMATS, ".zip (views)"))
+        raise DeixisError(f"{dump}: unknown format; its name must end in {endings} or {ENDING}")
     with Session(memory) as session:
         session.import_(dump)
         note_change(session.path)

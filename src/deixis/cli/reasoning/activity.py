@@ -41,7 +41,7 @@ def ground(
     memory: MemoryDir = None,
     as_json: AsJson = False,
 ) -> None:
-    """Match a told activity with fluents; exit 1 if a step is missing or in another order."""
+    """Match a described activity with fluents; exit 1 if a step is missing or in another order."""
     from deixis.report.reasoning.activities import grounded_lines, grounded_to_dict
     from deixis.workflows.reasoning.activities import ground as run
 

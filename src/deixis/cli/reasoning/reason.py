@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from deixis.reasoning.description_logic.justification import Justification
     from deixis.reasoning.description_logic.owl_rl.materialisation import InferenceStep
     from deixis.reasoning.description_logic.terms import Triple
+
+
+STATEMENT_EXAMPLE = "write it like 'dx:Fork rdfs:subClassOf dx:Thing'"
 
 
 class EngineChoice(StrEnum):
@@ -171,9 +175,11 @@ def _statement(text: str, prefixes: dict[str, str]) -> Triple:
     try:
         found = [quad.triple for quad in ox.parse(f"{head}{text.rstrip(' .')} .".encode(), format=ox.RdfFormat.TURTLE)]
     except (SyntaxError, ValueError) as error:
-        raise DeixisError(f"--explain: '{text}' is not one statement: {' '.join(str(error).split())}") from None
+        unknown = re.search(r"The prefix (\S+) has not been declared", str(error))
+        why = f"the prefix {unknown[1]} is not declared" if unknown else STATEMENT_EXAMPLE
+        raise DeixisError(f"--explain: '{text}' is not one statement; {why}") from None
     if len(found) != 1:
-        raise DeixisError(f"--explain: '{text}' is not one statement; write it like 'dx:Fork rdfs:subClassOf dx:Thing'")
+        raise DeixisError(f"--explain: '{text}' is not one statement; {STATEMENT_EXAMPLE}")
     return Triple(str(found[0].subject), str(found[0].predicate), str(found[0].object))
 
 

@@ -23,7 +23,7 @@ def point(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find what people point at, and which thing each spoken name is taught to.
+    """Find what people point at, and to which thing each spoken name belongs.
 
     Exit 0 if each gesture and name is decided, 3 if not, 1 if there is no gesture.
     """

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from deixis.answers import count
 from deixis.cli.common import AsJson, print_json, print_lines
 
 if TYPE_CHECKING:
@@ -55,8 +56,10 @@ def track(
     stream = _source(source, rate, grows, patience, intrinsics, (things, actions, seed), camera)
     found = run(stream if record is None else _Recorded(stream, record), live=live, each=each)
     if not found.frames:
-        reason = found.notes[0] if found.notes else "the source has none"
-        raise CloudError(f"at least one frame must be usable, got none of {found.left_out}; {reason}")
+        if not found.notes:
+            raise CloudError("the source has no frames")
+        reason = found.notes[0].removesuffix("; it is left out")
+        raise CloudError(f"none of the {count(found.left_out, 'frame')} can be used: {reason}")
     if as_json:
         print_json(tracking_to_dict(found))
     elif not lines:

@@ -80,7 +80,7 @@ def _shuffled(taught: NDArray[np.bool_], rng: np.random.Generator) -> Split:
 
 @dataclass(frozen=True)
 class NamingMethod:
-    """A way to name a view: by D_C (``settings`` None) or by ND, over the descriptors of one name."""
+    """A way to name a view: by distance (``settings`` None) or normalised distance, over one kind of descriptor."""
 
     name: str
     descriptor: str
@@ -89,7 +89,7 @@ class NamingMethod:
 
 @dataclass(frozen=True)
 class Scores:
-    """The share of views named correctly, and the AUROC of the least ND (or D_C) as a sign of the unknown.
+    """Share of views named correctly, and AUROC of the least (normalised) distance as a sign of the unknown.
 
     Each asked view counts once as it is, and once with its category left out of the taught ones.
     """
@@ -99,7 +99,7 @@ class Scores:
 
 
 def view_matrix(data: DescribedViews, descriptor: str, tick: Callable[[str], None]) -> Matrix:
-    """Compute D_V (n, n) from each view, a row, to each other; by square roots of spin images.
+    """Compute the distances D_V (n, n) of each view, a row, to each other, by square roots of spin images.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class Counted:
 
     def __str__(self) -> str:
         counted = f"held on {self.tally.held:g} of {self.tally.of:g} tables" if self.tally.of else "never compared"
-        return f"{self.statement}: {counted}{'' if self.told else ', not told'}"
+        return f"{self.statement}: {counted}{'' if self.told else ', not stated'}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -230,7 +230,7 @@ def _united(tables: Sequence[TaughtTable]) -> LayoutConcept:
 
 
 def _weighed(counted: Counted, optional: set[str]) -> Fact | Claim:
-    """Return a told statement with the weight that its counts give it."""
+    """Return a statement with the weight that its counts give it."""
     fact, tally = counted.statement, counted.tally
     weight = fact.weight
     if tally.of and (tally.held < tally.of or (weight < 1 and tally.of >= MIN_TABLES)):
@@ -301,7 +301,7 @@ class _Tables:
         return found
 
     def distances(self, united: LayoutConcept) -> list[Counted]:
-        """Return the distances of things that a told fact relates, where they hardly vary."""
+        """Return the distances of things that a stated fact relates, where they hardly vary."""
         stated = {
             frozenset((*claim.subjects, *claim.arguments))
             for claim in united.claims

@@ -56,7 +56,7 @@ def grounding_lines(found: Grounding) -> list[str]:
     ]
     if elsewhere:
         head = "These are the most likely matches together; taken alone, another thing is more likely for: "
-        lines += ["", f"{head}{', '.join(at_most_many(elsewhere))}."]
+        lines += ["", f"{head}{', '.join(shortened_list(elsewhere))}."]
     groups = [group for group in found.interchangeable if any(name in found.matches for name in group)]
     if groups:
         lines += ["", "The description cannot tell these apart, so their names may be swapped:"]
@@ -98,7 +98,7 @@ def left_out_lines(left_out: Sequence[LeftOut]) -> list[str]:
     lines = []
     for reason in dict.fromkeys(left.reason for left in left_out):
         names = [left.name for left in left_out if left.reason == reason]
-        listed = ", ".join(at_most_many(names)) + (" (--json lists all)" if len(names) > MAX_LISTED else "")
+        listed = ", ".join(shortened_list(names)) + (" (--json lists all)" if len(names) > MAX_LISTED else "")
         each = "for each, " if len(names) > 1 and not {"it", "its"}.isdisjoint(reason.split()) else ""
         lines.append(f"Left out: {listed}: {each}{reason}.")
     return lines
@@ -172,8 +172,8 @@ def kinds_lines(script: Script) -> list[str]:
         else f"{label} ({', '.join(names)})"
         for label, names in by_kind.items()
     ]
-    lines = [f"Kinds taken from the names: {', '.join(at_most_many(shown))}."] if shown else []
-    return lines + ([f"No known kind: {', '.join(at_most_many(unknown))}."] if unknown else [])
+    lines = [f"Kinds taken from the names: {', '.join(shortened_list(shown))}."] if shown else []
+    return lines + ([f"No known kind: {', '.join(shortened_list(unknown))}."] if unknown else [])
 
 
 def _standing_line(found: Grounding) -> str:
@@ -200,7 +200,7 @@ def _times(nats: float) -> str:
     return f"up to {math.exp(nats):.3g} times" if nats < math.log(1000) else "more than 1000 times"
 
 
-def at_most_many(names: list[str]) -> list[str]:
+def shortened_list(names: list[str]) -> list[str]:
     """Return the first :data:`MAX_LISTED` names, and how many more there are.
 
     Parameters
@@ -247,7 +247,7 @@ def member_lines(name: str, members: tuple[Member, ...]) -> list[str]:
     list of str
         A single line: the group, the number of its members, and these with their probabilities.
     """
-    listed = at_most_many([f"{one.perceived} {_probability(one.probability).strip()}" for one in members])
+    listed = shortened_list([f"{one.perceived} {_probability(one.probability).strip()}" for one in members])
     return [f"{name:<24} all that fit ({len(members)}): {', '.join(listed)}"]
 
 
@@ -257,12 +257,12 @@ def _match_line(match: Match) -> str:
     if match.probability is not None:
         line += f" {_probability(match.probability)}"
         others = [f"{_thing(other)} {_probability(other.probability or 0)}" for other in match.alternatives]
-        return line + (f"   or {', '.join(at_most_many(others))}" if others and not match.decided else "")
+        return line + (f"   or {', '.join(shortened_list(others))}" if others and not match.decided else "")
     equal = [_thing(other) for other in match.alternatives if other.cost <= 1e-9]
     if match.decided or not match.alternatives:
         return line.rstrip()
     return (
-        f"{line} or {', '.join(at_most_many(equal))}"
+        f"{line} or {', '.join(shortened_list(equal))}"
         if equal
         else f"{line} or, less likely, {_thing(match.alternatives[0])}"
     )

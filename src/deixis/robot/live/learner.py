@@ -23,7 +23,7 @@ from deixis.robot.diary import CALLED, FAULT, LAYOUT, NAMELESS, UNNAMED
 from deixis.robot.expected import Standing, described_predicates
 from deixis.robot.lessons import Question
 from deixis.robot.live.outbox import Outbox
-from deixis.robot.live.senses import ENDED, MOMENT, SAID, TABLE, WATCHED, named
+from deixis.robot.live.senses import ENDED, MIN_DURATION, SAID, TABLE, WATCHED, named
 from deixis.robot.modules import Board, Module
 from deixis.robot.robot import Robot, Told
 from deixis.robot.unnamed import LayoutQuestion
@@ -321,7 +321,7 @@ class Learner(Module):
         return f"This is '{look.layout}'; " + "; ".join(map(str, faults)) + "."
 
     def _say(self, text: str, at: float, board: Board) -> None:
-        self._add((self.name, SAYS, printed_line(text, MAX_SAID)), at, board, finish=at + MOMENT)
+        self._add((self.name, SAYS, printed_line(text, MAX_SAID)), at, board, finish=at + MIN_DURATION)
 
     def _add(self, statement: tuple[str, str, str], at: float, board: Board, finish: float | None = None) -> None:
         source = Source(Origin.INFERRED, self.name)

@@ -11,11 +11,11 @@ from deixis.memory.episodes.fluents.episode import EpisodicFluent
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import CALLED, FAULT, LAYOUT, NOT_CALLED
 from deixis.robot.live.learner import SAYS
-from deixis.robot.live.senses import AT, NOTICED, POINTED_AT, SAID, TABLE, VIEW
+from deixis.robot.live.senses import AT, NOTICED, POINTED_AT, SAID, TABLE, VIEW_ENDING
 from deixis.workflows.knowledge.recall import IS_A
 from deixis.workflows.scenes.point import SAME_MOMENT
 
-LATER = 0.01
+SITUATION_DELAY = 0.01
 """Seconds after the beginning of a moment at which its situation is read."""
 
 
@@ -68,7 +68,7 @@ def key_moments(board: Blackboard, began: float) -> tuple[Moment, ...]:
     tuple of Moment
         The moments in the order of time.
     """
-    fluents = [each for each in board.holding(start=began) if each.start.lower >= began - LATER]
+    fluents = [each for each in board.holding(start=began) if each.start.lower >= began - SITUATION_DELAY]
     times = sorted({each.start.lower for each in fluents if each.statement.predicate in (SAID, TABLE)})
     found: list[Moment] = []
     for at in times:
@@ -83,12 +83,12 @@ def _moment(
     board: Blackboard, fluents: Sequence[EpisodicFluent], at: float, began: float, before: Mapping[str, str | None]
 ) -> Moment:
     def holding(predicate: str) -> list[EpisodicFluent]:
-        found = board.holding(Pattern(predicate=predicate), at + LATER, at + LATER)
-        return [each for each in found if each.start.lower >= began - LATER]
+        found = board.holding(Pattern(predicate=predicate), at + SITUATION_DELAY, at + SITUATION_DELAY)
+        return [each for each in found if each.start.lower >= began - SITUATION_DELAY]
 
     names = {each.statement.subject: each.statement.object for each in holding(IS_A)}
     things = {each.statement.subject: names.get(each.statement.subject) for each in holding(AT)}
-    looks = [each for each in fluents if each.statement.predicate == TABLE and each.start.lower <= at + LATER]
+    looks = [each for each in fluents if each.statement.predicate == TABLE and each.start.lower <= at + SITUATION_DELAY]
     spoken = [each for each in fluents if each.statement.predicate in (SAID, SAYS, NOTICED) and each.start.lower == at]
     words = [each for each in spoken if each.statement.predicate == SAID]
     end = max((each.finish.upper for each in words), default=at)
@@ -98,15 +98,16 @@ def _moment(
         for each in fluents
         if each.statement.predicate in (CALLED, NOT_CALLED) and each.start.lower == at
     )
-    who = {SAYS: "robot", NOTICED: "note"}
+    speakers = {SAYS: "robot", NOTICED: "note"}
     return Moment(
         at - began,
-        Path(str(looks[-1].statement.object)).with_suffix("").with_suffix(VIEW) if looks else None,
+        Path(str(looks[-1].statement.object)).with_suffix("").with_suffix(VIEW_ENDING) if looks else None,
         things,
         frozenset(things) - frozenset(before),
         frozenset(str(each.statement.object) for each in aims) | named,
         tuple(
-            (who.get(each.statement.predicate, each.statement.subject), str(each.statement.object)) for each in spoken
+            (speakers.get(each.statement.predicate, each.statement.subject), str(each.statement.object))
+            for each in spoken
         ),
         next((each.statement.object for each in holding(LAYOUT)), None),
         tuple(str(each.statement.object) for each in holding(FAULT)),

@@ -18,7 +18,7 @@ from deixis.reasoning.temporal.bounds import MAX_SECONDS, Bounds
 from deixis.reasoning.temporal.fluent import Pattern
 from deixis.robot.diary import FAULT, LAYOUT
 from deixis.robot.live.learner import DONE, SAYS
-from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, MOMENT, NOTICED, SAID, TABLE, TYPED
+from deixis.robot.live.senses import AT, BEGAN, DROPPED, ENDED, MIN_DURATION, NOTICED, SAID, TABLE, TYPED
 from deixis.robot.live.story import StorySettings
 from deixis.robot.modules import ModuleSpec
 from deixis.robot.runtime import Runtime
@@ -183,7 +183,7 @@ class LiveRobot:
             If there is no such experience, or it has finished.
         """
         ended = max((each.start.upper for each in self._now(ENDED)), default=self.board.seconds())
-        finish_recording(self.board, experience, ended + MOMENT, by="robot")
+        finish_recording(self.board, experience, ended + MIN_DURATION, by="robot")
 
     def answered(self, seconds: float = 60.0) -> bool:
         """Wait until the robot has dealt with all typed words.
@@ -264,17 +264,17 @@ def live_robot(
 def _line(fluent: EpisodicFluent) -> str | None:
     """Return what a fluent says as a line of the conversation; None if it is not a part of it."""
     statement = fluent.statement
-    who = {SAID: statement.subject, SAYS: "robot", NOTICED: "note"}.get(statement.predicate)
+    speaker = {SAID: statement.subject, SAYS: "robot", NOTICED: "note"}.get(statement.predicate)
     if statement.predicate == DROPPED:
         return f"note: {statement.object} frames came too late and were left out"
-    return None if who is None else f"{who}: {statement.object}"
+    return None if speaker is None else f"{speaker}: {statement.object}"
 
 
 def _end_earlier(board: Blackboard) -> None:
     """End what an earlier run left as the present: it ceased to hold at an unknown time before now."""
     now = board.seconds()
     left = [each for predicate in STATES for each in board.now(Pattern(predicate=predicate))]
-    ends = [(each.id, min(each.started_by + MOMENT, MAX_SECONDS)) for each in left]
+    ends = [(each.id, min(each.started_by + MIN_DURATION, MAX_SECONDS)) for each in left]
     changes = [Finish(id, Bounds(first, max(now, first))) for id, first in ends]
     if changes:
         board.write(*changes, by="robot")

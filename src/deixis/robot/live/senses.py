@@ -65,23 +65,23 @@ AT, TABLE, WATCHED, POINTED_AT, SAID, TYPED, NOTICED, DROPPED, BEGAN, ENDED = (
 """Predicates: the box of a thing, the file of the scene, that the table is in view and does not change, what a person
 pointed at, said and typed, what the robot noticed, the number of late frames, and the ends of the story."""
 
-STILL = 0.6
+STILL_SECONDS = 0.6
 """Seconds without movement after which the table is written as a scene."""
 
-WATCH = 1.0
+WATCH_INTERVAL = 1.0
 """Seconds between two notes that the table is still in view."""
 
-PAUSE = 0.5
+GESTURE_PAUSE = 0.5
 """Seconds without a skeleton after which a gesture has ended."""
 
-BRINGING = 5.0
+MAX_BRINGING_SECONDS = 5.0
 """Maximum time in seconds between words that announce a thing (*first the plate*) and the thing's coming to rest."""
 
-SPREAD = 0.5
+BRINGING_SCALE = 0.5
 """Time in seconds by which things that come later, or earlier, than another one are e times less likely the announced
 thing."""
 
-MOMENT = 1e-3
+MIN_DURATION = 1e-3
 """Shortest time in seconds that a statement holds."""
 
 LONGEST_PAUSE = 86_400.0
@@ -94,10 +94,10 @@ HELD_GESTURES = 20
 """Number of gestures that are kept for words that come later."""
 
 
-POLL = 0.1
+POLL_INTERVAL = 0.1
 """Seconds for which typed words are waited for before the module looks whether it must stop."""
 
-VIEW = ".view.npz"
+VIEW_ENDING = ".view.npz"
 """Ending of the file beside a scene that has the camera's image, the thing that each compared pixel shows (``owner``,
 an index into ``ids``), and the transform from the camera's frame to the table's."""
 
@@ -168,7 +168,7 @@ class Senses(Module):
             self._take_in(self._writer, stopped)
         while not stopped.is_set():
             with suppress(Empty):
-                self._writer.hear(self._typed.get(timeout=POLL), at_once=True)
+                self._writer.hear(self._typed.get(timeout=POLL_INTERVAL), at_once=True)
         self._story = self._events = None
         self._tracker.close()
 
@@ -279,7 +279,7 @@ class _Writer:
     def _take_event(self, event: Event, dropped: int) -> None:
         if math.isfinite(event.at):
             to_ticks(self._time(event.at))  # raises if the blackboard has no such time
-        if event.at - self._watched_at > PAUSE:
+        if event.at - self._watched_at > GESTURE_PAUSE:
             self._watched_at = math.inf
             self._point(self._detector.finish())
         if isinstance(event, Frame):
@@ -354,7 +354,7 @@ class _Writer:
         if situation.busy or any(thing.moving for thing in situation.things) or situation.went or situation.came:
             self._moved_at = situation.at
         self._take(situation)
-        if situation.frame is None or situation.at - self._moved_at < STILL:
+        if situation.frame is None or situation.at - self._moved_at < STILL_SECONDS:
             return
         if _states(situation) != self._written:
             self._look()
@@ -411,7 +411,7 @@ class _Writer:
 
     def _finished(self, fluent: str, since: float, at: float) -> Change:
         """Return the change that finishes a fluent, which lasts a moment at least."""
-        return Finish(fluent, self._time(max(at, since + MOMENT)))
+        return Finish(fluent, self._time(max(at, since + MIN_DURATION)))
 
     def _look(self) -> None:
         """Detect all resting things on the table, correct the tracked things by them, and write them as a scene.
@@ -446,9 +446,9 @@ class _Writer:
         self._outbox.add(*self._places_of(situation, Source(Origin.SEEN, "tracker", "look at the whole table")))
         self._take(situation)
         things = [replace(thing, id=self._id(ids[thing.id])) for thing in found.objects if thing.id in ids]
-        onto = found.detection.frame @ np.linalg.inv(_required(situation.frame))
+        to_table = found.detection.frame @ np.linalg.inv(_required(situation.frame))
         things += [  # what something hides is still there
-            _hidden(thing, self._id(thing.id), onto)
+            _hidden(thing, self._id(thing.id), to_table)
             for thing in situation.things
             if thing.id not in ids.values() and thing.state == "hidden" and not thing.moving
         ]
@@ -464,7 +464,7 @@ class _Writer:
         from deixis.workflows.scenes.perceive import write_scene
 
         write_scene(scene, file)
-        self._write_view(file.with_suffix("").with_suffix(VIEW))
+        self._write_view(file.with_suffix("").with_suffix(VIEW_ENDING))
         added = self._add(("table", TABLE, str(file)), self._at, Source(Origin.SEEN, "tracker"))
         if self._table is not None:
             self._outbox.add(self._finished(*self._table, self._at))
@@ -473,12 +473,12 @@ class _Writer:
         self._outbox.add(added)
 
     def _write_watched(self, at: float) -> None:
-        """Write that the table is still in view and looks as before, at most once in ``WATCH`` seconds."""
+        """Write that the table is still in view and looks as before, at most once in ``WATCH_INTERVAL`` seconds."""
         if self._watched is None:
-            added = self._add(("table", WATCHED), at, Source(Origin.SEEN, "tracker"), finish=at + MOMENT)
+            added = self._add(("table", WATCHED), at, Source(Origin.SEEN, "tracker"), finish=at + MIN_DURATION)
             self._watched = added.fluent.id, at
             self._outbox.add(added)
-        elif at - self._watched[1] >= WATCH:
+        elif at - self._watched[1] >= WATCH_INTERVAL:
             self._watched = self._watched[0], at
             self._outbox.add(Update(self._watched[0], finish=self._time(at)))
 
@@ -529,7 +529,7 @@ class _Writer:
     def _write_utterance(self, utterance: Utterance) -> None:
         """Write words, and the names that they give to things."""
         source = Source(Origin.SAID, utterance.speaker, f"words at {utterance.at:.1f} s")
-        finish = utterance.end if utterance.end > utterance.at else utterance.at + MOMENT
+        finish = utterance.end if utterance.end > utterance.at else utterance.at + MIN_DURATION
         statement, certainty = (utterance.speaker, SAID, utterance.text), max(utterance.confidence, 0.01)
         self._outbox.add(self._add(statement, utterance.at, source, certainty, finish))
         shown = replace(source, origin=Origin.SHOWN)
@@ -572,11 +572,11 @@ class _Writer:
             for thing, at in self._came.items()
             if thing in self._things.ids and thing not in self._announced
         }
-        near = [thing for thing, seconds in away.items() if seconds <= BRINGING]
+        near = [thing for thing, seconds in away.items() if seconds <= MAX_BRINGING_SECONDS]
         if not near:
-            return replace(label, refused=f"nothing came to the table within {BRINGING:g} s of the words")
+            return replace(label, refused=f"nothing came to the table within {MAX_BRINGING_SECONDS:g} s of the words")
         sizes = size_weights(name, self._things)
-        weights = {thing: sizes[thing] * math.exp(-away[thing] / SPREAD) for thing in near}
+        weights = {thing: sizes[thing] * math.exp(-away[thing] / BRINGING_SCALE) for thing in near}
         thing = max(near, key=weights.__getitem__)
         share = weights[thing] / sum(weights.values())
         if sizes[thing] <= MIN_SIZE_FIT:
@@ -630,7 +630,7 @@ class _Words:
     until: float = field(init=False)
 
     def __post_init__(self) -> None:
-        moment = SAME_MOMENT + STILL if announced_thing(self.utterance.text) is None else BRINGING
+        moment = SAME_MOMENT + STILL_SECONDS if announced_thing(self.utterance.text) is None else MAX_BRINGING_SECONDS
         object.__setattr__(self, "until", self.utterance.end + moment)
 
 
@@ -675,9 +675,9 @@ def _required(frame: NDArray[np.float64] | None) -> NDArray[np.float64]:
     return frame
 
 
-def _hidden(thing: TrackedThing, id: str, onto: NDArray[np.float64]) -> PerceivedObject:
+def _hidden(thing: TrackedThing, id: str, to_table: NDArray[np.float64]) -> PerceivedObject:
     """Return a thing that is hidden, as it was last seen, moved into another frame."""
-    points = thing.cloud.points @ onto[:3, :3].T + onto[:3, 3]
+    points = thing.cloud.points @ to_table[:3, :3].T + to_table[:3, 3]
     cloud = replace(thing.cloud, points=points.astype(np.float32))
     low, high = (tuple(side.round(6).tolist()) for side in (points.min(axis=0), points.max(axis=0)))
     return PerceivedObject(id, low, high, cloud=cloud)

@@ -37,19 +37,19 @@ Event = Frame | Skeleton | Utterance
 WORDS, PEOPLE = "words.said.jsonl", "people.skeleton.jsonl"
 """Names of the files of words and skeletons in the folder of a story."""
 
-TALK = 1.5
+SPEECH_PAUSE = 1.5
 """Pause in seconds before and after what a simulated person says."""
 
-BREAK = 5.0
+CUSTOMER_PAUSE = 5.0
 """Time in seconds between the two customers, in which the robot does not look."""
 
 SIMULATED = ("simulator", "laying")
 """Simulated stories: a table for two customers, and a table laid by a person with a camera on her head."""
 
-REACH = 0.4
+SPEECH_LEAD = 0.4
 """Seconds from the words that announce a thing to the movement of the hand."""
 
-SWAPPED = 0.15
+SWAP_PROBABILITY = 0.15
 """Probability that a simulated person exchanges a thing with the next one in her order."""
 
 
@@ -157,11 +157,13 @@ class StorySettings:
         UtteranceError, PointingError
             If a file of words or skeletons has an error.
         SimulationError
-            If no table can be laid as the script says.
+            If no table can be laid as the script says, or there is no such path of the camera.
         """
         from deixis.grammar.utterances import read_utterances
+        from deixis.perception.simulator.films.camera_paths import camera_path
         from deixis.perception.tracking.stream import LatestFrames
 
+        camera_path(self.camera)  # an unknown path is an error in every story
         driver = self.source not in SIMULATED and not Path(self.source).exists() and ":" in self.source
         if self.source in SIMULATED:
             from deixis.examples_data import example
@@ -301,33 +303,33 @@ def simulated_story(script: Script, seed: int = 0, rate: float = 4.0) -> Story:
     words = [
         Utterance(
             f"This is {with_article(first.things[k].name.replace('_', ' '))}.",
-            TALK + aim.start,
-            TALK + aim.finish,
+            SPEECH_PAUSE + aim.start,
+            SPEECH_PAUSE + aim.finish,
             "teacher",
         )
         for k, aim in zip(shown, recording.aims, strict=True)
     ]
-    told_at = TALK + recording.skeletons[-1].at + TALK
+    told_at = SPEECH_PAUSE + recording.skeletons[-1].at + SPEECH_PAUSE
     name = (script.name or "this table").replace("_", " ")
     words.append(Utterance(f"This is how '{name}' is laid. {tell(script).text}", told_at, speaker="teacher"))
 
     before = Stage(first.things, seed)
-    before.carry_out(Rest(told_at + TALK))
+    before.carry_out(Rest(told_at + SPEECH_PAUSE))
     after = Stage([thing for k, thing in enumerate(second.things) if k not in (forgotten, brought)], seed)
-    after.carry_out(Rest(TALK))
+    after.carry_out(Rest(SPEECH_PAUSE))
     after.carry_out(Bring(second.things[brought]))
-    after.carry_out(Rest(TALK))
+    after.carry_out(Rest(SPEECH_PAUSE))
     top = top_under((*first.things, *second.things))
     camera = chair_camera(LaidTable(top, (*first.things, *second.things)))
     left = tuple(thing for k, thing in enumerate(second.things) if k != forgotten)
     truth = StoryTruth(truth_scene(LaidTable(top, left)), camera, second.things[forgotten].name)
     films = [stage.film(top, camera) for stage in (before, after)]
-    asked_at = films[0].seconds + BREAK + films[1].seconds
+    asked_at = films[0].seconds + CUSTOMER_PAUSE + films[1].seconds
     words.append(Utterance("What is wrong?", asked_at, speaker="teacher"))
 
     def frames() -> Iterator[Frame]:
         number = 0
-        for film, start in zip(films, (0.0, films[0].seconds + BREAK), strict=True):
+        for film, start in zip(films, (0.0, films[0].seconds + CUSTOMER_PAUSE), strict=True):
             for frame in film.frames(rate, seed):
                 yield Frame(frame.cloud, start + frame.at, number)
                 number += 1
@@ -378,20 +380,20 @@ def laying_story(script: Script, seed: int = 0, rate: float = 4.0, camera: str =
     rng = np.random.default_rng(seed)
     table = lay_script(script, seed=seed).table
     order = sorted(range(len(table.things)), key=lambda k: round(float(table.things[k].box[0, 2]), 3))
-    for k in np.flatnonzero(rng.random(len(order) - 1) < SWAPPED).tolist():
+    for k in np.flatnonzero(rng.random(len(order) - 1) < SWAP_PROBABILITY).tolist():
         lower, upper = (table.things[order[k]], table.things[order[k + 1]])
         if not _supports_another(lower, (upper,)):
             order[k : k + 2] = order[k + 1], order[k]
 
     stage, words = Stage((), seed), []
-    stage.carry_out(Rest(TALK))
+    stage.carry_out(Rest(SPEECH_PAUSE))
     for place, k in enumerate(order):
         name = plain_name(table.things[k].name).replace("_", " ")
         opening = "First" if place == 0 else "Finally" if place == len(order) - 1 else "Then"
-        words.append(Utterance(f"{opening} the {name}.", stage.at, stage.at + REACH, "teacher"))
-        stage.carry_out(Rest(REACH))
+        words.append(Utterance(f"{opening} the {name}.", stage.at, stage.at + SPEECH_LEAD, "teacher"))
+        stage.carry_out(Rest(SPEECH_LEAD))
         stage.carry_out(Bring(table.things[k]))
-        stage.carry_out(Rest(TALK))
+        stage.carry_out(Rest(SPEECH_PAUSE))
     top, eye = top_under(table.things), chair_camera(table)
     truth = StoryTruth(truth_scene(table), eye, laid=tuple(table.things[k].name for k in order))
     return Story(stage.film(top, eye, camera_path(camera, seed)).frames(rate, seed), tuple(words), (), truth)
@@ -411,4 +413,4 @@ def _as_seen(skeleton: Skeleton, camera: Camera) -> Skeleton:
     """Return a skeleton in the frame of the camera, after the pause at the beginning of the story."""
     places = camera.to_camera(np.array(list(skeleton.joints.values())))
     joints = {name: tuple(place) for name, place in zip(skeleton.joints, places.tolist(), strict=True)}
-    return Skeleton(skeleton.at + TALK, joints, skeleton.person)
+    return Skeleton(skeleton.at + SPEECH_PAUSE, joints, skeleton.person)

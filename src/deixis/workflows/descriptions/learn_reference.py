@@ -95,7 +95,8 @@ def learn_reference(
     examples, left_out = _examples(lines, folder)
     before = prior or shipped_model()
     if not examples:
-        raise DescriptionError("; ".join(("nothing to learn", *left_out)))
+        more = f"; and {len(left_out) - 1} more lines" if len(left_out) > 1 else ""
+        raise DescriptionError("; ".join(("nothing to learn", *left_out[:1])) + more)
     unset = {name: np.zeros_like(values) for name, values in initial_weights(default_ontology().colours).items()}
     start = replace(before, weights={**unset, **before.weights})
     learned = replace(start, weights=fit(start, examples, strength, ITERATIONS))

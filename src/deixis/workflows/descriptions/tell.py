@@ -38,7 +38,7 @@ def tell(
     all_facts: bool = False,
     time_limit: float = TELL_TIME_LIMIT,
 ) -> Telling:
-    """Say a layout or a scene in English.
+    """Describe a layout or a scene in English.
 
     Parameters
     ----------

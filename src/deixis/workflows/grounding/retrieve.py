@@ -248,5 +248,5 @@ def _files(folder: Path, pattern: str, what: str) -> list[Path]:
 
 def _some(known: dict[str, Known], what: str) -> dict[str, Known]:
     if not known:
-        raise DeixisError(f"retrieve: no {what} is remembered; learn from some, or name a folder with --among DIR")
+        raise DeixisError(f"retrieve: no {what} has been learned; learn one first, or name a folder with --among DIR")
     return known

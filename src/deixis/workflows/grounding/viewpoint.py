@@ -104,8 +104,8 @@ def _from_all_quarters(scene: Scene, found: Viewpoints) -> ViewpointScene:
 
 def _others(scene: Scene, found: Viewpoints) -> tuple[tuple[Viewpoint, Scene], ...]:
     """Return the scene as seen from each further side that is probable enough."""
-    worth = [view for view in found.viewpoints[1:MAX_VIEWPOINTS] if view.probability >= MIN_VIEWPOINT_PROBABILITY]
-    return tuple((view, scene_from(scene, view)) for view in worth)
+    probable = [view for view in found.viewpoints[1:MAX_VIEWPOINTS] if view.probability >= MIN_VIEWPOINT_PROBABILITY]
+    return tuple((view, scene_from(scene, view)) for view in probable)
 
 
 def ground_from_sides(

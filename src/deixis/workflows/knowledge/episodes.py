@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from deixis.deadline import Deadline
-from deixis.errors import DeixisError
+from deixis.errors import DeixisError, UnknownTermError
 from deixis.grammar.formats.fluents import FluentFile, bounds_to_json, format_fluents, parse_fluents
 from deixis.memory.episodes.blackboard import Blackboard
 from deixis.memory.episodes.experiences import CONSOLIDATED, RECORDED, Experience, Holding, episode, experiences
@@ -22,6 +22,7 @@ from deixis.memory.episodes.fluents.episode import EpisodicFluent, Origin, Sourc
 from deixis.memory.episodes.subscription import Subscription
 from deixis.ontology.graph.facts import Fact
 from deixis.ontology.graph.graph import RelationGraph
+from deixis.ontology.relations.relation import nearest
 from deixis.ontology.tbox import Ontology
 from deixis.reasoning.entailment.conflict import find_conflict
 from deixis.reasoning.entailment.implications import Implications
@@ -360,6 +361,47 @@ def _logical(
         yield f"the kinds and relations contradict the ontology: {kinds}"
 
 
+def change_to_dict(change: Logged) -> dict[str, Any]:
+    """Return a change of the blackboard as plain data.
+
+    Parameters
+    ----------
+    change
+        The change.
+
+    Returns
+    -------
+    dict
+        Its sequence number and that of the last change of the same write, its kind, who wrote it and when (seconds
+        since 1970), and the fluent before and after it.
+    """
+    return {
+        "sequence": change.sequence,
+        "last": change.last,
+        "kind": change.kind,
+        "by": change.by,
+        "written": change.written,
+        "before": None if change.before is None else fluent_to_dict(change.before),
+        "after": None if change.after is None else fluent_to_dict(change.after),
+    }
+
+
+def experience_to_dict(experience: Experience) -> dict[str, Any]:
+    """Return an experience as plain data.
+
+    Parameters
+    ----------
+    experience
+        The experience.
+
+    Returns
+    -------
+    dict
+        Its name, the id of its fluent, and its start and finish in seconds; the finish is None while it is recorded.
+    """
+    return {"name": experience.name, "id": experience.id, "start": experience.start, "finish": experience.finish}
+
+
 class KnownClass(NamedTuple):
     """A class of things: its name, its broader classes, and the individuals that are of it now."""
 
@@ -384,6 +426,11 @@ def known_classes(board: Blackboard, ontology: Ontology, under: str | None = Non
     -------
     tuple of KnownClass
         The classes by name.
+
+    Raises
+    ------
+    UnknownTermError
+        If there is no class ``under``.
     """
     names = {kind.iri: kind.name for kind in ontology.kinds}
     broader = {kind.name: tuple(sorted(names[iri] for iri in kind.broader if iri in names)) for kind in ontology.kinds}
@@ -397,6 +444,9 @@ def known_classes(board: Blackboard, ontology: Ontology, under: str | None = Non
     if under is not None:
         kind, _ = ontology.of_name(under)
         top = under if kind is None else kind.name
+        if top not in broader:
+            meant = nearest(top, broader)
+            raise UnknownTermError(f"there is no class '{under}'" + (f"; did you mean '{meant}'?" if meant else ""))
         broader = {name: above for name, above in broader.items() if name == top or top in above}
     return tuple(KnownClass(name, broader[name], tuple(members.get(name, ()))) for name in sorted(broader))
 
@@ -427,6 +477,36 @@ def memory_lines(which: Memory, board: Blackboard, session: _Learner) -> Iterato
         yield from (f"layout {layout.name}" for layout in session.layouts())
     elif which is Memory.PERCEPTUAL and session.has_views():
         yield from (f"category {name}: {views} views" for name, views in session.categories().items())
+
+
+def memory_to_dict(which: Memory, board: Blackboard, session: _Learner) -> dict[str, Any]:
+    """Return the content of one of the five memories as plain data.
+
+    Parameters
+    ----------
+    which
+        The memory.
+    board
+        The blackboard.
+    session
+        The session with the semantic and the perceptual memory.
+
+    Returns
+    -------
+    dict
+        The name of the memory, and its ``fluents``, ``experiences``, ``layouts`` or ``categories``; only the name for
+        the procedural memory.
+    """
+    content: dict[str, Any] = {}
+    if which is Memory.WORKING:
+        content["fluents"] = [fluent_to_dict(each) for each in board.now()]
+    elif which is Memory.EPISODIC:
+        content["experiences"] = [experience_to_dict(each) for each in experiences(board)]
+    elif which is Memory.SEMANTIC:
+        content["layouts"] = [layout.name for layout in session.layouts()] if session.remembers() else []
+    elif which is Memory.PERCEPTUAL:
+        content["categories"] = dict(session.categories()) if session.has_views() else {}
+    return {"memory": which.value, **content}
 
 
 def scene_of(fluents: Sequence[EpisodicFluent], at: float) -> Scene | None:

@@ -267,11 +267,11 @@ class _Remembering:
         adjective, _, rest = words.partition(" ")
         if not found and rest:  # the red ball
             try:
-                whole = self.resolve(rest)
+                of_noun = self.resolve(rest)
             except _NotKnownError:
-                whole = frozenset()
+                of_noun = frozenset()
             found = {thing for thing in self.things if adjective in self.said_of[thing]}
-            found &= self.things if whole is None else whole
+            found &= self.things if of_noun is None else of_noun
         if not found:
             known = sorted({self.name(thing) for thing in self.things})
             has = f"; it has: {', '.join(known[:8])}{' …' if len(known) > 8 else ''}" if known else ", which is empty"

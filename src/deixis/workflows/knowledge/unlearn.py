@@ -183,7 +183,7 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
         after = {view: _without(turns, lessons, new, chosen, view) for view, turns in before.items()}
         after = {view: turns for view, turns in after.items() if turns != before[view]}
         shown = set() if board is None else _shown(board, before, after)
-        events = shown | (_told(lessons, knowledge) if lessons else set())
+        events = shown | (_teaching_events(lessons, knowledge) if lessons else set())
         changes = () if board is None else tuple(_episodes(board, lessons, chosen, events))
         fluents = tuple(change.id for change in changes if isinstance(change, Delete))
         found = Unlearned(lessons, tuple(_changes(before, after)), fluents, tuple(new))
@@ -195,7 +195,7 @@ def unlearn(selection: Selection, knowledge: KnowledgeStore, views: ViewStore, d
     return found
 
 
-def _told(lessons: Sequence[str], knowledge: KnowledgeStore) -> set[str]:
+def _teaching_events(lessons: Sequence[str], knowledge: KnowledgeStore) -> set[str]:
     """Return the events that taught the lessons which are taken back, and no lesson that stays."""
     from deixis.memory.semantic.rdf.links import events_of_lessons
 
@@ -394,8 +394,8 @@ def _without(
     turns: Teachings, lessons: Sequence[str], revised: Mapping[str, Lesson], chosen: _Chosen, view: str
 ) -> Teachings:
     """Return the teachings of a view that stay; those of a revised lesson are as it teaches them now."""
-    stay = (turn for turn in turns if _origin(turn) not in lessons)
-    left = (_now(turn, revised.get(_origin(turn) or "")) for turn in stay)
+    kept_turns = (turn for turn in turns if _origin(turn) not in lessons)
+    left = (_now(turn, revised.get(_origin(turn) or "")) for turn in kept_turns)
     return tuple(turn for turn in left if turn is not None and not chosen.holds_of_teaching(turn, view))
 
 

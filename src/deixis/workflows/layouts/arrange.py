@@ -209,13 +209,13 @@ def arrange(task: Arrangement, boxes: Array, rng: np.random.Generator, deadline:
         if moved is None or (_overlaps(moved) & ~allowed).any() or not task.firm(moved):
             continue
         found = task.degrees(moved)
-        if _worth(found) >= _worth(degrees):  # equal moves too, which lead away from dead ends
+        if _score(found) >= _score(degrees):  # equal moves too, which lead away from dead ends
             since = 0 if (found > 0.5).sum() > (degrees > 0.5).sum() else since
             best, degrees = moved, found
     return best
 
 
-def _worth(degrees: Array) -> float:
+def _score(degrees: Array) -> float:
     """Return how much of the statements holds: each counts from one half on, and a little by its degree."""
     return float((degrees > 0.5).sum() + 0.5 * np.minimum(degrees, COMFORT).sum())
 

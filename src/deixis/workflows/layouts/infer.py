@@ -345,4 +345,4 @@ def require_names(inference: Inference, fact: Fact, name: str) -> None:
         if thing not in nodes:
             hint = nearest(thing, nodes)
             suggestion = f"; did you mean '{hint}'?" if hint else ""
-            raise UnknownTermError(f"{name}: the script names no '{thing}'{suggestion}")
+            raise UnknownTermError(f"{name}: the script has no object '{thing}'{suggestion}")

@@ -251,7 +251,7 @@ def example_pairs(inputs: Sequence[Path]) -> list[tuple[Path, Path]]:
             pairs.append((script, given))
             script = None
     if script is not None:
-        raise DeixisError(f"{script}: name its scene behind it, as in 'SCRIPT SCENE'")
+        raise DeixisError(f"{script}: give its scene after it, as in 'SCRIPT SCENE'")
     return pairs
 
 
@@ -292,5 +292,7 @@ def read_english_file(path: str | Path, deadline: Deadline = Deadline.never(), s
         If nothing is understood or, with ``strict``, not all.
     """
     if not is_english(path):
-        raise DeixisError(f"{path}: a text in English must be a .txt file or - (standard input); parse reads layouts")
+        raise DeixisError(
+            f"'{path}' must be a .txt file with an English text, or - for standard input; 'deixis parse' reads layouts"
+        )
     return read_script_file(path, deadline=deadline, strict=strict)

@@ -217,7 +217,7 @@ def predict(
     Raises
     ------
     NothingFoundError
-        If there is no learned activity of the name, and no told order.
+        If there is no learned activity of the name, and no stated order.
     SettingError
         If there are several learned activities, and no name.
 

@@ -37,7 +37,7 @@ def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
     ImportFormatError
         If a file cannot be read; the message names the place.
     """
-    found = [triple for number, file in enumerate(files) for triple in _apart(number, read_quads(file))]
+    found = [triple for number, file in enumerate(files) for triple in _with_own_blank_nodes(number, read_quads(file))]
     prefixes = dict(PREFIXES)
     for file in files:
         if file.suffix.lower() in (".ttl", ".trig"):
@@ -45,7 +45,7 @@ def read_ontology(files: Sequence[Path]) -> tuple[list[Triple], dict[str, str]]:
     return _as_triples(found), prefixes
 
 
-def _apart(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
+def _with_own_blank_nodes(number: int, quads: Iterable[ox.Quad]) -> Iterator[ox.Triple]:
     """Yield the triples of one file, with blank nodes renamed so that they differ from those of other files."""
 
     def own(node: object) -> object:

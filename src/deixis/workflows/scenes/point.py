@@ -360,8 +360,8 @@ def taught_labels(labels: Sequence[PointedLabel], scene: Scene) -> tuple[tuple[P
             other = result[earlier]
             if other.target != label.target or other.refused is not None or other.name is None:
                 continue
-            alike = lexicon.relation(label.name, other.name) in agree
-            if (label.positive and other.positive and not alike) or (label.positive != other.positive and alike):
+            agreeing = lexicon.relation(label.name, other.name) in agree
+            if (label.positive and other.positive and not agreeing) or (label.positive != other.positive and agreeing):
                 if naming is not None and naming.corrects:
                     result[earlier] = replace(other, refused=f"taken back at {label.utterance.at:g} s")
                     continue

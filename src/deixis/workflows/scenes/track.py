@@ -129,7 +129,7 @@ def cloud_source(
         raise CloudError(f"give one folder or one or more files, got {', '.join(map(str, files)) or 'nothing'}")
     missing = next((file for file in files if not Path(file).is_file()), None)
     if missing is not None:
-        raise CloudError(f"{missing}: no such file or folder")
+        raise CloudError(f"{missing}: there is no such file or folder")
     return FileSource(files, rate, intrinsics)
 
 

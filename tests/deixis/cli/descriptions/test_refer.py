@@ -88,7 +88,7 @@ def test_words_learned_from_descriptions_are_used(tmp_path: Path) -> None:
     [
         (["the chair"], "give a TEXT and a SCENE, or --batch FILE"),
         (["the chair", STUDY, "--batch", "x"], "--batch takes --until and --models only"),
-        (["--batch", "missing.jsonl"], "missing.jsonl: cannot be read"),
+        (["--batch", "missing.jsonl"], "missing.jsonl: there is no such file"),
         (["", STUDY], "got a blank text"),
         (["the chair", "missing.json"], "missing.json: there is no such file"),
         (["the chair", STUDY, "--oracle", "o99"], "there is no object 'o99'"),

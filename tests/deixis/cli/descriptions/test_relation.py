@@ -111,7 +111,7 @@ def test_what_relation_refuses(tmp_path: Path) -> None:
     assert "did you mean 'left'" in refused("relation", "lefft")
     assert "no relation word 'nosuch'; use one of bottom, bottom_left," in refused("relation", "nosuch")
     assert "must end in .png" in refused("relation", "left", "--plot", tmp_path / "a.txt")
-    assert "cannot be read" in refused("relation", "left", "--models", tmp_path / "none.ttl")
+    assert "there is no such file" in refused("relation", "left", "--models", tmp_path / "none.ttl")
     empty = tmp_path / "empty.ttl"
     empty.write_text("", encoding="utf-8")
     assert "no relation model in this file" in refused("relation", "left", "--models", empty)

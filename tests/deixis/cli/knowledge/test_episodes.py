@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from commands import deixis
@@ -60,10 +62,28 @@ def test_experience_is_recorded_and_shown_by_its_memory(memory: Path) -> None:
     assert deixis("episodes", "classes", "--used")[1] == "Fork < Cutlery, Tableware, Thing: t1\n"
 
 
+def test_answers_are_printed_as_json(memory: Path) -> None:
+    def answer(*words: str) -> Any:
+        return json.loads(deixis("episodes", *words, "--json")[1])
+
+    assert answer("add", "t2", "left", "t1", "--start", "3")["statement"] == ["t2", "left", "t1"]
+    assert answer("update", "f1", "--certainty", "0.5") == {"fluents": 1, "sequence": 4}
+    log = answer("changes", "--since", "3")["changes"]
+    assert [(change["kind"], change["before"]["certainty"], change["after"]["certainty"]) for change in log] == [
+        ("update", 1.0, 0.5)
+    ]
+    assert answer("record", "lunch", "--at", "0")["finish"] is None
+    assert answer("record", "lunch", "--stop", "--at", "9")["finish"] == 9.0
+    assert [each["name"] for each in answer("memory", "episodic")["experiences"]] == ["lunch"]
+    assert answer("classes", "--used")["classes"][0]["individuals"] == ["t1"]
+    assert answer("consolidate")["lessons"] == {}
+
+
 @pytest.mark.parametrize(
     ("command", "message"),
     [
-        (("add", "t1"), "at most one object, got 1 words"),
+        (("classes", "Frok"), "there is no class 'Frok'; did you mean 'Fork'?"),
+        (("add", "t1"), "at most one object, got 1 word"),
         (("add", "t1", "at", "--start", "1"), "box of a thing"),
         (("add", "t1", "on", "t2", "--start", "5", "--finish", "4"), "must start before it finishes"),
         (("finish",), "by their ids, or else by --pattern"),

@@ -219,7 +219,7 @@ def test_a_long_listing_is_cut_with_its_count(tmp_path: Path, monkeypatch: pytes
 def test_why_not_refuses_an_object_that_the_script_does_not_name() -> None:
     code, out, err = deixis("infer", SCRIPT1, "--why-not", "left(salad_frok, soup_spoon)")
     assert (code, out) == (2, "")
-    assert err == "deixis: --why-not: the script names no 'salad_frok'; did you mean 'salad_fork'?\n"
+    assert err == "deixis: --why-not: the script has no object 'salad_frok'; did you mean 'salad_fork'?\n"
 
 
 def test_choices_that_are_not_weighed_in_time_leave_it_undecided(tmp_path: Path) -> None:

@@ -50,7 +50,7 @@ def test_activity_is_learned_from_named_experiences(memory: Path, tmp_path: Path
     ("name", "reason"),
     [
         ("nothing", "nothing came to the table in the experience 'nothing'"),
-        ("friday", "there is no experience 'friday'; the blackboard has: monday, tuesday, nothing, today"),
+        ("friday", "there is no experience 'friday'; the blackboard has monday, tuesday, nothing, today"),
     ],
 )
 def test_experience_without_steps_is_refused(memory: Path, tmp_path: Path, name: str, reason: str) -> None:

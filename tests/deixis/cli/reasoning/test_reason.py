@@ -126,7 +126,7 @@ def test_everything_remembered_is_reasoned_over(tmp_path: Path) -> None:
     [
         (["missing.ttl"], "no such file"),
         (["TABLE", "--explain", "nonsense"], "is not one statement"),
-        (["TABLE", "--explain", "xx:a rdf:type xx:b"], "xx: has not been declared"),
+        (["TABLE", "--explain", "xx:a rdf:type xx:b"], "the prefix xx: is not declared"),
         (["TABLE", "--explain", ":a a :B ; a :C"], "is not one statement"),
         (["TABLE", "--explain", ":a owl:inverseOf :b"], "cannot be explained"),
         (["--memory", "nowhere"], "memory"),

@@ -166,7 +166,7 @@ def test_of_what_is_inconsistent_there_is_nothing_to_explain(tmp_path: Path) -> 
     assert code == 1 and "These cannot all hold" in out
     assert out.splitlines()[-1] == "There is nothing to explain about 0 and 1: the constraints cannot all hold."
     code, _, err = deixis("solve", path, "--calculus", "point", "--explain", 0, 9)
-    assert code == 2 and "no thing 9" in err
+    assert code == 2 and "no object 9" in err
 
 
 def test_a_search_conflict_lists_only_lines_of_its_calculus(tmp_path: Path) -> None:
@@ -196,7 +196,7 @@ def test_a_conflict_cut_short_says_that_it_may_not_be_minimal() -> None:
         (CHAIN, ["--calculus", "allen", "--closure", "--scenario"], "exclude each other"),
         (CHAIN, ["--calculus", "allen", "-o", "x.csp"], "give one of them"),
         ("1\n0 1 ( ra:<,= )\n.", ["--calculus", "ra+cd", "--explain", "0", "1"], "one calculus at a time"),
-        (CHAIN, ["--calculus", "allen", "--explain", "0", "7"], "no thing 7"),
+        (CHAIN, ["--calculus", "allen", "--explain", "0", "7"], "no object 7"),
         ("1\n0 1 ( ovrlaps )\n.", ["--calculus", "allen"], "did you mean 'overlaps'"),
         ("", ["--calculus", "allen"], "no network"),
         ("2\n0 1 ( < )\n1 2 ( < )\n", ["--calculus", "allen"], "has not ended"),

@@ -105,7 +105,7 @@ def test_an_empty_scene_has_no_pairs(tmp_path: Path) -> None:
         (("--of", "a", "--of", "b", "--of", "c"), "--of may be given once"),
         (("--matrix", "--of", "fork"), "--matrix excludes --of"),
         (("--matrix", "--words"), "--matrix excludes --of"),
-        (("--calculus", "distance"), "`reference` must be a length"),
+        (("--calculus", "distance"), "needs the length `reference`"),
         (("--calculus", "allen", "--axis", "q"), "`axis` must be x, y or z, got 'q'"),
         (("--image", "x.jpg"), "an image ('x.jpg') can be chosen in annotation files only"),
     ],

@@ -175,6 +175,10 @@ def test_a_word_is_asked_for_until_something_is_pointed_at(
     assert "o1 is a view of 'saucer'; 1 view in all." in out
     assert "Here it is: o1" in deixis("ask", "saucer", scene, *memory)[1]
     assert "a view of 'fork'" in deixis("ask", "fork", scene, "--points-at", "o3", *memory)[1]
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    code, out, err = deixis("ask", "cup", scene, "--json", *memory)
+    assert (code, json.loads(out)) == (1, {"word": "cup", "category": "cup", "objects": {}, "taught": None})
+    assert "I still do not know what 'cup' is." in err
 
 
 def test_bad_input_has_one_line(tables: Path, tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ class NoIds(FullDisk):
 
 @pytest.mark.long
 def test_a_full_disk_during_a_look_loses_no_thing_and_no_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("deixis.robot.modules.PAUSE", 0.001)
+    monkeypatch.setattr("deixis.robot.modules.RESTART_PAUSE", 0.001)
     script = tmp_path / "pair.layout"
     script.write_text("layout pair\nfork left of plate\n", encoding="utf-8")
     seen = []

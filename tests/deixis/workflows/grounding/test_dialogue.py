@@ -136,7 +136,7 @@ def test_a_truth_file_that_is_none_is_refused(tmp_path: Path, data: object, mess
 
 
 def test_a_missing_truth_file_is_told_by_its_name(tmp_path: Path) -> None:
-    with pytest.raises(OracleError, match=r"nowhere\.json: cannot be read"):
+    with pytest.raises(OracleError, match=r"nowhere\.json: there is no such file"):
         read_oracle(tmp_path / "nowhere.json", three_cups().situation, io.StringIO())
 
 

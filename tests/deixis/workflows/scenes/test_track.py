@@ -52,7 +52,12 @@ def test_stream_of_unusable_frames_exits_with_2(tmp_path: Path, option: tuple[st
     for name in ("0.pcd", "1.pcd"):
         (tmp_path / name).write_text("no cloud")
     code, _, err = deixis_command("track", tmp_path, *option)
-    assert code == 2 and "got none of 2" in err and "0.pcd" in err and len(err.strip().splitlines()) == 1
+    assert (
+        code == 2
+        and "none of the 2 frames can be used" in err
+        and "0.pcd" in err
+        and len(err.strip().splitlines()) == 1
+    )
 
 
 def test_thing_that_was_taken_away_is_gone() -> None:

@@ -75,7 +75,7 @@ def test_a_strip_of_a_wall_is_not_a_part_of_the_table(boxes_seen: Look) -> None:
 
 
 def test_tables_are_numbered_from_one() -> None:
-    with pytest.raises(CloudError, match="table must be a whole number of at least 1"):
+    with pytest.raises(CloudError, match="`table` must be a whole number of at least 1"):
         DetectionSettings(table=0)
 
 
