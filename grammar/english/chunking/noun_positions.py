@@ -86,6 +86,7 @@ class NounFinder:
         self._closed, self._verbs, self._adjectives = _closed(), verb_forms(), adjectives()
         self.relating_words = relating_words()
         self.is_object = False  # True while a phrase after *put* or *hold* is read
+        self.verbs: frozenset[int] = frozenset()  # words that are tried as verbs
 
     def number(self, at: int) -> float | None:
         """Return the value of a number that is written in words or digits.
@@ -288,6 +289,8 @@ class NounFinder:
 
     def _nounish(self, at: int) -> bool:
         norm = self.norms[at]
+        if at in self.verbs:
+            return False
         if not norm or norm in self._closed or at >= len(self.words):
             return norm in ("one", "ones")
         if not norm[0].isalpha():
@@ -312,7 +315,7 @@ class NounFinder:
             False also for a function word.
         """
         norm = self.norms[at]
-        if not norm or norm in self._closed or not (norm[0].isalpha()):
+        if not norm or at in self.verbs or norm in self._closed or not (norm[0].isalpha()):
             return False
         if at == 0 and self.norms[1] in IS_FORMS and norm.isalpha() and norm not in ADVERBS and norm not in HEDGES:
             return True  # a name: Holly is …
