@@ -79,10 +79,11 @@ def _ATTACHED_UNIT(norm: str) -> float | None:  # noqa: N802
 class RelatorChunker:
     """Finder of prepositions, place words and lengths, beside the chunks that were found so far."""
 
-    def __init__(self, words: list[Word], nouns: KnownNouns) -> None:
+    def __init__(self, words: list[Word], nouns: KnownNouns, verbs: frozenset[int] = frozenset()) -> None:
         self.words = words
         self.norms = [word.norm for word in words] + [""] * 12
         self.nouns = NounChunker(words, self.norms, nouns)
+        self.nouns.verbs = verbs
         self.chunks: list[Chunk] = []
         self._denied: str | None = None  # modal of a denial that stands before its subject
         self._denied_be: VerbGroup | None = None  # 'by no means is the cup …': *is* goes after the subject

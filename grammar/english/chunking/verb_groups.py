@@ -188,6 +188,8 @@ class VerbChunker(RelatorChunker):
         norm = self.norms[i]
         form = self._verbs.get(norm)
         helped = i > first
+        if i in self.nouns.verbs and (tried := self._tried(at, i, group)) is not None:
+            return tried
         told = self.norms[i + 1] == "that" or (norm in SAYING and self.norms[i + 1] in _TOLD)
         if norm in REPORTS | SAYING and told and self._previous() == "NP":
             return Chunk(
@@ -397,6 +399,22 @@ class VerbChunker(RelatorChunker):
         if self.nouns.is_noun(i) and self._previous() not in ("NP", "REL"):  # third person
             return None
         return self._finite(at, end, found)
+
+    def _tried(self, at: int, i: int, group: VerbGroup) -> Chunk | None:
+        """Return the verb of a word that is tried as one: a command where a clause begins, and finite elsewhere."""
+        form = self._verbs.get(self.norms[i])
+        lemma, kind = (self.norms[i], "unknown") if form is None else (form.lemma, form.kind)
+        plain = form is None or form.form == "base"
+        end = i + 1
+        if i == at and plain and self._previous() in JOINT_TYPES | {"", "ADVERB"}:
+            end += self.norms[end] in PARTICLES and self.nouns.starts(end + 1)
+            if self.nouns.starts(end):
+                return Chunk("PUT", at, end, _with(group, lemma, "posture", "base"))
+            return Chunk("GO", at, end, _with(group, lemma, kind, "base")) if self._predicate_after(i) else None
+        if self._previous() not in FINITE | {"NP", "REL", "ADVERB"}:
+            return None
+        found = _with(group, lemma, kind, "s" if form is None else form.form)
+        return Chunk("TVERB" if self._takes_object(kind, end) else "VERB", at, end, found)
 
     def _inverts(self, form: str, at: int) -> bool:
         """Return True for the participle of *at its left end is bolted the vice*, before its subject."""
