@@ -6,7 +6,7 @@ from deixis.grammar.english.chunking.chunk import FINITE, JOINT_TYPES, Chunk, Re
 from deixis.grammar.english.chunking.verb_groups import VerbChunker
 from deixis.grammar.english.tree import NounPhrase
 from deixis.grammar.english.vocabulary.adjectives import is_adjective
-from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, PRONOUNS
+from deixis.grammar.english.vocabulary.function_words import IS_FORMS, MODALS, NEGATIONS, PRONOUNS
 from deixis.grammar.english.vocabulary.relation_words import Preposition, prepositions
 from deixis.grammar.english.vocabulary.tables import word_set
 
@@ -47,6 +47,10 @@ class JointChunker(VerbChunker):
             and any(c.type == "PUT" and c.value.lemma == "keep" for c in self.chunks)
         ):  # fmt: skip
             return Chunk("NOT", at, at + 2)  # 'keep the bleach from getting near the food'
+        if norm == "by" and self._is_name(at + 1):
+            return Chunk("PREP", at, at + 1, Relator(Preposition(norm, "-")))  # 'a seascape by Turner'
+        if norm == "yet" and self.norms[at - 1] in NEGATIONS:
+            return Chunk("ADVERB", at, at + 1, norm)  # 'the neck, not yet glued, …'
         if norm == "whose":
             return Chunk("WHOSE", at, at + 1)
         if norm in ("where", "how", "why") or (norm == "when" and after in IS_FORMS):
@@ -163,6 +167,11 @@ class JointChunker(VerbChunker):
             or norm in MODALS
             or (form is not None and form.form in ("s", "past", "base") and norm not in ("left", "set"))
         )
+
+    def _is_name(self, at: int) -> bool:
+        """Return True for a name without an article, as a person has it."""
+        named = at < len(self.words) and self.nouns.is_name(at)
+        return named and not self.nouns.is_determiner(at) and self.norms[at] not in PRONOUNS
 
     def _is_back(self, chunk: Chunk) -> bool:
         """Return True for *your back*."""

@@ -157,6 +157,8 @@ class NounChunker(ModifierFinder):
         norm = self.norms[at]
         if norm not in PRONOUNS or at >= len(self.words):
             return None
+        if norm == "which" and previous == "PREP":
+            return PRONOUNS[norm]  # 'a till in which three saws hang'
         if norm == "that" and previous in ("BE", "VERB", "TVERB") and not self._nounish(at + 1):
             return None
         if norm in DETERMINERS or norm == "one":

@@ -671,6 +671,22 @@ class NounFinder:
         takes_object = after in ARTICLES and not norm.endswith("ings")
         return determined and (takes_object or self._nouns.knows(" ".join(nouns))) and not verbs_later
 
+    def is_name(self, at: int) -> bool:
+        """Return True for a word with one capital letter, the first: a name where it does not begin the sentence.
+
+        Parameters
+        ----------
+        at
+            Index of the word in the sentence.
+
+        Returns
+        -------
+        bool
+            False for one letter, and for capitals throughout, as in *USB*.
+        """
+        text = self.words[at].text
+        return len(text) > 1 and text[0].isupper() and text[1:].islower()
+
     def _noun_here(self, at: int, nouns: list[str]) -> bool:
         norm = self.norms[at]
         if self._reports(at) or self._is_unknown_verb(at, nouns) or (norm == "pick" and self.norms[at + 1] == "up"):
@@ -694,6 +710,8 @@ class NounFinder:
             return False
         if nouns and norm in ("left", "right"):
             return False
+        if nouns and self.is_name(at) and self.words[at - 1].text[:1].islower():
+            return False  # 'behind the aquarium Mr Bell put …'
         if nouns and norm == "well" and self.norms[at + 1] in prepositions().keys() | _AWAY:
             return False  # 'keep the candle well away from it'
         if (

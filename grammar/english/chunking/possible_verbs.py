@@ -51,7 +51,10 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
             form = verb_forms().get(norm)
             follows = norms[at + 1] in _relating()
             if at > chunk.start and chunk.type == "NP":
-                if follows and _agrees(norms[at - 1], norm, form is not None and form.form, nouns):
+                told_apart = at == chunk.start + 2 and norms[chunk.start] == "the" and is_adjective(norms[at - 1])
+                third = form is not None and form.form == "s"  # 'the leftmost holds sand'
+                agrees = _agrees(norms[at - 1], norm, form is not None and form.form, nouns)
+                if (follows and agrees) or (told_apart and third):
                     found.append(at)
             elif at == chunk.start and before in ("REL", "ADVERB") and form is not None and follows:
                 found.append(at)
@@ -70,7 +73,7 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
 
 def _agrees(noun: str, verb: str, form: str | bool, nouns: KnownNouns) -> bool:
     """Return True if a verb can follow a noun as its subject: *lamp stands*, *lamps stand*."""
-    if not noun[:1].isalpha() or (is_adjective(noun) and not nouns.knows(noun)):
+    if not noun[:1].isalpha() or (is_known(noun) and not nouns.knows(noun)):
         return False
     plural = nouns.singular(noun)[1]
     if form == "s" or (form is False and verb.endswith("s") and not verb.endswith("ss") and not is_known(verb)):

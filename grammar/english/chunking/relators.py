@@ -328,6 +328,13 @@ class RelatorChunker:
             end += 1
         return Chunk("MEASURE", at, end, (number * scale, hedge, bound))
 
+    def _directed(self, at: int) -> bool:
+        """Return True for words after a length that say from what: *a hand away*, *a hand to the right of it*."""
+        place = self._relations.longest(self.norms, at)
+        aside = self.norms[at : at + 2] == ["to", "the"] and self.norms[at + 2] in ("left", "right")
+        directed = place is not None and place[1].relation in _DIRECTED
+        return self.norms[at] in ("away", "apart", "from") or aside or directed
+
     def _spoken_length(self, at: int) -> tuple[int, float] | None:
         """Return the end and the metres of *a hand's width*, *half a metre*, *an inch*, *a few centimetres*."""
         i, times = at, 1.0
@@ -349,7 +356,7 @@ class RelatorChunker:
             end += 2
         elif self.norms[end] in _BREADTHS:
             end += 1
-        elif unit in _BODY:
+        elif unit in _BODY and not self._directed(end):
             return None
         follows = self._match(end) is not None or self.norms[end] in ("away", "apart", "from", "", ",", ".", "or")
         return (end, times * scale) if follows and self.norms[end] != "of" else None

@@ -389,6 +389,8 @@ class VerbChunker(RelatorChunker):
                 if norm in ("look", "turn") and self.norms[end] in ("at", "to", "toward", "towards"):
                     end += 1
                 return Chunk("TPART", at, end, found)
+            if imperative and norm in _INTRANSITIVE and self.nouns.is_determiner(end):
+                return Chunk("VERB", at, end, found)  # 'on the table, whose top is oak, lie a loaf and a knife'
             if imperative and not subject_is_you and self.nouns.is_determiner(end):
                 return Chunk("DO", at, end, found)
             if subject == "REL":
@@ -603,6 +605,9 @@ _TENDING = {
 
 _GOING = word_set("stand sit step walk go kneel stay wait look")
 """Verbs of commands that take no object."""
+
+_INTRANSITIVE = word_set("lie sit kneel come go rise")
+"""Verbs of a state or a motion without an object; before a noun phrase they come before their subject."""
 
 _CROSSING = word_set("move go walk come head step turn")
 """Verbs of commands that send the reader somewhere."""

@@ -517,8 +517,9 @@ class Builder(Transformer[Any, Built]):
 
     def object_relative(self, rel: Chunk, noun: Noun, verb: Verb) -> tuple[Predicate, ...]:
         """Return the predicates of *that the cup stands on* and *which I keep under the mug*."""
-        predicates = flat(verb)
-        if noun.phrase.pronoun in ("me", "you", "we", "someone") or not predicates:
+        person = noun.phrase.pronoun in ("me", "you", "we", "someone", "he", "she")
+        predicates = flat(replace(verb, thing=None) if person else verb)
+        if person or not predicates:
             return tuple(p for p in predicates if p.arguments or p.relation in DIRECTION_RELATIONS)
         last = predicates[-1]
         if not last.arguments:

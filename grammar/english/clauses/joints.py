@@ -128,6 +128,7 @@ def _cuts(
         return True
     following = types[end]
     complete = _finite_between(types, start, at) or (labelled and types[start] in PREDICATES)
+    complete = complete or (link == "," and _absolute_before(types, start, at))
     if link in _SUBORDINATE and "COMMA" in kinds and following not in ("REL", "WHOSE", "TPART", "PART"):
         return True
     if following == "BE" and types[end + 1 : end + 2] == ["NP"] and not complete:
@@ -153,6 +154,11 @@ def _cuts(
     if following in ("TPART", "PART") and complete and "COMMA" in kinds:
         return _inversion_follows(types, end)
     return False
+
+
+def _absolute_before(types: list[str], start: int, at: int) -> bool:
+    """Return True for a thing with its place and no verb, as in a list of such: *A sits at X, B at Y, C at Z*."""
+    return types[start] == "NP" and types[start + 1] in PREDICATES - {"WITH", "ADJP"} and at > start + 1
 
 
 def _verbless_inversion(types: list[str], at: int) -> bool:

@@ -496,6 +496,9 @@ class References:
             chosen = self._singular(relation, besides)
             self._note_doubt(phrase, chosen, relation, besides)
             return chosen
+        if word in ("he", "she") and relation is not None:
+            named = (e for f in self.recent for e in (f.subject, *f.others) if e is not None and e is not besides)
+            return next((entity for entity in named if entity.role is Role.PERSON), None)
         if word in ("he", "she") and self.recent and self.recent[0].sentence == self.sentence:
             last = self.recent[0].subject  # 'the dinosaur is the biggest and he's next to the lamp'
             return last if last is not None and last.role is Role.THING and not last.members else None
@@ -699,8 +702,9 @@ class References:
                 return group  # 'next to the trays but not touching them'
         if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
             return two
+        restrictions = [f.subject for f in self.recent[4:] if f.sentence == self.sentence and f.subject is not None]
         for focus in self.recent[:4]:
-            for entity in [focus.subject, *focus.others]:
+            for entity in [focus.subject, *focus.others, *restrictions]:  # 'a tank with two snails in it, and they …'
                 if entity is None or entity is besides or entity.role is not Role.THING:
                     continue
                 if entity.itself.members or entity.plural:
