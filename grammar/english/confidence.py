@@ -20,7 +20,8 @@ MIN_CONFIDENCE = 0.75
 class Guess(StrEnum):
     """A doubtful step of reading; the value names it in messages."""
 
-    RUN_ON = "words before or after this, without a comma or a conjunction, do not fit it"
+    RUN_ON = "words before this, without a comma or a conjunction, do not fit it"
+    CUT_SHORT = "words after this, without a comma or a conjunction, do not fit it"
     NO_SUBJECT = "the clause has no subject"
     ACCOMPANIED = "'with' does not say where the other thing is"
     OF_THE_LAST = "the clause does not say of what this is a direction"
@@ -29,6 +30,7 @@ class Guess(StrEnum):
 
 SHARE_RIGHT = {
     Guess.RUN_ON: 0.67,
+    Guess.CUT_SHORT: 0.78,
     Guess.NO_SUBJECT: 0.43,
     Guess.ACCOMPANIED: 0.4,
     Guess.OF_THE_LAST: 0.81,

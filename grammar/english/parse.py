@@ -242,10 +242,10 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         pieces.append((at, end, built))
         at = end
     for i, (at, end, built) in enumerate(pieces):
-        beside = [other for first, last, other in pieces if last == at or first == end]
         led = any(_is_verb(chunk) and chunk.span[1] <= chunks[at].span[0] for chunk in skipped)
-        run_on = led or (bool(beside) and not any(b.shape in _ORDERS for b in (built, *beside)))
-        guesses = {Guess.RUN_ON} if run_on else set()
+        before = [other for _, last, other in pieces if last == at and not _ORDERS & {built.shape, other.shape}]
+        after = [other for first, _, other in pieces if first == end and not _ORDERS & {built.shape, other.shape}]
+        guesses = {Guess.RUN_ON} if led or before else {Guess.CUT_SHORT} if after else set()
         if built.shape == "said" and (segment.link == "and" or built.verbs):
             guesses.add(Guess.NO_SUBJECT)
         assembly.guesses = frozenset(guesses)
@@ -273,13 +273,22 @@ def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:
     whole, ends = _feed(lark, chunks, at, len(chunks))
     if whole is not None:
         return whole, len(chunks)
-    for end in reversed(ends):
+    joined = [end for end in ends if _ends_list(chunks, at, end)]
+    for end in (*(e for e in reversed(ends) if e not in joined), *reversed(joined)):
         before = len(notes.get())
         built, _ = _feed(lark, chunks, at, end)
         if built is not None:
             return built, end
         del notes.get()[before:]
     return None, at
+
+
+def _ends_list(chunks: list[Chunk], at: int, end: int) -> bool:
+    """Return True if a clause would end with the last noun of a list, which can be the subject of what follows."""
+    if [chunk.type for chunk in chunks[end - 2 : end]] != ["NJ", "NP"]:
+        return False
+    relators = [chunk.value for chunk in chunks[at:end] if chunk.type == "PREP"]
+    return not relators or relators[-1].preposition.relation not in ("between", "among")
 
 
 def _feed(lark: Lark, chunks: list[Chunk], at: int, end: int) -> tuple[Built | None, list[int]]:
