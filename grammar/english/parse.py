@@ -245,7 +245,8 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         led = any(_is_verb(chunk) and chunk.span[1] <= chunks[at].span[0] for chunk in skipped)
         before = [other for _, last, other in pieces if last == at and not _ORDERS & {built.shape, other.shape}]
         after = [other for first, _, other in pieces if first == end and not _ORDERS & {built.shape, other.shape}]
-        guesses = {Guess.RUN_ON} if led or before else {Guess.CUT_SHORT} if after else set()
+        taken = any(other.shape == "said" and other.verbs for other in after)  # the last noun can be its subject
+        guesses = {Guess.RUN_ON} if led or before or taken else {Guess.CUT_SHORT} if after else set()
         if built.shape == "said" and (segment.link == "and" or built.verbs):
             guesses.add(Guess.NO_SUBJECT)
         assembly.guesses = frozenset(guesses)
@@ -258,6 +259,7 @@ def _parse_segment(segment: Segment, assembly: Assembly) -> None:
         notes.get().append(Misunderstood(chunk.span, "this does not fit the rest of the sentence"))
 
 
+_JOINTS = JOINT_TYPES | {"NJ", "PJ", "VJ", "FJ", "OJ"}
 _ORDERS = frozenset({"command", "search", "other"})
 """Shapes of commands, which show by their verb where they begin."""
 
@@ -285,7 +287,7 @@ def _longest(chunks: list[Chunk], at: int) -> tuple[Built | None, int]:
 
 def _ends_list(chunks: list[Chunk], at: int, end: int) -> bool:
     """Return True if a clause would end with the last noun of a list, which can be the subject of what follows."""
-    if [chunk.type for chunk in chunks[end - 2 : end]] != ["NJ", "NP"]:
+    if [chunk.type for chunk in chunks[end - 2 : end]] != ["NJ", "NP"] or chunks[end].type in _JOINTS:
         return False
     relators = [chunk.value for chunk in chunks[at:end] if chunk.type == "PREP"]
     return not relators or relators[-1].preposition.relation not in ("between", "among")

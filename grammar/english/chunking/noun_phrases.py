@@ -275,7 +275,8 @@ class NounChunker(ModifierFinder):
                     return start, None, ()
             if not modifiers and count is None and determiner in ("a", "an", "the", None) and owner is None:
                 return start, None, ()
-            if determiner in ("this", "that", "these", "those", "each", "every", "all", "both") and not modifiers:
+            alone = determiner in ("this", "that", "these", "those", "each", "every", "all", "both") and not modifiers
+            if alone and count is None:  # but 'between these two'
                 return start, None, ()
             phrase = NounPhrase(
                 self._span(start, i),

@@ -710,7 +710,7 @@ class NounFinder:
             return False
         if nouns and norm in ("left", "right"):
             return False
-        if nouns and self.is_name(at) and self.words[at - 1].text[:1].islower():
+        if nouns and self.is_name(at) and self._nouns.knows(nouns[-1]) and self.words[at - 1].text[:1].islower():
             return False  # 'behind the aquarium Mr Bell put …'
         if nouns and norm == "well" and self.norms[at + 1] in prepositions().keys() | _AWAY:
             return False  # 'keep the candle well away from it'
@@ -776,7 +776,7 @@ _NEVER_NOUNS = word_set(
     " where there then so too wherever otherwise also is are was were be been being am do does did has have had"
     " having n't please let lets upside into onto upon toward towards against among amongst between beside"
     " beneath underneath behind until during such whether whenever via per through 's 're 'm 'll 've 'd it's"
-    " although though since unless"
+    " although though since unless yet"
 )
 
 NOUN_OR_PREPOSITION = word_set("left right top bottom front back inside outside side opposite next near close")

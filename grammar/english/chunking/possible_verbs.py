@@ -56,7 +56,7 @@ def possible_verbs(chunks: list[Chunk], words: list[Word], nouns: KnownNouns) ->
                 agrees = _agrees(norms[at - 1], norm, form is not None and form.form, nouns)
                 if (follows and agrees) or (told_apart and third):
                     found.append(at)
-            elif at == chunk.start and before in ("REL", "ADVERB") and form is not None and follows:
+            elif at == chunk.start and before in ("REL", "ADVERB", "AND") and form is not None and follows:
                 found.append(at)
             elif at == chunk.start and before in _BEGINNINGS and chunk.type == "NP" and at + 1 < len(words):
                 base = form is not None and form.form == "base"

@@ -246,7 +246,8 @@ class Builder(Transformer[Any, Built]):
             and not members[1].negated
         ):
             first, second = members
-            named = second.determiner is not None or second.owner is not None
+            own = second.owner is not None and second.owner.pronoun in ("it", "they")
+            named = second.determiner is not None or (second.owner is not None and not own)
             if named and not is_place(first) and first.pronoun is None:  # apposition
                 kind = Predicate("kind", (second,), second.span)
                 return Noun(replace(first, predicates=(*first.predicates, kind), span=span), extra)

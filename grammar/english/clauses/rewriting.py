@@ -676,7 +676,7 @@ def _with_places_before_verbs(chunks: list[Chunk]) -> list[Chunk]:
     found: list[Chunk] = []
     for i, chunk in enumerate(chunks):
         lay = (
-            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma == "lay" and "AND" in (c.type for c in found)
+            type_at(chunks, i + 1) == "PUT" and chunks[i + 1].value.lemma in _RESTING and "AND" in (c.type for c in found)
         )
         if (
             chunk.type == "COMMA"
@@ -713,6 +713,8 @@ def _with_pronouns_of_lists(chunks: list[Chunk]) -> list[Chunk]:
     return found
 
 
+_RESTING = frozenset({"lay", "stand", "hang", "rest", "sit", "lean"})
+"""Verbs that turn a clause round: *and behind that, in a row, stand your letters*."""
 _SEATS = frozenset({"place", "pride", "spot", "position", "seat"})
 _COMMENTING = frozenset({"make", "mean", "let", "allow", "cause", "give", "prevent", "explain", "save", "help", "seem"})
 """Verbs of *which* that comment on a whole clause."""

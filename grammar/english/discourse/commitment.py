@@ -10,6 +10,7 @@ from deixis.grammar.english.vocabulary.verbs import SAYING
 
 PAST_RELATIVE = re.compile(
     r"\b(?:which|that|who)\s+(?:used to|was|were|had)\b"
+    r"|\b(?:which|that|who)\s+for\s+(?:[\w'\u2019-]+\s+){0,3}?(?:years?|months?|weeks?|decades?|centuries|generations?)\b"
     r"|\b(?:which|that|who|where)\s+(?:[\w'\u2019-]+\s+){0,3}?once\s+\w+",
     re.IGNORECASE,
 )

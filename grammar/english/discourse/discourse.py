@@ -165,7 +165,7 @@ class Discourse(Statements):
         """Take the thing that a question is about as what the next sentence speaks of: *and the knife? it is …*."""
         if phrase is None or not phrase.head or phrase.determiner in ("a", "an", "no", "any"):
             return
-        if phrase.determiner is None and not phrase.plural:
+        if phrase.determiner is None and phrase.owner is None and not phrase.plural:
             return
         asked = self.references.find(replace(phrase, predicates=()))
         if asked is not None and asked.role is Role.THING:

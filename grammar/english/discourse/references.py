@@ -702,7 +702,7 @@ class References:
                 return group  # 'next to the trays but not touching them'
         if relation == "between" and (two := self._last_two_subjects(besides)) is not None:
             return two
-        restrictions = [f.subject for f in self.recent[4:] if f.sentence == self.sentence and f.subject is not None]
+        restrictions = [f.subject for f in self.recent[1:] if f.sentence == self.sentence and f.subject is not None]
         for focus in self.recent[:4]:
             for entity in [focus.subject, *focus.others, *restrictions]:  # 'a tank with two snails in it, and they …'
                 if entity is None or entity is besides or entity.role is not Role.THING:

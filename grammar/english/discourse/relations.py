@@ -55,6 +55,11 @@ SUPPORTS = frozenset(
 )
 
 
+_OF_SEVERAL = frozenset(
+    {"near_each_other", "parallel_each_other", "touching_each_other", "nested", "stacked"}
+)
+"""Relations of several things together."""
+
 _MUTUAL = {"next_to": "near", "against": "touching"}
 """Relation of each to the others, by the relation to *each other*."""
 
@@ -150,8 +155,10 @@ class Relations(Mentions):
         if relation == "between":
             self._between(subject, entities)
             return
+        if relation == "among" and self.text[slice(*predicate.span)].casefold().startswith(("of ", "out of ")):
+            return  # 'of the two cups one is on the tray'
         single = subject.size == 1 and not subject.plural and not entities
-        if single and relation in ("near_each_other", "parallel_each_other", "touching_each_other", "nested"):
+        if single and relation in _OF_SEVERAL:
             return
         if relation in COLLECTIVE and not (relation == "stacked" and entities):
             if subject.itself.members:
