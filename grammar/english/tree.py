@@ -102,6 +102,7 @@ class NounPhrase:
     owner: NounPhrase | None = None
     members: tuple[NounPhrase, ...] = ()
     joined_by: str | None = None
+    known: bool = True  # False for a singular that the ontology does not have
     negated: bool = False  # 'the red box, not the blue one': the second member
 
 

@@ -300,6 +300,6 @@ class NounChunker(ModifierFinder):
             plural = True
         phrase = NounPhrase(
             self._span(start, i), head, determiner, count, plural or (count or 1) > 1, None, modifiers, owner=owner,
-            negated=negated,
+            negated=negated, known=plural or self._nouns.knows(nouns[-1]) or not nouns[-1].isalpha(),
         )  # fmt: skip
         return i, phrase, ()

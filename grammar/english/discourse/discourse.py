@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
+from deixis.grammar.english.confidence import Guess
 from deixis.grammar.english.discourse.commitment import (
     CONSEQUENCE,
     ELSEWHERE,
@@ -35,6 +36,7 @@ from deixis.grammar.english.discourse.statements import Statements
 from deixis.grammar.english.discourse.surfaces import DIRECTIONS
 from deixis.grammar.english.tree import Clause, Degree, Mood, NounPhrase, Predicate
 from deixis.grammar.english.vocabulary.nouns import GENERAL, PARTS, REMOVABLE, VIEWER_WORDS, last_word
+from deixis.grammar.english.vocabulary.verbs import verb_forms
 from deixis.ontology.graph.claims import PLACES
 
 UNCERTAIN = frozenset({"might", "may", "could", "would"})
@@ -128,6 +130,8 @@ class Discourse(Statements):
             if part.pronoun == "one" and subject is not None and subject.members:
                 self._one_each(subject, part)
                 continue
+            if _can_be_verb(part):
+                self.how = self._guessed(Guess.BARE)
             subject = self._introduce(replace(part, predicates=()))
             if not self.story and PAST_RELATIVE.search(self.text[slice(*part.span)]):
                 self.how = replace(self.how, past=True)
@@ -207,6 +211,7 @@ class Discourse(Statements):
             past=self._is_past(clause), uncertain=uncertain, guesses=clause.guesses,
         )  # fmt: skip
         subject = clause.subject
+        self.how = replace(self.how, guesses=self.how.guesses | _guesses_of_subject(clause))
         if subject is not None and {m.determiner == "no" for m in subject.members} == {True, False}:
             members = tuple(
                 replace(m, determiner=None, negated=True) if m.determiner == "no" else m for m in subject.members
@@ -473,6 +478,21 @@ class Discourse(Statements):
             name = SUPERLATIVES.get((adjective.dimension, POLES.get(adjective.word, 0)))
             if name is not None:
                 self._add(name, (last,), (), value=where)
+
+
+def _guesses_of_subject(clause: Clause) -> frozenset[Guess]:
+    """Return the doubtful steps by which the subject of a clause is found."""
+    subject = clause.subject
+    if subject is None:
+        return frozenset()
+    vague = subject.pronoun in ("these", "those") and not (subject.head or subject.of or subject.adjectives)
+    return frozenset({Guess.THOSE} if vague else {Guess.BARE} if _can_be_verb(subject) else ())
+
+
+def _can_be_verb(phrase: NounPhrase) -> bool:
+    """Return True for one word without an article that is known as a verb and not as a noun: *listen up*."""
+    bare = phrase.determiner is None and phrase.owner is None and phrase.count is None and not phrase.adjectives
+    return bare and not phrase.known and phrase.head in verb_forms().keys() - PARTS
 
 
 _FRONTS = frozenset({"display", "dial", "lens", "logo", "opening", "writing", "picture", "window", "keyhole"})
